@@ -1,0 +1,50 @@
+"""ves_twin: full-physics digital twin of the VES II micro-gravity emulator.
+
+The public names load on first use, so that `import ves_twin` stays quick.
+"""
+
+from __future__ import annotations
+
+import importlib
+from typing import TYPE_CHECKING
+
+__version__ = "0.1.0"
+
+if TYPE_CHECKING:
+    from ves_twin.plant.plant import Plant
+    from ves_twin.recording.files import load_recording
+    from ves_twin.recording.recording import Recording
+    from ves_twin.scenario.schema import Scenario
+    from ves_twin.simulator.outcome import Outcome
+    from ves_twin.simulator.simulate import record, simulate
+    from ves_twin.simulator.simulator import Simulator
+
+_HOMES = {
+    "Outcome": "ves_twin.simulator.outcome",
+    "Plant": "ves_twin.plant.plant",
+    "Recording": "ves_twin.recording.recording",
+    "Scenario": "ves_twin.scenario.schema",
+    "Simulator": "ves_twin.simulator.simulator",
+    "load_recording": "ves_twin.recording.files",
+    "record": "ves_twin.simulator.simulate",
+    "simulate": "ves_twin.simulator.simulate",
+}
+
+__all__ = [
+    "Outcome",
+    "Plant",
+    "Recording",
+    "Scenario",
+    "Simulator",
+    "load_recording",
+    "record",
+    "simulate",
+]
+
+
+def __getattr__(name: str) -> object:
+    if name not in _HOMES:
+        raise AttributeError(f"module 'ves_twin' has no attribute '{name}'")
+    value = getattr(importlib.import_module(_HOMES[name]), name)
+    globals()[name] = value
+    return value

@@ -1,0 +1,28 @@
+"""Belief: what the controllers take the rig to be; it may be wrong, the plant never sees it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from ves_twin.kinematics.puma560 import Puma560
+from ves_twin.kinematics.stewart import StewartGeometry
+from ves_twin.types import FloatArray
+
+
+@dataclass(frozen=True)
+class Belief:
+    """Frozen numbers that controllers work with.
+
+    Attributes:
+        geometry: joint positions of the platform.
+        arm: kinematics of the arm.
+        sensor_position: origin of the sensor frame s in the top frame t [m] (3,).
+        leg_travel: travel from home that commands may use, stroke less margin [m].
+        full_speed: rod speed at full valve opening [m/s].
+    """
+
+    geometry: StewartGeometry
+    arm: Puma560
+    sensor_position: FloatArray
+    leg_travel: float
+    full_speed: float

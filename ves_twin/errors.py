@@ -1,0 +1,59 @@
+"""Errors: one base class; every message says what came, what was expected and the nearest match."""
+
+from __future__ import annotations
+
+import difflib
+from collections.abc import Iterable
+
+
+class VesTwinError(Exception):
+    """Base of every error that a user can cause; its text is one clear line."""
+
+
+class UnknownNameError(VesTwinError):
+    """A name that does not exist, answered with the nearest one that does.
+
+    Args:
+        kind: what was looked for, for instance "scenario".
+        name: what came.
+        known: what exists.
+    """
+
+    def __init__(self, kind: str, name: str, known: Iterable[str]) -> None:
+        names = sorted(known)
+        near = difflib.get_close_matches(name, names, n=1, cutoff=0.5)
+        hint = f"did you mean '{near[0]}'?" if near else f"known: {', '.join(names) or 'none'}"
+        super().__init__(f"unknown {kind} '{name}'; {hint}")
+
+
+class InvalidInputError(VesTwinError):
+    """A value of the wrong kind, unit, shape or range."""
+
+    def __init__(self, what: str, came: object, expected: str) -> None:
+        super().__init__(f"{what}: got {came!r}, expected {expected}")
+
+
+class UnreachableError(VesTwinError):
+    """A pose or length outside the workspace."""
+
+
+class VersionError(VesTwinError):
+    """A file written by another version of the format."""
+
+    def __init__(self, path: object, found: object, expected: int) -> None:
+        super().__init__(
+            f"{path}: schema version {found!r} is not the one this program reads ({expected})"
+        )
+
+
+class FileAccessError(VesTwinError):
+    """A file or folder that is missing, unreadable or read-only."""
+
+
+class ControllerError(VesTwinError):
+    """A controller that raised or returned something that is not a finite command."""
+
+
+def one_line(error: BaseException) -> str:
+    """The message of an error folded to one line, for the terminal."""
+    return " ".join(str(error).split()) or type(error).__name__

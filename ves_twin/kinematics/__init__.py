@@ -1,0 +1,1 @@
+"""Kinematics of platform and arm, without MuJoCo."""

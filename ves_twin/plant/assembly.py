@@ -1,0 +1,130 @@
+"""assemble: the MJCF parts joined into one MjSpec, with every number from the parameter table."""
+
+from __future__ import annotations
+
+import mujoco
+import numpy as np
+
+from ves_twin.plant.arm_part import arm_part
+from ves_twin.plant.leg_part import leg_part
+from ves_twin.plant.parameters import ParameterTable
+from ves_twin.plant.plant import Plant, mjcf_part
+from ves_twin.types import FloatArray
+
+LEGS = 6
+JOINTS = ("q1", "q2", "q3")
+
+CLOSURE_SOLIMP = (0.9999, 0.99999, 0.001, 0.5, 2.0)
+"""Impedance of the leg closure, nearly rigid: keeps the loop closed to micrometres."""
+
+
+def assemble(plant: Plant, timestep: float) -> mujoco.MjSpec:
+    """The whole rig as an MjSpec: frame, six legs, platform, force sensor, arm.
+
+    The chain closes through `connect` constraints between rod ends and platform joints, with a
+    time constant of two steps. The hydraulic and joint forces enter through plain motors.
+
+    Args:
+        plant: the rig.
+        timestep: physics step [s].
+
+    Returns:
+        A specification that compiles; names are prefixed leg1/ ... leg6/, platform/, sensor/, arm/.
+    """
+    parameters, geometry = plant.parameters, plant.geometry
+    spec = _part("frame.xml")
+    spec.modelname = plant.name
+    spec.option.timestep = timestep
+    spec.option.gravity = [0.0, 0.0, -parameters.number("gravity")]
+    for i in range(LEGS):
+        leg, frame_quat = leg_part(_part("leg.xml"), parameters, geometry, i)
+        base = spec.worldbody.add_frame(pos=geometry.base[i], quat=frame_quat)
+        spec.attach(leg, prefix=f"leg{i + 1}/", frame=base)
+    platform = _platform(_part("platform.xml"), parameters, geometry.top)
+    home = spec.worldbody.add_frame(pos=geometry.home)
+    spec.attach(platform, prefix="platform/", frame=home)
+    sensor = _part("sensor.xml")
+    sensor.site("wrench").pos = parameters.array("sensor.position")
+    spec.attach(sensor, prefix="sensor/", site=spec.site("platform/top"))
+    spec.attach(arm_part(_part("puma560.xml"), parameters), prefix="arm/", site=spec.site("sensor/mount"))
+    _close_legs(spec, timestep)
+    _actuators_and_sensors(spec)
+    return spec
+
+
+def assemble_free_arm(plant: Plant) -> mujoco.MjSpec:
+    """The arm on a base with six free coordinates and without gravity, for the zero-g reference.
+
+    The base moves by three slides along X, Y, Z and three hinges about Z, Y, X, so that its
+    coordinates are those of a platform pose: R = Rz Ry Rx. Order of joints: x y z rz ry rx q1 q2 q3.
+    """
+    spec = mujoco.MjSpec()
+    spec.modelname = f"{plant.name} zero-g"
+    spec.compiler.degree = False
+    spec.compiler.fusestatic = False
+    spec.option.gravity = [0.0, 0.0, 0.0]
+    spec.option.jacobian = mujoco.mjtJacobian.mjJAC_DENSE
+    spec.option.disableflags |= int(mujoco.mjtDisableBit.mjDSBL_CONTACT)
+    base = spec.worldbody.add_body(name="base")
+    slide, hinge = mujoco.mjtJoint.mjJNT_SLIDE, mujoco.mjtJoint.mjJNT_HINGE
+    for name, kind, axis in (
+        ("x", slide, (1, 0, 0)),
+        ("y", slide, (0, 1, 0)),
+        ("z", slide, (0, 0, 1)),
+        ("rz", hinge, (0, 0, 1)),
+        ("ry", hinge, (0, 1, 0)),
+        ("rx", hinge, (1, 0, 0)),
+    ):
+        base.add_joint(name=name, type=kind, axis=axis)
+    mount = base.add_site(name="mount")
+    spec.attach(arm_part(_part("puma560.xml"), plant.parameters), prefix="arm/", site=mount)
+    return spec
+
+
+def assemble_fixed_arm(plant: Plant) -> mujoco.MjSpec:
+    """The arm alone on a fixed base, gravity on, rotors in `armature`."""
+    spec = arm_part(_part("puma560.xml"), plant.parameters)
+    spec.option.gravity = [0.0, 0.0, -plant.parameters.number("gravity")]
+    spec.option.disableflags |= int(mujoco.mjtDisableBit.mjDSBL_CONTACT)
+    return spec
+
+
+def _part(file: str) -> mujoco.MjSpec:
+    return mujoco.MjSpec.from_file(str(mjcf_part(file)))
+
+
+def _platform(
+    spec: mujoco.MjSpec, parameters: ParameterTable, joints: FloatArray
+) -> mujoco.MjSpec:
+    top = spec.body("top")
+    top.mass = parameters.number("platform.mass")
+    top.inertia = parameters.array("platform.inertia")
+    top.ipos = [0.0, 0.0, parameters.number("platform.com_height")]
+    for i in range(LEGS):
+        top.add_site(name=f"joint{i + 1}", pos=joints[i])
+    return spec
+
+
+def _close_legs(spec: mujoco.MjSpec, timestep: float) -> None:
+    for i in range(1, LEGS + 1):
+        closure = spec.add_equality(
+            name=f"closure{i}",
+            type=mujoco.mjtEq.mjEQ_CONNECT,
+            objtype=mujoco.mjtObj.mjOBJ_SITE,
+            name1=f"leg{i}/rod_end",
+            name2=f"platform/joint{i}",
+        )
+        closure.solref = np.array([2.0 * timestep, 1.0])
+        closure.solimp = np.array(CLOSURE_SOLIMP)
+
+
+def _actuators_and_sensors(spec: mujoco.MjSpec) -> None:
+    joint = mujoco.mjtTrn.mjTRN_JOINT
+    for i in range(1, LEGS + 1):
+        spec.add_actuator(name=f"leg{i}", target=f"leg{i}/slide", trntype=joint).set_to_motor()
+    for name in JOINTS:
+        spec.add_actuator(name=name, target=f"arm/{name}", trntype=joint).set_to_motor()
+    for name, kind in (("force", mujoco.mjtSensor.mjSENS_FORCE), ("torque", mujoco.mjtSensor.mjSENS_TORQUE)):
+        spec.add_sensor(
+            name=name, type=kind, objtype=mujoco.mjtObj.mjOBJ_SITE, objname="sensor/wrench"
+        )

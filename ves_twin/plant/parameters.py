@@ -1,0 +1,201 @@
+"""Parameters: numbers with unit, sd, grade and source, read from models/*.toml."""
+
+from __future__ import annotations
+
+import tomllib
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, replace
+from enum import StrEnum
+from pathlib import Path
+
+import numpy as np
+
+from ves_twin.errors import FileAccessError, InvalidInputError, UnknownNameError, VersionError
+from ves_twin.types import FloatArray
+from ves_twin.units import to_si
+
+SCHEMA = 1
+"""Version of the plant file format."""
+
+_KEYS = {"value", "unit", "sd", "low", "high", "grade", "source"}
+
+
+class Grade(StrEnum):
+    """How a number came about; an invented one is never shown as a measured one."""
+
+    THESIS = "thesis"
+    DERIVED = "derived"
+    CALIBRATED = "calibrated"
+    ASSUMED = "assumed"
+
+
+@dataclass(frozen=True)
+class Parameter:
+    """One number or array of the rig.
+
+    Attributes:
+        name: dotted name, for instance "leg.rod_mass".
+        value: value in `unit`; a 0-d, 1-d or 2-d array.
+        unit: SI unit; for a wrench the units of force and moment.
+        sd: what commissioning leaves open, one sigma, same shape or scalar.
+        low: smallest value allowed.
+        high: largest value allowed.
+        grade: how the number came about.
+        source: where it comes from.
+    """
+
+    name: str
+    value: FloatArray
+    unit: str
+    sd: FloatArray
+    low: float
+    high: float
+    grade: Grade
+    source: str
+
+    def with_value(self, value: object) -> Parameter:
+        """The same parameter with another value.
+
+        Args:
+            value: a number, a text with a unit, or nested lists of the same shape.
+
+        Raises:
+            InvalidInputError: another shape or unit, not finite, or out of bounds.
+        """
+        array = _numbers(value, self.unit, self.name)
+        if array.shape != self.value.shape:
+            shape = f"shape {self.value.shape}" if self.value.shape else "a single number"
+            raise InvalidInputError(self.name, value, shape)
+        return replace(self, value=array)._checked(value)
+
+    def _checked(self, came: object) -> Parameter:
+        if np.any(self.value < self.low) or np.any(self.value > self.high):
+            bounds = f"a value of at least {self.low:g} {self.unit}"
+            if np.isfinite(self.high):
+                bounds += f" and at most {self.high:g}"
+            raise InvalidInputError(self.name, came, bounds)
+        self.value.setflags(write=False)
+        return self
+
+
+@dataclass(frozen=True)
+class ParameterTable(Mapping[str, Parameter]):
+    """All parameters of a rig by dotted name."""
+
+    entries: Mapping[str, Parameter]
+
+    def __getitem__(self, name: str) -> Parameter:
+        try:
+            return self.entries[name]
+        except KeyError:
+            raise UnknownNameError("parameter", name, self.entries) from None
+
+    def __contains__(self, name: object) -> bool:
+        return name in self.entries
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self.entries)
+
+    def __len__(self) -> int:
+        return len(self.entries)
+
+    def number(self, name: str) -> float:
+        """Value of a scalar parameter in SI."""
+        return float(self[name].value)
+
+    def array(self, name: str) -> FloatArray:
+        """Value of an array parameter in SI, a fresh copy."""
+        return np.array(self[name].value)
+
+    def with_values(self, values: Mapping[str, object]) -> ParameterTable:
+        """A table in which some parameters have other values.
+
+        Raises:
+            UnknownNameError: no such parameter.
+            InvalidInputError: wrong shape or unit, not finite, or out of bounds.
+        """
+        changed = {name: self[name].with_value(value) for name, value in values.items()}
+        return ParameterTable({**self.entries, **changed})
+
+    def differences(self, other: ParameterTable) -> dict[str, tuple[FloatArray, FloatArray]]:
+        """Parameters whose values differ: name -> (value here, value there)."""
+        return {
+            name: (self[name].value, other[name].value)
+            for name in self
+            if name in other and not np.array_equal(self[name].value, other[name].value)
+        }
+
+
+def read_plant_file(path: Path) -> dict[str, object]:
+    """Content of a plant file, checked for its schema version.
+
+    Raises:
+        FileAccessError: not readable.
+        InvalidInputError: not TOML.
+        VersionError: written for another version of the format.
+    """
+    try:
+        content = tomllib.loads(path.read_text(encoding="utf-8"))
+    except OSError as error:
+        raise FileAccessError(f"plant file {path}: {error.strerror}") from None
+    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
+        raise InvalidInputError(f"plant file {path}", str(error), "valid TOML") from None
+    if content.get("schema") != SCHEMA:
+        raise VersionError(path, content.get("schema"), SCHEMA)
+    return content
+
+
+def parse_parameters(content: Mapping[str, object], path: Path) -> ParameterTable:
+    """The table of a plant file's content: every table with a `value` is a parameter."""
+    entries: dict[str, Parameter] = {}
+    _collect("", content, entries, path)
+    return ParameterTable(entries)
+
+
+def _collect(
+    prefix: str, node: Mapping[str, object], entries: dict[str, Parameter], path: Path
+) -> None:
+    for key, child in node.items():
+        name = f"{prefix}{key}"
+        if not isinstance(child, Mapping):
+            if prefix or key not in {"schema", "name", "base", "parameters"}:
+                raise InvalidInputError(f"{path}: {name}", child, "a table with value and unit")
+        elif "value" in child:
+            entries[name] = _parameter(name, child)
+        elif key != "parameters" or prefix:
+            _collect(f"{name}.", child, entries, path)
+
+
+def _parameter(name: str, entry: Mapping[str, object]) -> Parameter:
+    for key in entry:
+        if key not in _KEYS:
+            raise UnknownNameError(f"key of {name}", key, _KEYS)
+    for key in ("unit", "grade", "source"):
+        if not isinstance(entry.get(key), str):
+            raise InvalidInputError(f"{name}.{key}", entry.get(key), "a text")
+    if entry["grade"] not in set(Grade):
+        raise UnknownNameError(f"grade of {name}", str(entry["grade"]), set(Grade))
+    unit = str(entry["unit"])
+    value = _numbers(entry["value"], unit, name)
+    return Parameter(
+        name=name,
+        value=value,
+        unit=unit,
+        sd=np.broadcast_to(_numbers(entry.get("sd"), unit, f"{name}.sd"), value.shape),
+        low=float(_numbers(entry.get("low", "-inf"), unit, f"{name}.low")),
+        high=float(_numbers(entry.get("high", "inf"), unit, f"{name}.high")),
+        grade=Grade(str(entry["grade"])),
+        source=str(entry["source"]),
+    )._checked(entry["value"])
+
+
+def _numbers(value: object, unit: str, what: str) -> FloatArray:
+    """Nested lists of numbers or texts with units as an array in SI."""
+    if value in ("inf", "-inf"):
+        return np.array(float(str(value)))
+    if isinstance(value, list | tuple):
+        rows = [_numbers(item, unit, f"{what}[{i + 1}]") for i, item in enumerate(value)]
+        if not rows or len({row.shape for row in rows}) != 1:
+            raise InvalidInputError(what, value, "numbers of one shape")
+        return np.array(rows)
+    return np.array(to_si(value, unit.split(",")[0], what))

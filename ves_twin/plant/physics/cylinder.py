@@ -1,0 +1,38 @@
+"""cylinder: linear hydraulics, an oil column that the valve moves and that pushes the rod."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ves_twin.compiled import compiled
+from ves_twin.types import FloatArray, Record
+
+PARAMETERS = np.dtype(
+    [("full_speed", np.float64), ("stiffness", np.float64), ("damping", np.float64)]
+)
+"""full_speed: rod speed at full opening [m/s]; stiffness [N/m] and damping [N s/m] of the oil."""
+
+STATE = np.dtype([("column", np.float64, 6), ("force", np.float64, 6)])
+"""column: rod position at which the oil carries no load [m]; force on the rod [N]."""
+
+
+@compiled
+def push_rods(
+    p: Record, s: Record, spool: FloatArray, slide: FloatArray, speed: FloatArray, step: float
+) -> None:
+    """Rod forces F = k (x - q) - c q', then the oil column moves by full_speed * spool * h.
+
+    The small-signal limit of a servovalve with two chambers: flow integrates to position and
+    the trapped oil is a spring. No friction, leakage or saturation of the supply.
+
+    Args:
+        p: PARAMETERS.
+        s: STATE.
+        spool: mean opening over the step, -1 to 1 (6,).
+        slide: rod travel from home q [m] (6,).
+        speed: rod speed q' [m/s] (6,).
+        step: physics step h [s].
+    """
+    for i in range(6):
+        s.force[i] = p.stiffness * (s.column[i] - slide[i]) - p.damping * speed[i]
+        s.column[i] += p.full_speed * spool[i] * step

@@ -1,0 +1,106 @@
+"""force_sensor: the chain from the true wrench to the number that the computer reads."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ves_twin.compiled import compiled
+from ves_twin.types import FloatArray, Record
+
+PARAMETERS = np.dtype(
+    [
+        ("gain", np.float64, (6, 6)),
+        ("offset", np.float64, 6),
+        ("drift", np.float64, 6),
+        ("noise", np.float64, 6),
+        ("wander", np.float64, 6),
+        ("wander_decay", np.float64),
+        ("numerator", np.float64, 3),
+        ("denominator", np.float64, 3),
+        ("range", np.float64, 6),
+        ("resolution", np.float64, 6),
+        ("calibration", np.float64, (6, 6)),
+    ]
+)
+"""gain: signal per wrench, cross-talk off the diagonal; drift [1/s]; noise: white sd per sample;
+wander: sd of the slow part with its decay per sample; low-pass coefficients; range; counts;
+calibration: what the computer multiplies with."""
+
+STATE = np.dtype(
+    [
+        ("z1", np.float64, 6),
+        ("z2", np.float64, 6),
+        ("wander", np.float64, 6),
+        ("signal", np.float64, 6),
+        ("zero", np.float64, 6),
+        ("reading", np.float64, 6),
+        ("true", np.float64, 6),
+    ]
+)
+"""Low-pass registers, slow noise, filtered signal, zero, calibrated reading, true wrench."""
+
+
+@compiled
+def start_at(p: Record, s: Record, wrench: FloatArray, wander: FloatArray) -> None:
+    """Put the chain into the steady state of a constant wrench.
+
+    Args:
+        p: PARAMETERS.
+        s: STATE.
+        wrench: wrench of the payload on the platform, sensor axes [N, N m] (6,).
+        wander: standard normal numbers for the slow noise (6,).
+    """
+    b, a = p.numerator, p.denominator
+    for i in range(6):
+        s.wander[i] = p.wander[i] * wander[i]
+        x = p.offset[i] + s.wander[i]
+        for j in range(6):
+            x += p.gain[i, j] * wrench[j]
+        y = x * (b[0] + b[1] + b[2]) / (1.0 + a[1] + a[2])
+        s.z2[i] = b[2] * x - a[2] * y
+        s.z1[i] = b[1] * x - a[1] * y + s.z2[i]
+        s.signal[i] = y
+        s.true[i] = wrench[i]
+
+
+@compiled
+def sample_wrench(
+    p: Record, s: Record, wrench: FloatArray, time: float, white: FloatArray, slow: FloatArray
+) -> bool:
+    """One sample: gain, offset, drift, slow and white noise, low-pass, range, counts, zero.
+
+    Args:
+        p: PARAMETERS.
+        s: STATE; `reading` is C (signal - zero).
+        wrench: true wrench of the payload on the platform, sensor axes [N, N m] (6,).
+        time: time since the start of the run, for drift [s].
+        white: standard normal numbers of the white noise (6,).
+        slow: standard normal numbers that drive the slow noise (6,).
+
+    Returns:
+        Whether every axis is within range.
+
+    Source: thesis 3.2.4, 3.4.5, Appendices D and F.
+    """
+    b, a = p.numerator, p.denominator
+    inside = True
+    kick = np.sqrt(1.0 - p.wander_decay * p.wander_decay)
+    for i in range(6):
+        s.true[i] = wrench[i]
+        s.wander[i] = p.wander_decay * s.wander[i] + kick * p.wander[i] * slow[i]
+        x = p.offset[i] + p.drift[i] * time + s.wander[i] + p.noise[i] * white[i]
+        for j in range(6):
+            x += p.gain[i, j] * wrench[j]
+        y = b[0] * x + s.z1[i]
+        s.z1[i] = b[1] * x - a[1] * y + s.z2[i]
+        s.z2[i] = b[2] * x - a[2] * y
+        if not abs(y) <= p.range[i]:
+            inside = False
+            y = min(max(y, -p.range[i]), p.range[i])
+        s.signal[i] = np.rint(y / p.resolution[i]) * p.resolution[i] if p.resolution[i] > 0.0 else y
+    for i in range(6):
+        total = 0.0
+        for j in range(6):
+            total += p.calibration[i, j] * (s.signal[j] - s.zero[j])
+        s.reading[i] = total
+    return inside

@@ -1,0 +1,123 @@
+"""Plant: the frozen description of the rig that everything else is built from."""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from enum import StrEnum
+from pathlib import Path
+
+from ves_twin.errors import InvalidInputError, UnknownNameError
+from ves_twin.kinematics.puma560 import Puma560
+from ves_twin.kinematics.stewart import StewartGeometry
+from ves_twin.plant.parameters import ParameterTable, parse_parameters, read_plant_file
+from ves_twin.resources import find_resource, resource_folder
+
+MJCF_FILES = ("frame.xml", "leg.xml", "platform.xml", "sensor.xml", "puma560.xml")
+"""The parts of the rig, each a file that opens on its own in any MuJoCo viewer."""
+
+
+class Fidelity(StrEnum):
+    """How much of the rig is modelled; the signals are the same."""
+
+    FULL = "full"
+
+
+@dataclass(frozen=True)
+class Plant:
+    """A rig: MJCF parts and the numbers that go into them and into the compiled loop.
+
+    Attributes:
+        name: name of the plant, for instance "ves2".
+        parameters: every number with unit, sd, grade and source.
+        fidelity: how much is modelled.
+    """
+
+    name: str
+    parameters: ParameterTable
+    fidelity: Fidelity = Fidelity.FULL
+
+    @staticmethod
+    def load(name_or_path: str) -> Plant:
+        """A plant by name ("ves2") or from a file.
+
+        A file is either complete, or it names a `base` plant and lists under `[parameters]`
+        what differs: `"leg.rod_mass" = 2.7`.
+
+        Raises:
+            FileAccessError: missing or unreadable file.
+            UnknownNameError: no such plant or parameter.
+            InvalidInputError: a value of the wrong kind, shape, unit or range.
+            VersionError: a file of another version of the format.
+        """
+        path = find_resource("plant", "models", name_or_path)
+        content = read_plant_file(path)
+        changes = content.get("parameters", {})
+        if not isinstance(changes, Mapping):
+            raise InvalidInputError(f"{path}: parameters", changes, "a table of changed values")
+        for key in content:
+            if "base" in content and key not in {"schema", "name", "base", "parameters"}:
+                raise UnknownNameError("key", key, {"schema", "name", "base", "parameters"})
+        name = str(content.get("name", path.stem))
+        if "base" in content:
+            base = Plant.load(str(content["base"]))
+            return replace(base, name=name).with_values(changes)
+        return Plant(name, parse_parameters(content, path)).with_values(changes)
+
+    def with_values(self, values: Mapping[str, object]) -> Plant:
+        """The same plant with other parameter values.
+
+        Args:
+            values: dotted names to values; nested tables are allowed.
+        """
+        if not values:
+            return self
+        return replace(self, parameters=self.parameters.with_values(flat(values)))
+
+    @property
+    def geometry(self) -> StewartGeometry:
+        """Joint positions of the platform."""
+        number = self.parameters.number
+        return StewartGeometry.symmetric(
+            base_radius=number("platform.base_radius"),
+            top_radius=number("platform.top_radius"),
+            base_half_angle=number("platform.base_half_angle"),
+            top_half_angle=number("platform.top_half_angle"),
+            joint_height=number("platform.joint_height"),
+            top_offset=number("platform.top_offset"),
+        )
+
+    @property
+    def arm(self) -> Puma560:
+        """Kinematics of the arm."""
+        return Puma560(**{k: self.parameters.number(f"arm.{k}") for k in _ARM_LENGTHS})
+
+    @property
+    def hash(self) -> str:
+        """Short hash over every number and MJCF part: equal hash, equal physics."""
+        digest = hashlib.sha256(self.fidelity.encode())
+        for name in sorted(self.parameters):
+            digest.update(name.encode() + self.parameters.array(name).tobytes())
+        for file in MJCF_FILES:
+            digest.update((resource_folder("models") / file).read_bytes())
+        return digest.hexdigest()[:16]
+
+
+_ARM_LENGTHS = ("d0", "d1", "d2", "d3", "a2", "a3")
+
+
+def flat(values: Mapping[str, object], prefix: str = "") -> dict[str, object]:
+    """Nested tables as dotted names."""
+    result: dict[str, object] = {}
+    for key, value in values.items():
+        if isinstance(value, Mapping):
+            result.update(flat(value, f"{prefix}{key}."))
+        else:
+            result[f"{prefix}{key}"] = value
+    return result
+
+
+def mjcf_part(file: str) -> Path:
+    """Path of one MJCF part."""
+    return resource_folder("models") / file

@@ -1,0 +1,1 @@
+"""Recordings: named signals on one clock, in memory and in files."""

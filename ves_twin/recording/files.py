@@ -1,0 +1,59 @@
+"""load_recording: a recording from Parquet, from an unfinished stream, or from a run's folder."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pyarrow as pa
+import pyarrow.parquet as pq
+
+from ves_twin.errors import FileAccessError, InvalidInputError
+from ves_twin.recording.recording import Recording
+from ves_twin.recording.stream import FILE_NAME, STREAM_NAME, stream_batches
+from ves_twin.recording.table import batch_of, recording_of, schema_of
+
+
+def load_recording(path: str | Path) -> Recording:
+    """Read a recording.
+
+    Args:
+        path: a .parquet file, a .arrows stream (also one that a kill has cut), or the output
+            folder of a run.
+
+    Raises:
+        FileAccessError: missing, unreadable, or without a row.
+        InvalidInputError: not a recording of ours.
+    """
+    file = Path(path)
+    if file.is_dir():
+        names = [file / name for name in (FILE_NAME, STREAM_NAME)]
+        found = [name for name in names if name.is_file()]
+        if not found:
+            raise FileAccessError(f"folder {file} holds neither {FILE_NAME} nor {STREAM_NAME}")
+        file = found[0]
+    if not file.is_file():
+        raise FileAccessError(f"recording file '{file}' does not exist")
+    return recording_of(_table(file), file)
+
+
+def save_recording(recording: Recording, path: Path) -> None:
+    """Write a recording of known signals to a Parquet file."""
+    schema = schema_of(recording.signals, recording.info)
+    table = pa.Table.from_batches([batch_of(schema, recording.time, recording.signals)])
+    try:
+        pq.write_table(table, path, compression="zstd")
+    except OSError as error:
+        raise FileAccessError(f"cannot write {path}: {error.strerror}") from None
+
+
+def _table(file: Path) -> pa.Table:
+    if file.suffix == ".arrows":
+        batches = list(stream_batches(file))
+        if not batches:
+            raise FileAccessError(f"recording {file} holds no whole batch of rows")
+        return pa.Table.from_batches(batches)
+    try:
+        return pq.read_table(file)
+    except (pa.ArrowInvalid, OSError) as error:
+        reason = str(error).split("\n", 1)[0]
+        raise InvalidInputError(str(file), reason, "a Parquet recording") from None

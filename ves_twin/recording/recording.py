@@ -1,0 +1,110 @@
+"""Recording: named signals on one clock; measured and simulated are the same type."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass, field, fields
+
+import numpy as np
+
+from ves_twin.errors import InvalidInputError, UnknownNameError
+from ves_twin.types import FloatArray
+
+
+@dataclass(frozen=True)
+class Event:
+    """Something that happened at a time [s] of a run."""
+
+    time: float
+    kind: str
+    message: str
+
+
+@dataclass(frozen=True)
+class RecordingInfo:
+    """Where a recording comes from; travels in the file's metadata.
+
+    Attributes:
+        origin: "simulated" or "measured".
+        scenario: name of the scenario, empty if none.
+        settings: the validated scenario as JSON, so that the run can be repeated.
+        plant: name of the plant.
+        plant_hash: hash of its physics.
+        seed: seed of the noise.
+        versions: package -> version.
+        log: clock of the rows: admittance, leg or tick.
+        period: time between rows [s].
+        held: slower signals -> time between their changes [s].
+        outcome: how the run ended; "unfinished" while it runs or if it was killed.
+        events: what happened.
+    """
+
+    origin: str
+    scenario: str = ""
+    settings: str = "{}"
+    plant: str = ""
+    plant_hash: str = ""
+    seed: int = 0
+    versions: Mapping[str, str] = field(default_factory=dict)
+    log: str = ""
+    period: float = 0.0
+    held: Mapping[str, float] = field(default_factory=dict)
+    outcome: str = "unfinished"
+    events: tuple[Event, ...] = ()
+
+    def to_dict(self) -> dict[str, object]:
+        """Plain values for JSON."""
+        return asdict(self)
+
+    @staticmethod
+    def from_dict(content: Mapping[str, object]) -> RecordingInfo:
+        """From plain values; keys of later versions are passed over."""
+        known = {f.name for f in fields(RecordingInfo)}
+        values = {key: value for key, value in content.items() if key in known}
+        events = values.pop("events", ()) or ()
+        if not isinstance(events, list | tuple):
+            raise InvalidInputError("events of a recording", events, "a list")
+        return RecordingInfo(**values, events=tuple(Event(**e) for e in events))  # type: ignore[arg-type]
+
+
+@dataclass(frozen=True)
+class Recording:
+    """Named signals on one clock.
+
+    Attributes:
+        time: time of the rows [s], strictly increasing (n,).
+        signals: name -> values (n, width), units of `ves_twin.signals`.
+        info: where the recording comes from.
+
+    Raises:
+        InvalidInputError: time that does not increase, or a signal of another length.
+    """
+
+    time: FloatArray
+    signals: Mapping[str, FloatArray]
+    info: RecordingInfo
+
+    def __post_init__(self) -> None:
+        if np.any(np.diff(self.time) <= 0):
+            raise InvalidInputError("recording time", "a step back", "strictly increasing times")
+        for name, values in self.signals.items():
+            if values.ndim != 2 or values.shape[0] != len(self.time):
+                raise InvalidInputError(
+                    f"signal {name}", f"shape {values.shape}", f"({len(self.time)}, width)"
+                )
+
+    def __getitem__(self, name: str) -> FloatArray:
+        try:
+            return self.signals[name]
+        except KeyError:
+            raise UnknownNameError("signal", name, self.signals) from None
+
+    def __len__(self) -> int:
+        return len(self.time)
+
+    def window(self, start: float, stop: float) -> Recording:
+        """The rows with start <= t < stop [s]."""
+        rows = (self.time >= start) & (self.time < stop)
+        return Recording(
+            self.time[rows], {name: v[rows] for name, v in self.signals.items()}, self.info
+        )

@@ -1,0 +1,45 @@
+"""Resources: where models/ and scenarios/ lie, in a checkout and in an installed wheel."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from ves_twin.errors import FileAccessError, UnknownNameError
+
+
+def resource_folder(name: str) -> Path:
+    """Folder `models` or `scenarios`: inside the package (wheel) or beside it (checkout).
+
+    Raises:
+        FileAccessError: the installation lacks the folder.
+    """
+    package = Path(__file__).resolve().parent
+    for folder in (package / name, package.parent / name):
+        if folder.is_dir():
+            return folder
+    raise FileAccessError(f"the installation lacks its '{name}' folder beside {package}")
+
+
+def find_resource(kind: str, folder: str, name_or_path: str, suffix: str = ".toml") -> Path:
+    """Path of a named resource, or of a file given by its path.
+
+    Args:
+        kind: word for messages, for instance "scenario".
+        folder: resource folder, for instance "scenarios".
+        name_or_path: a bare name such as "position_sine", or a path to a file.
+        suffix: file ending of the named resources.
+
+    Raises:
+        FileAccessError: a path that does not exist.
+        UnknownNameError: a name that does not exist; says the nearest one.
+    """
+    given = Path(name_or_path)
+    if given.suffix or len(given.parts) > 1:
+        if given.is_file():
+            return given
+        raise FileAccessError(f"{kind} file '{name_or_path}' does not exist")
+    root = resource_folder(folder)
+    path = root / f"{name_or_path}{suffix}"
+    if path.is_file():
+        return path
+    raise UnknownNameError(kind, name_or_path, (p.stem for p in root.glob(f"*{suffix}")))

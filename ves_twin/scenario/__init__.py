@@ -1,0 +1,1 @@
+"""Scenarios: validated TOML files, each the answer to one question."""

@@ -1,0 +1,144 @@
+"""load_scenario: read, override and validate a scenario file."""
+
+from __future__ import annotations
+
+import copy
+import difflib
+import tomllib
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any, get_args
+
+from pydantic import BaseModel, ValidationError
+
+from ves_twin.errors import FileAccessError, InvalidInputError, UnknownNameError
+from ves_twin.resources import find_resource, resource_folder
+from ves_twin.scenario.schema import Scenario
+
+
+def load_scenario(name_or_path: str, changes: Mapping[str, object]) -> Scenario:
+    """A scenario by name or from a file, with some keys changed.
+
+    Args:
+        name_or_path: "beam_horizontal_truth", or a path to a TOML file.
+        changes: dotted keys to values, for instance {"legs.gain": 16.0}.
+
+    Raises:
+        FileAccessError: missing or unreadable file.
+        UnknownNameError: unknown scenario or key; says the nearest one.
+        InvalidInputError: wrong type, unit, shape or range; says the key.
+    """
+    path = find_resource("scenario", "scenarios", name_or_path)
+    content, question = _read(path)
+    for key, value in changes.items():
+        content = _with_key(content, key, value)
+    return parse_scenario({"name": path.stem, "question": question, **content}, path.name)
+
+
+def parse_scenario(content: dict[str, Any], where: str) -> Scenario:
+    """Validate the content of a scenario; errors name file, key, what came, what was expected."""
+    try:
+        return Scenario.model_validate(content)
+    except ValidationError as error:
+        raise _first_error(error, where) from None
+
+
+def scenario_questions() -> dict[str, str]:
+    """Every scenario that is shipped: name -> the question it answers."""
+    paths = sorted(resource_folder("scenarios").glob("*.toml"))
+    return {path.stem: _read(path)[1] for path in paths}
+
+
+def parse_setting(text: str) -> tuple[str, object]:
+    """A command-line override "a.b=VALUE": VALUE is read as TOML, else taken as text.
+
+    Raises:
+        InvalidInputError: no equals sign or no key.
+    """
+    key, equals, value = text.partition("=")
+    if not equals or not key.strip():
+        raise InvalidInputError("--set", text, "KEY=VALUE, for instance legs.gain=16")
+    try:
+        return key.strip(), tomllib.loads(f"value = {value}")["value"]
+    except tomllib.TOMLDecodeError:
+        return key.strip(), value.strip()
+
+
+def _read(path: Path) -> tuple[dict[str, Any], str]:
+    try:
+        text = path.read_text(encoding="utf-8")
+        content = tomllib.loads(text)
+    except OSError as error:
+        raise FileAccessError(f"scenario {path}: {error.strerror}") from None
+    except (tomllib.TOMLDecodeError, UnicodeDecodeError, RecursionError) as error:
+        raise InvalidInputError(f"scenario {path}", str(error), "valid TOML") from None
+    first = text.lstrip().split("\n", 1)[0]
+    if not first.startswith("#"):
+        raise InvalidInputError(
+            f"scenario {path}", first, "a first line '# ...' with the question it answers"
+        )
+    return content, first.lstrip("# ").strip()
+
+
+def _with_key(content: Mapping[str, Any], key: str, value: object) -> dict[str, Any]:
+    result: dict[str, Any] = copy.deepcopy(dict(content))
+    if key.startswith("parameters."):
+        result.setdefault("parameters", {})[key.removeprefix("parameters.")] = value
+        return result
+    node = result
+    *parents, last = key.split(".")
+    for parent in parents:
+        child = node.setdefault(parent, {})
+        if not isinstance(child, dict):
+            raise InvalidInputError("--set", key, f"a key; '{parent}' is not a table")
+        node = child
+    node[last] = value
+    return result
+
+
+def _first_error(error: ValidationError, where: str) -> Exception:
+    """One line for the first thing that is wrong."""
+    first = error.errors(include_url=False)[0]
+    location = [str(part) for part in first["loc"]]
+    key = ".".join(location) or "scenario"
+    if first["type"] == "extra_forbidden":
+        near = difflib.get_close_matches(location[-1], _known_keys(location[:-1]), n=1, cutoff=0.5)
+        known = ".".join([*location[:-1], near[0]]) if near else None
+        if known:
+            return UnknownNameError(f"key in {where}", key, [known])
+        return UnknownNameError(f"key in {where}", key, _known_keys(location[:-1]))
+    if first["type"] == "missing":
+        return InvalidInputError(f"{where}: {key}", None, "a value; it has no default")
+    message = first["msg"].removeprefix("Value error, ").removeprefix("value: ")
+    message = message.replace("Input should be ", "")
+    if first["type"] == "value_error":
+        return InvalidScenarioError(f"{where}: {key}: {message}")
+    return InvalidInputError(f"{where}: {key}", first["input"], message[0].lower() + message[1:])
+
+
+class InvalidScenarioError(InvalidInputError):
+    """A scenario value that was refused with a sentence of its own."""
+
+    def __init__(self, message: str) -> None:
+        Exception.__init__(self, message)
+
+
+def _known_keys(parents: list[str]) -> list[str]:
+    model: type[BaseModel] = Scenario
+    for parent in parents:
+        if parent.isdigit():
+            continue
+        annotation = model.model_fields[parent].annotation if parent in model.model_fields else None
+        found = [a for a in (annotation, *_flatten(annotation)) if isinstance(a, type)]
+        parts = [a for a in found if issubclass(a, BaseModel)]
+        if not parts:
+            return []
+        model = parts[0]
+    return list(model.model_fields)
+
+
+def _flatten(annotation: object) -> list[object]:
+    inner: list[object] = []
+    for argument in get_args(annotation):
+        inner += [argument, *_flatten(argument)]
+    return inner

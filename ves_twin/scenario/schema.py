@@ -1,0 +1,190 @@
+"""Scenario: one experiment, frozen and validated; numbers in SI or as text with a unit."""
+
+from __future__ import annotations
+
+from typing import Annotated, Any, Literal, Self
+
+from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, model_validator
+
+from ves_twin.control.leg_loop import FilterPlace
+from ves_twin.control.registry import GRAVITY_COMPENSATIONS, PLATFORM_CONTROLLERS
+from ves_twin.errors import InvalidInputError, UnknownNameError
+from ves_twin.units import to_si
+
+LOG_CLOCKS = ("admittance", "leg", "tick")
+
+
+def _si(unit: str) -> BeforeValidator:
+    def convert(value: object) -> float:
+        try:
+            return to_si(value, unit, "value")
+        except InvalidInputError as error:
+            raise ValueError(str(error)) from None
+
+    return BeforeValidator(convert)
+
+
+def _pose(value: object) -> tuple[float, ...]:
+    return _row(value, ("m", "m", "m", "rad", "rad", "rad"))
+
+
+def _joints(value: object) -> tuple[float, ...]:
+    return _row(value, ("rad", "rad", "rad"))
+
+
+def _row(value: object, units: tuple[str, ...]) -> tuple[float, ...]:
+    if not isinstance(value, list | tuple) or len(value) != len(units):
+        raise ValueError(f"got {value!r}, expected {len(units)} numbers in {', '.join(units)}")
+    try:
+        return tuple(to_si(v, unit, f"[{i}]") for i, (v, unit) in enumerate(zip(value, units), 1))
+    except InvalidInputError as error:
+        raise ValueError(str(error)) from None
+
+
+def _named(kind: str, known: Any) -> BeforeValidator:
+    def check(value: object) -> object:
+        if value not in known:
+            raise ValueError(str(UnknownNameError(kind, str(value), known)))
+        return value
+
+    return BeforeValidator(check)
+
+
+Seconds = Annotated[float, _si("s")]
+Hertz = Annotated[float, _si("Hz")]
+PerSecond = Annotated[float, _si("1/s")]
+Metres = Annotated[float, _si("m")]
+Pose = Annotated[tuple[float, ...], BeforeValidator(_pose)]
+Joints = Annotated[tuple[float, ...], BeforeValidator(_joints)]
+ZERO_POSE = (0.0,) * 6
+ZERO_JOINTS = (0.0,) * 3
+
+
+class Part(BaseModel):
+    """A table of the file: frozen, unknown keys refused."""
+
+    model_config = ConfigDict(frozen=True, extra="forbid", allow_inf_nan=False)
+
+
+class Run(Part):
+    """How long and how finely.
+
+    `settle` is the time before t = 0 in which the rig stands under control with everything
+    switched on, so that the start transient tells nothing.
+    """
+
+    duration: Annotated[Seconds, Field(gt=0)]
+    settle: Annotated[Seconds, Field(gt=0)] = 2.0
+    log: Annotated[Literal["admittance", "leg", "tick"], _named("log clock", LOG_CLOCKS)] = (
+        "admittance"
+    )
+    substeps: Annotated[int, Field(ge=1, le=64)] = 1
+    noise: bool = True
+    seed: Annotated[int, Field(ge=0)] = 0
+
+
+class SineMotion(Part):
+    """Sines about the start pose, one an axis, faded in."""
+
+    kind: Literal["sine"]
+    amplitude: Pose
+    frequency: Annotated[tuple[Hertz, ...], Field(min_length=6, max_length=6)]
+    phase: Annotated[tuple[Annotated[float, _si("rad")], ...], Field(min_length=6, max_length=6)] = (
+        ZERO_POSE
+    )
+    fade: Annotated[Seconds, Field(ge=0)] = 1.0
+
+
+class Platform(Part):
+    """Operating mode and admittance clock; `start` is where the platform is released."""
+
+    mode: Annotated[str, _named("mode", PLATFORM_CONTROLLERS)]
+    rate: Annotated[Hertz, Field(gt=0, le=1000)] = 80.0
+    home: Pose = ZERO_POSE
+    start: Pose = ZERO_POSE
+    emulated: str | None = None
+    motion: SineMotion | None = None
+
+    @model_validator(mode="after")
+    def _mode_has_what_it_needs(self) -> Self:
+        if self.mode != "position" and self.emulated is None:
+            raise ValueError(f"mode '{self.mode}' needs platform.emulated, the system to emulate")
+        if self.mode == "position" and self.emulated is not None:
+            raise ValueError("mode 'position' emulates nothing; leave platform.emulated out")
+        if self.mode != "position" and self.motion is not None:
+            raise ValueError(f"platform.motion is for mode 'position', not '{self.mode}'")
+        return self
+
+
+class Gravity(Part):
+    """Gravity compensation; `age` is how many cycles old the estimate is when it is used."""
+
+    method: Annotated[str, _named("gravity method", GRAVITY_COMPENSATIONS)] = "none"
+    age: Annotated[int, Field(ge=0, le=50)] = 0
+    zero: bool = True
+
+
+class Legs(Part):
+    """Leg loop: gain K1 and rate gain K2 in physical units, and what the section filters."""
+
+    gain: Annotated[PerSecond, Field(ge=0)] = 12.6
+    rate_gain: Annotated[float, _si("1"), Field(ge=0)] = 0.0
+    filter: Annotated[FilterPlace, _named("filter place", [p.value for p in FilterPlace])] = (
+        FilterPlace.NONE
+    )
+
+
+class JointMove(Part):
+    """One quintic joint move."""
+
+    start: Annotated[Seconds, Field(ge=0)]
+    duration: Annotated[Seconds, Field(gt=0)]
+    to: Joints
+
+
+class Arm(Part):
+    """Joint angles at the start and the moves after it."""
+
+    start: Joints = ZERO_JOINTS
+    moves: tuple[JointMove, ...] = ()
+
+    @model_validator(mode="after")
+    def _moves_follow_each_other(self) -> Self:
+        for one, two in zip(self.moves, self.moves[1:], strict=False):
+            if two.start < one.start + one.duration:
+                raise ValueError(
+                    f"arm.moves: the move at {two.start} s starts before the one at"
+                    f" {one.start} s has ended"
+                )
+        return self
+
+
+class Scenario(Part):
+    """One experiment: world, belief, controllers, what is asked, and the question it answers.
+
+    `plant` and `parameters` are the world; `belief` is what the controllers take it to be. Their
+    difference is what the emulation gets wrong.
+    """
+
+    name: str
+    question: str
+    plant: str = "ves2"
+    belief: str = "ves2"
+    parameters: dict[str, Any] = Field(default_factory=dict)
+    run: Run
+    platform: Platform
+    gravity: Gravity = Gravity()
+    legs: Legs = Legs()
+    arm: Arm = Arm()
+
+    @property
+    def has_reference(self) -> bool:
+        """Whether a zero-g reference exists to compare with."""
+        return self.platform.mode == "micro_gravity"
+
+    @staticmethod
+    def load(name_or_path: str, changes: dict[str, object] | None = None) -> Scenario:
+        """A scenario by name or from a file; see `ves_twin.scenario.load.load_scenario`."""
+        from ves_twin.scenario.load import load_scenario
+
+        return load_scenario(name_or_path, changes or {})

@@ -1,0 +1,1 @@
+"""The simulator: a compiled inner loop, plain Python outside."""

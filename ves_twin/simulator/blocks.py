@@ -1,0 +1,151 @@
+"""Blocks: parameters and state of the whole compiled loop as two structured arrays."""
+
+from __future__ import annotations
+
+import dataclasses
+
+import numpy as np
+
+from ves_twin.control import arm_servo, leg_loop
+from ves_twin.control.belief import Belief
+from ves_twin.plant.layout import Layout
+from ves_twin.plant.parameters import ParameterTable
+from ves_twin.plant.physics import cylinder, force_sensor, transducer, valve
+from ves_twin.plant.plant import Plant
+from ves_twin.scenario.schema import Legs
+from ves_twin.simulator.clock import Clock
+from ves_twin.types import Block
+
+CLOCKS = np.dtype(
+    [
+        ("tick", np.float64),
+        ("substeps", np.int64),
+        ("leg", np.int64),
+        ("amplifier", np.int64),
+        ("admittance", np.int64),
+        ("log", np.int64),
+    ]
+)
+"""tick [s]; physics steps in a tick; periods of the clocks in ticks."""
+
+LIMITS = np.dtype([("stroke", np.float64)])
+"""stroke: travel from home at which a leg hits its end [m]."""
+
+HOME = np.dtype([("position", np.float64, 3)])
+"""position: origin of the top frame at home, inertial [m]."""
+
+NOISE = np.dtype(
+    [("encoder", np.float64), ("resolution", np.float64, 3), ("torque", np.float64, 3), ("pressure", np.float64)]
+)
+"""Noise sd and counts of encoders [rad], drives [N m] and manifold gauge [Pa]."""
+
+_INDICES = [(f.name, np.int64, 1) for f in dataclasses.fields(Layout)]
+_WIDTHS = {
+    "slide_qpos": 6,
+    "slide_dof": 6,
+    "universal_qpos": 12,
+    "bending_qpos": 12,
+    "arm_qpos": 3,
+    "arm_dof": 3,
+    "leg_ctrl": 6,
+    "arm_ctrl": 3,
+}
+LAYOUT = np.dtype(
+    [(n, np.int64, _WIDTHS[n]) if n in _WIDTHS else (n, np.int64) for n, _, _ in _INDICES]
+)
+
+PARAMETERS = np.dtype(
+    [
+        ("clock", CLOCKS),
+        ("layout", LAYOUT),
+        ("home", HOME),
+        ("limits", LIMITS),
+        ("noise", NOISE),
+        ("pressure", np.float64),
+        ("transducer", transducer.PARAMETERS),
+        ("legs", leg_loop.PARAMETERS),
+        ("valve", valve.PARAMETERS),
+        ("cylinder", cylinder.PARAMETERS),
+        ("sensor", force_sensor.PARAMETERS),
+        ("servo", arm_servo.PARAMETERS),
+    ]
+)
+
+STATE = np.dtype(
+    [
+        ("cycle_start", np.int64),
+        ("current", np.float64, 6),
+        ("legs", leg_loop.STATE),
+        ("valve", valve.STATE),
+        ("cylinder", cylinder.STATE),
+        ("sensor", force_sensor.STATE),
+        ("servo", arm_servo.STATE),
+    ]
+)
+"""cycle_start: tick of the last admittance cycle; current: held amplifier outputs, -1 to 1."""
+
+
+def parameter_block(
+    plant: Plant, layout: Layout, clock: Clock, legs: Legs, belief: Belief
+) -> Block:
+    """Parameters of the loop: the plant's for the hardware, the belief's for the computers."""
+    table = plant.parameters
+    block = np.zeros(1, PARAMETERS)
+    p = block[0]
+    for name in CLOCKS.names or ():
+        p["clock"][name] = getattr(clock, name)
+    for f in dataclasses.fields(Layout):
+        p["layout"][f.name] = getattr(layout, f.name)
+    p["home"]["position"] = plant.geometry.home
+    p["limits"]["stroke"] = table.number("leg.stroke") / 2.0
+    _fill_small_devices(p, table, plant)
+    _fill_legs(p["legs"], legs, clock, belief)
+    _fill_sensor(p["sensor"], table, clock.tick)
+    servo = p["servo"]
+    for name in ("stiffness", "damping", "integral"):
+        servo[name] = table.array(f"servo.{name}")
+    servo["limit"] = table.array("arm.torque_limit")
+    servo["cycle"] = clock.admittance * clock.tick
+    return block
+
+
+def _fill_small_devices(p: np.void, table: ParameterTable, plant: Plant) -> None:
+    p["noise"]["encoder"] = table.number("arm.encoder_noise")
+    p["noise"]["resolution"] = table.array("arm.encoder_resolution")
+    p["noise"]["torque"] = table.array("arm.torque_noise")
+    p["noise"]["pressure"] = table.number("supply.noise")
+    p["pressure"] = table.number("supply.pressure")
+    p["transducer"]["home"] = plant.geometry.lengths(np.zeros(6))
+    p["transducer"]["noise"] = table.number("transducer.noise")
+    p["transducer"]["resolution"] = table.number("transducer.resolution")
+    p["valve"]["lag"] = table.number("hydraulics.valve_lag")
+    p["cylinder"]["full_speed"] = table.number("hydraulics.full_speed")
+    p["cylinder"]["stiffness"] = table.number("hydraulics.oil_stiffness")
+    p["cylinder"]["damping"] = table.number("hydraulics.oil_damping")
+
+
+def _fill_legs(p: np.void, legs: Legs, clock: Clock, belief: Belief) -> None:
+    period = clock.leg * clock.tick
+    p["gain"], p["rate_gain"] = legs.gain, legs.rate_gain
+    p["place"] = legs.filter.code
+    p["numerator"], p["denominator"] = leg_loop.chebyshev_section(1.0 / period)
+    p["period"] = period
+    p["full_speed"] = belief.full_speed
+
+
+def _fill_sensor(p: np.void, table: ParameterTable, tick: float) -> None:
+    from scipy.signal import butter, lfilter  # slow to import
+
+    numerator, denominator = butter(2, table.number("sensor.corner"), fs=1.0 / tick)
+    impulse = lfilter(numerator, denominator, np.eye(1, int(1.0 / tick))[0])
+    p["gain"] = np.eye(6)
+    p["calibration"] = np.eye(6)
+    p["offset"] = table.array("sensor.offset")
+    p["drift"] = table.array("sensor.drift")
+    # the table gives the sd of the filtered reading; white noise loses this share in the filter
+    p["noise"] = table.array("sensor.noise") / np.sqrt(np.sum(impulse**2))
+    p["wander"] = table.array("sensor.wander")
+    p["wander_decay"] = np.exp(-tick / table.number("sensor.wander_time"))
+    p["numerator"], p["denominator"] = numerator, denominator
+    p["range"] = table.array("sensor.range")
+    p["resolution"] = table.array("sensor.resolution")

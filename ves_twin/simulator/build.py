@@ -1,0 +1,115 @@
+"""build_computers and build_references: what a scenario names, made into objects."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from ves_twin.control.belief import Belief
+from ves_twin.control.controller import ControlTask
+from ves_twin.control.emulated import EmulatedSystem
+from ves_twin.control.motion import ArmMotion, Move, PlatformMotion, Sine
+from ves_twin.control.registry import GRAVITY_COMPENSATIONS, PLATFORM_CONTROLLERS
+from ves_twin.plant.plant import Plant
+from ves_twin.plant.statics import check_reach
+from ves_twin.scenario.schema import Platform, Scenario
+from ves_twin.simulator.computers import Computers
+from ves_twin.simulator.recorder import IDEAL, LEG_LAG
+from ves_twin.simulator.reference import ZeroGravityReference
+from ves_twin.simulator.truth_port import GravityTruth
+
+if TYPE_CHECKING:
+    from ves_twin.simulator.simulator import Simulator
+
+
+def belief_of(scenario: Scenario) -> Belief:
+    """What the controllers take the rig to be, from the scenario's belief file."""
+    plant = Plant.load(scenario.belief)
+    number = plant.parameters.number
+    return Belief(
+        geometry=plant.geometry,
+        arm=plant.arm,
+        sensor_position=plant.parameters.array("sensor.position"),
+        leg_travel=number("leg.stroke") / 2.0 - number("leg.margin"),
+        full_speed=number("hydraulics.full_speed"),
+    )
+
+
+def build_computers(sim: Simulator, belief: Belief) -> Computers:
+    """Controllers of a scenario, connected to the simulator's board.
+
+    Raises:
+        UnreachableError: the start pose is outside the legs' travel.
+    """
+    scenario, clock = sim.scenario, sim.clock
+    start = np.array(scenario.platform.start)
+    check_reach(belief.geometry, start, belief.leg_travel, "platform.start")
+    gravity = GRAVITY_COMPENSATIONS[scenario.gravity.method](
+        GravityTruth(sim.model, sim.data, sim.layout)
+    )
+    period = clock.admittance * clock.tick
+    task = ControlTask(
+        belief=belief,
+        period=period,
+        start=start,
+        home=np.array(scenario.platform.home),
+        emulated=emulated_of(scenario),
+        motion=_motion(scenario.platform),
+        subtract_gravity=scenario.platform.mode == "micro_gravity" and gravity.subtracts,
+    )
+    return Computers(
+        belief=belief,
+        controller=PLATFORM_CONTROLLERS[scenario.platform.mode].build(task),
+        gravity=gravity,
+        gravity_age=scenario.gravity.age,
+        arm=arm_motion(scenario),
+        period=period,
+        board=sim.board,
+        state=sim.state,
+    )
+
+
+def build_references(sim: Simulator) -> dict[str, ZeroGravityReference]:
+    """The zero-g references of a micro-gravity run: the ideal one, and one with the legs' lag."""
+    scenario = sim.scenario
+    emulated = emulated_of(scenario)
+    if emulated is None or not scenario.has_reference:
+        return {}
+    legs = (scenario.legs.gain, sim.plant.parameters.number("hydraulics.valve_lag"))
+    return {
+        name: ZeroGravityReference(
+            plant=sim.plant,
+            emulated=emulated,
+            servo=sim.parameters["servo"],
+            start=np.array(scenario.platform.start),
+            home=np.array(scenario.platform.home),
+            arm_start=np.array(scenario.arm.start),
+            legs=lag,
+        )
+        for name, lag in ((IDEAL, None), (LEG_LAG, legs))
+    }
+
+
+def emulated_of(scenario: Scenario) -> EmulatedSystem | None:
+    """The system that the scenario emulates, if any."""
+    name = scenario.platform.emulated
+    return None if name is None else EmulatedSystem.load(name)
+
+
+def arm_motion(scenario: Scenario) -> ArmMotion:
+    """The arm's moves."""
+    moves = tuple(Move(m.start, m.duration, np.array(m.to)) for m in scenario.arm.moves)
+    return ArmMotion(np.array(scenario.arm.start), moves)
+
+
+def _motion(platform: Platform) -> PlatformMotion | None:
+    if platform.motion is None:
+        return None
+    return Sine(
+        at=np.array(platform.start),
+        amplitude=np.array(platform.motion.amplitude),
+        frequency=np.array(platform.motion.frequency),
+        phase=np.array(platform.motion.phase),
+        fade=platform.motion.fade,
+    )

@@ -1,0 +1,63 @@
+"""Clock: the periods of all loops, whole numbers of the transducer's tick."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from ves_twin.control.emulated import Coupling
+from ves_twin.plant.parameters import ParameterTable
+from ves_twin.scenario.schema import Scenario
+
+_CYCLE_TIME = {Coupling.DECOUPLED: 0, Coupling.BEAM: 1, Coupling.COUPLED: 2}
+
+
+@dataclass(frozen=True)
+class Clock:
+    """Periods in ticks.
+
+    Attributes:
+        tick: transducer period [s].
+        substeps: physics steps in a tick.
+        leg: leg loop.
+        amplifier: servo amplifiers.
+        admittance: admittance cycle, also the arm's command cycle.
+        log: rows of the recording.
+    """
+
+    tick: float
+    substeps: int
+    leg: int
+    amplifier: int
+    admittance: int
+    log: int
+
+    @staticmethod
+    def of(scenario: Scenario, parameters: ParameterTable) -> Clock:
+        """Clocks of a scenario; the admittance rate becomes the nearest whole period."""
+        tick = parameters.number("clock.tick")
+        leg = round(parameters.number("clock.leg_ticks"))
+        admittance = max(1, round(1.0 / (scenario.platform.rate * tick)))
+        return Clock(
+            tick=tick,
+            substeps=scenario.run.substeps,
+            leg=leg,
+            amplifier=round(parameters.number("clock.amplifier_ticks")),
+            admittance=admittance,
+            log={"admittance": admittance, "leg": leg, "tick": 1}[scenario.run.log],
+        )
+
+    @property
+    def rate(self) -> float:
+        """Real admittance rate [Hz]."""
+        return 1.0 / (self.admittance * self.tick)
+
+    def ticks(self, seconds: float) -> int:
+        """Whole ticks nearest to a time [s]."""
+        return round(seconds / self.tick)
+
+
+def cycle_time(coupling: Coupling | None, parameters: ParameterTable) -> float:
+    """Computing time of one admittance cycle [s]; zero in position mode."""
+    if coupling is None:
+        return 0.0
+    return float(parameters.array("clock.cycle_time")[_CYCLE_TIME[coupling]])

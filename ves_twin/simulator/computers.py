@@ -1,0 +1,135 @@
+"""Computers: one admittance cycle, from the clock interrupt to the set-points."""
+
+from __future__ import annotations
+
+from collections import deque
+
+import numpy as np
+
+from ves_twin.control.belief import Belief
+from ves_twin.control.controller import PlatformController
+from ves_twin.control.gravity import GravityCompensation
+from ves_twin.control.motion import ArmMotion
+from ves_twin.control.readings import Readings
+from ves_twin.control.safety import leg_outside
+from ves_twin.errors import ControllerError, VesTwinError, one_line
+from ves_twin.simulator.board import Board
+from ves_twin.types import Block, FloatArray
+
+
+class Computers:
+    """The Redslave's and Blueslave's work at one interrupt, in the thesis's order.
+
+    Read forces, take the gravity estimate from shared memory, controller, inverse kinematics,
+    safety, set-points to legs and arm (thesis 2.4.2).
+    """
+
+    def __init__(
+        self,
+        belief: Belief,
+        controller: PlatformController,
+        gravity: GravityCompensation,
+        gravity_age: int,
+        arm: ArmMotion,
+        period: float,
+        board: Board,
+        state: Block,
+    ) -> None:
+        self.controller = controller
+        self.gravity = gravity
+        self._arm = arm
+        self._period = period
+        self._geometry = belief.geometry
+        self._home = belief.geometry.lengths(np.zeros(6))
+        self._travel = belief.leg_travel
+        self._shared: deque[FloatArray] = deque(maxlen=gravity_age + 1)
+        self._state = state[0]
+        self._points = state["servo"]["points"][0]
+        self._leg_set = state["legs"]["command"][0]
+        self._pose, self._legs = board["platform.command"], board["leg.command"]
+        self._estimate = board["gravity.estimate"]
+        self.readings = Readings(
+            leg_length=board.read_only("leg.length"),
+            wrench_in_sensor=board.read_only("sensor.wrench"),
+            gravity_in_sensor=board.read_only("gravity.estimate"),
+            arm_q=board.read_only("arm.q"),
+            platform_command=board.read_only("platform.command"),
+            supply_pressure=board.read_only("supply.pressure"),
+        )
+
+    def cycle(self, tick: int, time: float) -> int:
+        """One cycle.
+
+        Args:
+            tick: tick of the interrupt.
+            time: its time [s].
+
+        Returns:
+            0, or the number of the leg whose command would leave its travel; then nothing is sent.
+
+        Raises:
+            ControllerError: a controller raised, or its command is not six finite numbers.
+        """
+        self.estimate_gravity(time)
+        pose = self._decide(time)
+        lengths = self._geometry.lengths(pose)
+        outside = leg_outside(lengths, self._home, self._travel)
+        if outside:
+            return int(outside)
+        self.send(tick, time, pose, lengths)
+        return 0
+
+    def lengths(self, pose: FloatArray) -> FloatArray:
+        """Leg lengths [m] (6,) that the computers send for a pose (6,)."""
+        return self._geometry.lengths(pose)
+
+    def estimate_gravity(self, time: float) -> None:
+        """A new estimate goes into shared memory; the one of `age` cycles ago comes out."""
+        self._shared.append(self.gravity.wrench(time, self.readings))
+        self._estimate[:] = self._shared[0]
+
+    def send(self, tick: int, time: float, pose: FloatArray, lengths: FloatArray) -> None:
+        """Set-points to the legs, and the next commands to the arm's spline."""
+        self._pose[:] = pose
+        self._legs[:] = lengths
+        self._leg_set[:] = lengths
+        self._state["cycle_start"] = tick
+        self._points[:3] = self._points[1:]
+        self._points[3] = self._arm.q(time + 2.0 * self._period)
+
+    def start_arm(self, time: float) -> None:
+        """Fill the spline's buffer for the cycle that ended at a time."""
+        for i in range(4):
+            self._points[i] = self._arm.q(time + (i - 2) * self._period)
+
+    def snapshot(self) -> object:
+        """Everything that changes from cycle to cycle outside the board and the state block."""
+        shared = tuple(estimate.copy() for estimate in self._shared)
+        return self.controller.snapshot(), self.gravity.snapshot(), shared
+
+    def restore(self, snapshot: object) -> None:
+        """Go back to a snapshot."""
+        controller, gravity, shared = snapshot  # type: ignore[misc]
+        self.controller.restore(controller)
+        self.gravity.restore(gravity)
+        self._shared.clear()
+        self._shared.extend(estimate.copy() for estimate in shared)
+
+    def _decide(self, time: float) -> FloatArray:
+        try:
+            pose = self.controller.update(time, self.readings)
+        except VesTwinError:
+            raise
+        except Exception as error:
+            name = type(self.controller).__name__
+            raise ControllerError(
+                f"controller {name} raised {type(error).__name__} at t = {time:.3f} s:"
+                f" {one_line(error)}"
+            ) from error
+        if type(pose) is not np.ndarray or pose.shape != (6,) or not np.isfinite(pose).all():
+            name = type(self.controller).__name__
+            raise ControllerError(
+                f"controller {name} returned {pose!r} at t = {time:.3f} s, expected a pose of 6"
+                " finite numbers"
+            )
+        return pose

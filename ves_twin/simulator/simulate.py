@@ -1,0 +1,215 @@
+"""simulate: a scenario from settling to its end, as a recording in memory or in a folder."""
+
+from __future__ import annotations
+
+import json
+
+import platform as host
+from collections.abc import Callable
+from dataclasses import asdict, dataclass
+from importlib.metadata import version
+from pathlib import Path
+from time import perf_counter
+
+import numpy as np
+import pyarrow.parquet as pq
+
+from ves_twin.errors import FileAccessError
+from ves_twin.plant.plant import Plant
+from ves_twin.recording.recording import Recording, RecordingInfo
+from ves_twin.recording.stream import RecordingStream
+from ves_twin.scenario.schema import Scenario
+from ves_twin.signals import SIGNALS
+from ves_twin.simulator.emulation_error import AxisError, emulation_error
+from ves_twin.simulator.outcome import Outcome
+from ves_twin.simulator.recorder import IDEAL, LEG_LAG, MemorySink, NoSink
+from ves_twin.simulator.simulator import Simulator
+
+SUMMARY_NAME = "summary.json"
+SLICE = 0.25
+"""Simulated time between two calls of `progress` [s]."""
+
+Progress = Callable[[float], None]
+"""Called with the time that the run has reached [s]."""
+
+
+@dataclass(frozen=True)
+class Timing:
+    """How fast a run was: `build` and `settle` before t = 0, then `run`, wall-clock seconds."""
+
+    prepare: float
+    run: float
+    simulated: float
+    real_time_factor: float
+    admittance_rate: float
+
+
+@dataclass(frozen=True)
+class Summary:
+    """Account of a run; what `summary.json` holds."""
+
+    scenario: str
+    question: str
+    outcome: Outcome
+    advice: str
+    seed: int
+    plant: str
+    plant_hash: str
+    duration: float
+    emulation_error: dict[str, AxisError]
+    events: list[dict[str, object]]
+    timing: Timing
+
+    def to_json(self) -> str:
+        """The summary as indented JSON."""
+        return json.dumps(asdict(self), indent=2)
+
+
+def simulate(
+    scenario: Scenario,
+    plant: Plant | None = None,
+    seed: int | None = None,
+    progress: Progress | None = None,
+) -> Recording:
+    """Run a scenario and keep the recording in memory.
+
+    Args:
+        scenario: what is done.
+        plant: the world; the scenario's own if left out.
+        seed: seed of the noise; the scenario's own if left out.
+        progress: called now and then with the time reached.
+
+    Returns:
+        The recording; `info.outcome` says how the run ended.
+
+    Raises:
+        VesTwinError: the scenario cannot be built, or a controller failed.
+    """
+    sim = Simulator(plant, scenario, seed)
+    _run(sim, progress)
+    sink = sim.recorder.sink
+    time, signals = sink.collect() if isinstance(sink, MemorySink) else (np.zeros(0), {})
+    return Recording(time, signals, recording_info(sim))
+
+
+def record(
+    scenario: Scenario,
+    folder: Path,
+    plant: Plant | None = None,
+    seed: int | None = None,
+    progress: Progress | None = None,
+) -> Summary:
+    """Run a scenario and write `recording.parquet` and `summary.json` into a folder.
+
+    While it runs the rows go to `recording.arrows`; whatever ends the run, they are kept.
+
+    Raises:
+        FileAccessError: the folder cannot be written.
+        VesTwinError: the scenario cannot be built, or a controller failed.
+    """
+    begin = perf_counter()
+    make_folder(folder)
+    sim = Simulator(plant, scenario, seed, sink=NoSink())
+    ready = perf_counter()
+    with RecordingStream(folder, sim.recorder.names, recording_info(sim)) as stream:
+        sim.recorder.sink = stream
+        try:
+            _run(sim, progress)
+        finally:
+            if sim.outcome is None:
+                sim.recorder.flush()
+        path = stream.finish(recording_info(sim))
+    summary = _summary(sim, path, ready - begin, perf_counter() - ready)
+    (folder / SUMMARY_NAME).write_text(summary.to_json() + "\n", encoding="utf-8")
+    return summary
+
+
+def make_folder(folder: Path) -> None:
+    """Make an output folder, or say in one line why it cannot be written."""
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        probe = folder / ".ves_twin_probe"
+        probe.touch()
+        probe.unlink()
+    except OSError as error:
+        raise FileAccessError(f"cannot write into folder '{folder}': {error.strerror}") from None
+
+
+def recording_info(sim: Simulator) -> RecordingInfo:
+    """Where the recording of a simulator comes from, up to now."""
+    clock = sim.clock
+    held = {}
+    if clock.log < clock.admittance:
+        slow = ("leg.command", "platform.command", "gravity.estimate")
+        held = {name: clock.admittance * clock.tick for name in slow}
+    if clock.log < clock.leg:
+        held["valve.command"] = clock.leg * clock.tick
+    return RecordingInfo(
+        origin="simulated",
+        scenario=sim.scenario.name,
+        settings=sim.scenario.model_dump_json(),
+        plant=sim.plant.name,
+        plant_hash=sim.plant.hash,
+        seed=sim.seed,
+        versions=versions(),
+        log=sim.scenario.run.log,
+        period=clock.log * clock.tick,
+        held=held,
+        outcome=sim.outcome.value if sim.outcome else "unfinished",
+        events=tuple(sim.events),
+    )
+
+
+def versions() -> dict[str, str]:
+    """Versions of everything that shapes the numbers."""
+    packages = {name: version(name) for name in ("mujoco", "numpy", "numba", "scipy", "pyarrow")}
+    return {"ves_twin": _own_version(), "python": host.python_version(), **packages}
+
+
+def _own_version() -> str:
+    from ves_twin import __version__
+
+    return __version__
+
+
+def _run(sim: Simulator, progress: Progress | None) -> None:
+    try:
+        while not sim.done:
+            sim.advance(SLICE)
+            if progress is not None:
+                progress(sim.time)
+    except KeyboardInterrupt:
+        sim.end(Outcome.INTERRUPTED, f"stopped from the keyboard at {sim.time:.3f} s")
+
+
+def _summary(sim: Simulator, recording: Path, prepare: float, run: float) -> Summary:
+    assert sim.outcome is not None  # noqa: S101  (the run has ended)
+    errors = {}
+    if IDEAL in sim.recorder.names:
+        columns = {n: SIGNALS[n].columns for n in ("truth.pose", IDEAL, LEG_LAG)}
+        table = pq.read_table(recording, columns=[c for group in columns.values() for c in group])
+        if len(table):
+            truth, ideal, lag = (
+                np.column_stack([table.column(c).to_numpy() for c in group])
+                for group in columns.values()
+            )
+            errors = emulation_error(truth, ideal, lag)
+    return Summary(
+        scenario=sim.scenario.name,
+        question=sim.scenario.question,
+        outcome=sim.outcome,
+        advice=sim.outcome.advice,
+        seed=sim.seed,
+        plant=sim.plant.name,
+        plant_hash=sim.plant.hash,
+        duration=sim.time,
+        emulation_error=errors,
+        events=[asdict(event) for event in sim.events],
+        timing=Timing(
+            prepare=prepare,
+            run=run,
+            simulated=sim.time,
+            real_time_factor=sim.time / run if run > 0 else 0.0,
+            admittance_rate=sim.clock.rate,
+        ),
+    )

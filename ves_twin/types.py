@@ -1,0 +1,15 @@
+"""Types: the array aliases that signatures share."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+FloatArray = NDArray[np.float64]
+IntArray = NDArray[np.int64]
+Block = np.ndarray[tuple[int, ...], np.dtype[np.void]]
+"""One-element structured array: parameters or state of a compiled kernel, by name."""
+Record = Any
+"""A structured scalar as a compiled kernel sees it: fields by attribute."""
