@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 FloatArray = NDArray[np.float64]
+SingleArray = NDArray[np.float32]
 IntArray = NDArray[np.int64]
 Block = np.ndarray[tuple[int, ...], np.dtype[np.void]]
 """One-element structured array: parameters or state of a compiled kernel, by name."""

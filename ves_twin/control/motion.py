@@ -85,7 +85,11 @@ class ArmMotion:
         for move in self.moves:
             if time <= move.start:
                 break
-            angles = angles + quintic((time - move.start) / move.duration) * (move.to - angles)
+            if time >= move.start + move.duration:
+                angles = move.to
+            else:
+                share = quintic((time - move.start) / move.duration)
+                angles = angles + share * (move.to - angles)
         return angles
 
 

@@ -65,6 +65,17 @@ def leg_jacobian(
 
 
 @compiled
+def pose_jacobian(
+    pose: FloatArray, base: FloatArray, top: FloatArray, home: FloatArray
+) -> FloatArray:
+    """Leg rates (6, 6) per rate of the pose: columns 3-5 [m/rad] per rate of the angles."""
+    twist = leg_jacobian(pose, base, top, home)
+    jacobian = twist.copy()
+    jacobian[:, 3:] = np.ascontiguousarray(twist[:, 3:]) @ rate_matrix(pose[3:])
+    return jacobian
+
+
+@compiled
 def solve_pose(
     lengths: FloatArray,
     guess: FloatArray,
@@ -82,9 +93,7 @@ def solve_pose(
         worst = np.max(np.abs(error))
         if worst < tolerance or not np.isfinite(worst):
             break
-        jacobian = leg_jacobian(pose, base, top, home)
-        jacobian[:, 3:] = jacobian[:, 3:] @ rate_matrix(pose[3:])
-        pose += np.linalg.solve(jacobian, error)
+        pose += np.linalg.solve(pose_jacobian(pose, base, top, home), error)
     return pose, worst
 
 
@@ -98,9 +107,7 @@ def track_poses(
     """
     poses = np.empty_like(lengths)
     pose = guess.copy()
-    jacobian = leg_jacobian(pose, base, top, home)
-    jacobian[:, 3:] = jacobian[:, 3:] @ rate_matrix(pose[3:])
-    inverse = np.linalg.inv(jacobian)
+    inverse = np.linalg.inv(pose_jacobian(pose, base, top, home))
     for n in range(lengths.shape[0]):
         converged = False
         for _ in range(8):
@@ -110,10 +117,9 @@ def track_poses(
                 break
             pose = pose + inverse @ error
         if not converged:
-            pose, _ = solve_pose(lengths[n], poses[n - 1] if n else guess, base, top, home, 1e-11, 50)
-            jacobian = leg_jacobian(pose, base, top, home)
-            jacobian[:, 3:] = jacobian[:, 3:] @ rate_matrix(pose[3:])
-            inverse = np.linalg.inv(jacobian)
+            last = poses[n - 1] if n else guess
+            pose, _ = solve_pose(lengths[n], last, base, top, home, 1e-11, 50)
+            inverse = np.linalg.inv(pose_jacobian(pose, base, top, home))
         poses[n] = pose
     return poses
 

@@ -32,6 +32,8 @@ class RecordingStream:
         self._schema = schema_of(names, info)
         self._path = folder / STREAM_NAME
         try:
+            if self._path.exists():  # rows of a run that was killed are not ours to drop
+                self._path.rename(folder / f"previous-{STREAM_NAME}")
             self._file = self._path.open("wb")
         except OSError as error:
             raise FileAccessError(f"cannot write {self._path}: {error.strerror}") from None

@@ -14,6 +14,7 @@ from ves_twin.plant.physics import cylinder, force_sensor, transducer, valve
 from ves_twin.plant.plant import Plant
 from ves_twin.scenario.schema import Legs
 from ves_twin.simulator.clock import Clock
+from ves_twin.simulator.codes import SLOW
 from ves_twin.types import Block
 
 CLOCKS = np.dtype(
@@ -35,9 +36,9 @@ HOME = np.dtype([("position", np.float64, 3)])
 """position: origin of the top frame at home, inertial [m]."""
 
 NOISE = np.dtype(
-    [("encoder", np.float64), ("resolution", np.float64, 3), ("torque", np.float64, 3), ("pressure", np.float64)]
+    [("encoder_count", np.float64, 3), ("torque", np.float64, 3), ("pressure", np.float64)]
 )
-"""Noise sd and counts of encoders [rad], drives [N m] and manifold gauge [Pa]."""
+"""Counts of the encoders [rad]; noise sd of drive currents [N m] and manifold gauge [Pa]."""
 
 _INDICES = [(f.name, np.int64, 1) for f in dataclasses.fields(Layout)]
 _WIDTHS = {
@@ -71,9 +72,24 @@ PARAMETERS = np.dtype(
     ]
 )
 
+WORK = np.dtype(
+    [
+        ("slide", np.float64, 6),
+        ("speed", np.float64, 6),
+        ("wrench", np.float64, 6),
+        ("q", np.float64, 3),
+        ("rate", np.float64, 3),
+        ("q_set", np.float64, 3),
+        ("rate_set", np.float64, 3),
+        ("torque", np.float64, 3),
+    ]
+)
+"""Room for intermediate vectors: allocating them each tick would cost some per cent."""
+
 STATE = np.dtype(
     [
         ("cycle_start", np.int64),
+        ("work", WORK),
         ("current", np.float64, 6),
         ("legs", leg_loop.STATE),
         ("valve", valve.STATE),
@@ -110,8 +126,7 @@ def parameter_block(
 
 
 def _fill_small_devices(p: np.void, table: ParameterTable, plant: Plant) -> None:
-    p["noise"]["encoder"] = table.number("arm.encoder_noise")
-    p["noise"]["resolution"] = table.array("arm.encoder_resolution")
+    p["noise"]["encoder_count"] = table.array("arm.encoder_resolution")
     p["noise"]["torque"] = table.array("arm.torque_noise")
     p["noise"]["pressure"] = table.number("supply.noise")
     p["pressure"] = table.number("supply.pressure")
@@ -145,7 +160,8 @@ def _fill_sensor(p: np.void, table: ParameterTable, tick: float) -> None:
     # the table gives the sd of the filtered reading; white noise loses this share in the filter
     p["noise"] = table.array("sensor.noise") / np.sqrt(np.sum(impulse**2))
     p["wander"] = table.array("sensor.wander")
-    p["wander_decay"] = np.exp(-tick / table.number("sensor.wander_time"))
+    p["wander_decay"] = np.exp(-SLOW * tick / table.number("sensor.wander_time"))
+    p["wander_kick"] = np.sqrt(1.0 - p["wander_decay"] ** 2)
     p["numerator"], p["denominator"] = numerator, denominator
     p["range"] = table.array("sensor.range")
     p["resolution"] = table.array("sensor.resolution")

@@ -11,7 +11,7 @@ from ves_twin.control.controller import PlatformController
 from ves_twin.control.gravity import GravityCompensation
 from ves_twin.control.motion import ArmMotion
 from ves_twin.control.readings import Readings
-from ves_twin.control.safety import leg_outside
+from ves_twin.control.safety import NOT_A_POSE, SAFE, checked_lengths
 from ves_twin.errors import ControllerError, VesTwinError, one_line
 from ves_twin.simulator.board import Board
 from ves_twin.types import Block, FloatArray
@@ -40,10 +40,11 @@ class Computers:
         self._arm = arm
         self._period = period
         self._geometry = belief.geometry
-        self._home = belief.geometry.lengths(np.zeros(6))
-        self._travel = belief.leg_travel
+        g = belief.geometry
+        self._reach = (g.base, g.top, g.home, g.lengths(np.zeros(6)), belief.leg_travel)
+        self._lengths = np.zeros(6)
         self._shared: deque[FloatArray] = deque(maxlen=gravity_age + 1)
-        self._state = state[0]
+        self._cycle_start = state["cycle_start"]
         self._points = state["servo"]["points"][0]
         self._leg_set = state["legs"]["command"][0]
         self._pose, self._legs = board["platform.command"], board["leg.command"]
@@ -72,12 +73,12 @@ class Computers:
         """
         self.estimate_gravity(time)
         pose = self._decide(time)
-        lengths = self._geometry.lengths(pose)
-        outside = leg_outside(lengths, self._home, self._travel)
-        if outside:
-            return int(outside)
-        self.send(tick, time, pose, lengths)
-        return 0
+        code = checked_lengths(pose, *self._reach, self._lengths)
+        if code == SAFE:
+            self.send(tick, time, pose, self._lengths)
+        elif code == NOT_A_POSE:
+            raise self._refusal(pose, time)
+        return int(code)
 
     def lengths(self, pose: FloatArray) -> FloatArray:
         """Leg lengths [m] (6,) that the computers send for a pose (6,)."""
@@ -93,9 +94,10 @@ class Computers:
         self._pose[:] = pose
         self._legs[:] = lengths
         self._leg_set[:] = lengths
-        self._state["cycle_start"] = tick
-        self._points[:3] = self._points[1:]
-        self._points[3] = self._arm.q(time + 2.0 * self._period)
+        self._cycle_start[0] = tick
+        points = self._points
+        points[:3] = points[1:]
+        points[3] = self._arm.q(time + 2.0 * self._period)
 
     def start_arm(self, time: float) -> None:
         """Fill the spline's buffer for the cycle that ended at a time."""
@@ -126,10 +128,13 @@ class Computers:
                 f"controller {name} raised {type(error).__name__} at t = {time:.3f} s:"
                 f" {one_line(error)}"
             ) from error
-        if type(pose) is not np.ndarray or pose.shape != (6,) or not np.isfinite(pose).all():
-            name = type(self.controller).__name__
-            raise ControllerError(
-                f"controller {name} returned {pose!r} at t = {time:.3f} s, expected a pose of 6"
-                " finite numbers"
-            )
+        if type(pose) is not np.ndarray or pose.dtype != np.float64 or pose.ndim != 1:
+            raise self._refusal(pose, time)
         return pose
+
+    def _refusal(self, pose: object, time: float) -> ControllerError:
+        name = type(self.controller).__name__
+        return ControllerError(
+            f"controller {name} returned {pose!r} at t = {time:.3f} s, expected a pose of 6"
+            " finite numbers"
+        )

@@ -53,7 +53,7 @@ def emulation_error(
         result[axis] = AxisError(
             rms=_rms(error[:, i]),
             peak=peak,
-            relative=peak / size[i] if size[i] > 0 else 0.0,
+            relative=peak / float(size[i]) if size[i] > 0 else 0.0,
             rms_leg_lag=_rms(legs[:, i]),
             rms_rest=_rms(error[:, i] - legs[:, i]),
         )

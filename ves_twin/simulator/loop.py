@@ -9,53 +9,49 @@ from ves_twin.control.arm_servo import servo_torque, spline
 from ves_twin.control.leg_loop import control_legs
 from ves_twin.kinematics.rotations import angles_from_matrix, matrix_from_quaternion
 from ves_twin.plant.physics.cylinder import push_rods
-from ves_twin.plant.physics.force_sensor import sample_wrench
+from ves_twin.plant.physics.force_sensor import sample_wrench, wander_on
 from ves_twin.plant.physics.transducer import read_lengths
 from ves_twin.plant.physics.valve import move_spool
-from ves_twin.simulator.engine import call_engine
-from ves_twin.types import Block, FloatArray, Record
-
-# Copies of the constants of `noise` and `outcome` would drift, so they are imported as numbers.
-from ves_twin.simulator.noise import ENCODER, LENGTH, PRESSURE, TORQUE, WANDER, WHITE
-from ves_twin.simulator.outcome import (
+from ves_twin.simulator.codes import (
     LEG_AT_LIMIT,
+    LENGTH,
     NOT_FINITE,
+    PRESSURE,
     RUNNING,
+    SLOW,
+    TORQUE,
+    WANDER,
+    WHITE,
     WRENCH_OUT_OF_RANGE,
 )
+from ves_twin.simulator.engine import call_engine
+from ves_twin.types import Block, FloatArray, Record, SingleArray
 
-
-@compiled
-def _read_arm(
-    p: Record, board: Record, q: FloatArray, torque: FloatArray, normal: FloatArray
-) -> None:
-    for j in range(3):
-        angle = q[j] + p.noise.encoder * normal[ENCODER + j]
-        count = p.noise.resolution[j]
-        board.arm_q[j] = np.rint(angle / count) * count if count > 0.0 else angle
-        board.arm_torque[j] = torque[j] + p.noise.torque[j] * normal[TORQUE + j]
-        board.truth_arm_q[j] = q[j]
 
 
 @compiled
 def _drive_arm(
     p: Record, s: Record, board: Record, tick: int, qpos: FloatArray, qvel: FloatArray,
-    ctrl: FloatArray, normal: FloatArray,
+    ctrl: FloatArray, slow: SingleArray,
 ) -> None:  # fmt: skip
-    q_set, rate_set, q, rate, torque = (
-        np.empty(3), np.empty(3), np.empty(3), np.empty(3), np.empty(3)
-    )  # fmt: skip
+    work = s.work
     u = (tick - s.cycle_start) / p.clock.admittance
-    spline(s.servo.points, u, p.servo.cycle, q_set, rate_set)
+    spline(s.servo.points, u, p.servo.cycle, work.q_set, work.rate_set)
     for j in range(3):
-        q[j] = qpos[p.layout.arm_qpos[j]]
-        rate[j] = qvel[p.layout.arm_dof[j]]
-    servo_torque(p.servo, s.servo.integral, q_set, rate_set, q, rate, torque)
+        work.q[j] = qpos[p.layout.arm_qpos[j]]
+        work.rate[j] = qvel[p.layout.arm_dof[j]]
+    servo_torque(
+        p.servo, s.servo.integral, work.q_set, work.rate_set, work.q, work.rate, work.torque
+    )
     for j in range(3):
-        s.servo.integral[j] += p.servo.integral[j] * (q_set[j] - q[j]) * p.clock.tick
-        ctrl[p.layout.arm_ctrl[j]] = torque[j]
-        board.arm_command[j] = q_set[j]
-    _read_arm(p, board, q, torque, normal)
+        error = work.q_set[j] - work.q[j]
+        s.servo.integral[j] += p.servo.integral[j] * error * p.clock.tick
+        ctrl[p.layout.arm_ctrl[j]] = work.torque[j]
+        count = p.noise.encoder_count[j]
+        board.arm_command[j] = work.q_set[j]
+        board.arm_q[j] = np.rint(work.q[j] / count) * count if count > 0.0 else work.q[j]
+        board.arm_torque[j] = work.torque[j] + p.noise.torque[j] * slow[TORQUE + j]
+        board.truth_arm_q[j] = work.q[j]
 
 
 @compiled
@@ -76,12 +72,12 @@ def _read_truth(p: Record, s: Record, board: Record, qpos: FloatArray) -> None:
 def _push_legs(
     p: Record, s: Record, qpos: FloatArray, qvel: FloatArray, ctrl: FloatArray, step: float
 ) -> None:
-    slide, speed = np.empty(6), np.empty(6)
+    work = s.work
     for i in range(6):
-        slide[i] = qpos[p.layout.slide_qpos[i]]
-        speed[i] = qvel[p.layout.slide_dof[i]]
+        work.slide[i] = qpos[p.layout.slide_qpos[i]]
+        work.speed[i] = qvel[p.layout.slide_dof[i]]
     move_spool(p.valve, s.valve, s.current, step)
-    push_rods(p.cylinder, s.cylinder, s.valve.mean, slide, speed, step)
+    push_rods(p.cylinder, s.cylinder, s.valve.mean, work.slide, work.speed, step)
     for i in range(6):
         ctrl[p.layout.leg_ctrl[i]] = s.cylinder.force[i]
 
@@ -115,7 +111,8 @@ def run_ticks(
     state: Block,
     board: Block,
     row: FloatArray,
-    normal: FloatArray,
+    fast_normal: SingleArray,
+    slow_normal: SingleArray,
     log: FloatArray,
     logged: int,
 ) -> tuple[int, int, int]:
@@ -138,7 +135,8 @@ def run_ticks(
         state: STATE (1,).
         board: signals of this instant (1,).
         row: the same as plain numbers.
-        normal: standard normal numbers of these ticks (count, channels).
+        fast_normal: standard normal numbers of these ticks (count, FAST_CHANNELS).
+        slow_normal: one row per SLOW ticks, from the row of `start` on (rows, SLOW_CHANNELS).
         log: buffer of rows (capacity, width).
         logged: rows in the buffer already.
 
@@ -147,16 +145,16 @@ def run_ticks(
     """
     p, s, b = parameters[0], state[0], board[0]
     step = p.clock.tick / p.clock.substeps
-    wrench = np.empty(6)
     for n in range(count):
         tick = start + n
-        noise = normal[n]
-        slide = np.empty(6)
+        fast, slow = fast_normal[n], slow_normal[(start % SLOW + n) // SLOW]
+        if tick % SLOW == 0:
+            wander_on(p.sensor, s.sensor, slow[WANDER:])
         for i in range(6):
-            slide[i] = qpos[p.layout.slide_qpos[i]]
-        read_lengths(p.transducer, slide, noise[LENGTH:], b.leg_length)
-        b.supply_pressure[0] = p.pressure + p.noise.pressure * noise[PRESSURE]
-        _drive_arm(p, s, b, tick, qpos, qvel, ctrl, noise)
+            s.work.slide[i] = qpos[p.layout.slide_qpos[i]]
+        read_lengths(p.transducer, s.work.slide, fast[LENGTH:], b.leg_length)
+        b.supply_pressure[0] = p.pressure + p.noise.pressure * slow[PRESSURE]
+        _drive_arm(p, s, b, tick, qpos, qvel, ctrl, slow)
         if tick % p.clock.leg == 0:
             control_legs(p.legs, s.legs, b.leg_length, b.valve_command)
         if tick % p.clock.amplifier == 0:
@@ -173,11 +171,9 @@ def run_ticks(
             call_engine(mj_step, model, data)
             if k == 0:  # later sub-steps carry the forces of later instants
                 for i in range(6):
-                    wrench[i] = -sensordata[p.layout.wrench_sensor + i]
+                    s.work.wrench[i] = -sensordata[p.layout.wrench_sensor + i]
                 time = tick * p.clock.tick
-                inside = sample_wrench(
-                    p.sensor, s.sensor, wrench, time, noise[WHITE:], noise[WANDER:]
-                )
+                inside = sample_wrench(p.sensor, s.sensor, s.work.wrench, time, fast[WHITE:])
         for i in range(6):
             b.sensor_wrench[i] = s.sensor.reading[i]
         code = _verdict(p, qpos, inside)

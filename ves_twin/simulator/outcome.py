@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from enum import StrEnum
 
+from ves_twin.simulator.codes import LEG_AT_LIMIT, NOT_FINITE, WRENCH_OUT_OF_RANGE
+
 
 class Outcome(StrEnum):
     """How a run ended; `advice` tells what to try."""
@@ -30,9 +32,6 @@ _ADVICE = {
     Outcome.OVERRUN: "the clock interrupt came before the cycle had ended; lower platform.rate",
     Outcome.INTERRUPTED: "stopped from the keyboard",
 }
-
-RUNNING, NOT_FINITE, LEG_AT_LIMIT, WRENCH_OUT_OF_RANGE = 0, 1, 2, 3
-"""Codes that the compiled loop returns."""
 
 OUTCOME_OF_CODE = {
     NOT_FINITE: Outcome.DIVERGED,

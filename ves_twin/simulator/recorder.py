@@ -84,7 +84,7 @@ class Recorder:
     ) -> None:
         self._clock = clock
         self._geometry = geometry
-        self._references = references
+        self._references = dict(references)
         self.sink = sink
         self._cycle = clock.admittance * clock.tick
         capacity = int(FLUSH_SECONDS / self._cycle) + 1
@@ -116,13 +116,19 @@ class Recorder:
         """Complete the waiting rows and hand them to the sink."""
         rows = self.log[: self._at.rows, 1:].copy()
         time = self.log[: self._at.rows, 0].copy()
+        cycles = self._at.cycles
+        self._at.rows = self._at.cycles = 0  # first, so that an interrupt cannot write rows twice
+        self._flushed = monotonic()
         self._add_platform_pose(rows)
         for name, reference in self._references.items():
-            self._add_reference(rows, time, name, reference)
-        self._at.rows = self._at.cycles = 0
-        self._flushed = monotonic()
+            self._add_reference(rows, time, name, reference, cycles)
         if len(time):
             self.sink.write(time, {name: rows[:, SLICES[name]] for name in self.names})
+
+    def drop_references(self) -> None:
+        """Stop integrating the zero-g references; their signals leave the recording."""
+        self._references = {}
+        self.names = tuple(n for n in self.names if n not in (IDEAL, LEG_LAG))
 
     def snapshot(self) -> object:
         """Buffers, references, and how much the memory sink holds."""
@@ -153,9 +159,13 @@ class Recorder:
         self._at.guess = poses[-1].copy()
 
     def _add_reference(
-        self, rows: FloatArray, time: FloatArray, name: str, reference: ZeroGravityReference
+        self,
+        rows: FloatArray,
+        time: FloatArray,
+        name: str,
+        reference: ZeroGravityReference,
+        count: int,
     ) -> None:
-        count = self._at.cycles
         poses = np.empty((count + 1, 6))
         rates = np.empty((count + 1, 6))
         for i in range(count):

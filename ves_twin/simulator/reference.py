@@ -29,7 +29,7 @@ from ves_twin.types import Block, FloatArray, Record
 SIZE = 33
 """State: base Y (6), Y' (6); platform P (6), P' (6); joints q (3), q' (3), integrator (3)."""
 
-LONGEST_STEP = 1.8e-3
+LONGEST_STEP = 3.2e-3
 """Longest RK4 step [s]: the beam's axial mode with the arm on it is near 40 Hz."""
 
 PLATFORM_IS_BASE, PLATFORM_LAGS = 0, 1
@@ -66,7 +66,7 @@ class ZeroGravityReference:
     ) -> None:
         self._model = assemble_free_arm(plant).compile()
         self._data = mujoco.MjData(self._model)
-        self._forward = address_of("mj_forward")
+        self._engine = (address_of("mj_fwdPosition"), address_of("mj_fwdVelocity"))
         self._system = (emulated.mass, emulated.damping, emulated.stiffness)
         self._servo = servo
         self._lag = np.zeros(1, LAG)
@@ -109,7 +109,7 @@ class ZeroGravityReference:
             *self._system,
             self._home,
             self._servo,
-            self._forward,
+            *self._engine,
             self._model._address,
             self._data._address,
             self._data.qpos,
@@ -146,7 +146,7 @@ def _mass_matrix(
 @compiled
 def _rates(
     x: FloatArray, torque: FloatArray, lag: Record, mass: FloatArray, damping: FloatArray,
-    stiffness: FloatArray, home: FloatArray, forward: int, model: int, data: int,
+    stiffness: FloatArray, home: FloatArray, position: int, velocity: int, model: int, data: int,
     qpos: FloatArray, qvel: FloatArray, bias: FloatArray, passive: FloatArray,
     sparse: FloatArray, row_start: FloatArray, row_length: FloatArray, column: FloatArray,
 ) -> FloatArray:  # fmt: skip
@@ -157,7 +157,8 @@ def _rates(
     for j in range(3):
         qpos[6 + j] = x[24 + j]
         qvel[6 + j] = x[27 + j]
-    call_engine(forward, model, data)
+    call_engine(position, model, data)
+    call_engine(velocity, model, data)
     full = _mass_matrix(sparse, row_start, row_length, column)
     h = np.empty((9, 9))
     c = np.empty(9)
@@ -166,7 +167,8 @@ def _rates(
         for j in range(9):
             h[i, j] = full[order[i], order[j]]
     t = np.eye(6)
-    t[3:, 3:] = rate_matrix(qpos[np.array([5, 4, 3])]).T
+    angles = np.array([qpos[5], qpos[4], qpos[3]])
+    t[3:, 3:] = rate_matrix(angles).T
     spring = damping @ x[6:12] + stiffness @ x[:6]
     derivative = np.zeros(SIZE)
     derivative[:6] = x[6:12]
@@ -181,8 +183,11 @@ def _rates(
         derivative[27:30] = acceleration[6:]
     else:
         above = (lag.gain * (x[:6] - x[12:18]) - x[18:24]) / lag.lag
-        joints = np.linalg.solve(h[6:, 6:], torque - c[6:] - h[6:, :6] @ above)
-        reaction = -(h[:6, :6] @ above + h[:6, 6:] @ joints + c[:6])
+        h_base = np.ascontiguousarray(h[:6, :6])
+        h_both = np.ascontiguousarray(h[:6, 6:])
+        h_arm = np.ascontiguousarray(h[6:, 6:])
+        joints = np.linalg.solve(h_arm, torque - c[6:] - h_both.T @ above)
+        reaction = -(h_base @ above + h_both @ joints + c[:6])
         wrench = np.linalg.solve(t, reaction)
         derivative[6:12] = np.linalg.solve(mass, wrench - spring)
         derivative[18:24] = above
@@ -194,7 +199,7 @@ def _rates(
 def _advance(
     x: FloatArray, points: FloatArray, cycle: float, steps: int, lag_block: Block,
     mass: FloatArray, damping: FloatArray, stiffness: FloatArray, home: FloatArray,
-    servo_block: Block, forward: int, model: int, data: int,
+    servo_block: Block, position: int, velocity: int, model: int, data: int,
     qpos: FloatArray, qvel: FloatArray, bias: FloatArray, passive: FloatArray,
     sparse: FloatArray, row_start: FloatArray, row_length: FloatArray, column: FloatArray,
 ) -> None:  # fmt: skip
@@ -211,7 +216,7 @@ def _advance(
             spline(points, (n + ahead[stage]) / steps, cycle, q_set, rate_set)
             servo_torque(servo, y[30:33], q_set, rate_set, y[24:27], y[27:30], torque)
             slope = _rates(
-                y, torque, lag, mass, damping, stiffness, home, forward, model, data,
+                y, torque, lag, mass, damping, stiffness, home, position, velocity, model, data,
                 qpos, qvel, bias, passive, sparse, row_start, row_length, column,
             )  # fmt: skip
             for j in range(3):

@@ -11,7 +11,7 @@ from ves_twin.plant.physics.force_sensor import start_at
 from ves_twin.plant.statics import place_rig, static_leg_forces
 from ves_twin.simulator.build import emulated_of
 from ves_twin.simulator.clock import cycle_time
-from ves_twin.simulator.noise import WANDER
+from ves_twin.simulator.codes import SLOW, WANDER
 from ves_twin.simulator.outcome import Outcome
 from ves_twin.simulator.truth_port import GravityTruth
 from ves_twin.types import FloatArray
@@ -69,7 +69,8 @@ def _start_states(sim: Simulator, pose: FloatArray) -> None:
     sim.board["leg.length"][:] = believed
     start_legs(p[0]["legs"], s[0]["legs"], believed)
     wrench = GravityTruth(sim.model, sim.data, layout).gravity_in_sensor()
-    start_at(p[0]["sensor"], s[0]["sensor"], wrench, sim.noise.window(sim.tick - 1, 1)[0, WANDER:])
+    _, slow = sim.noise.window(sim.tick - SLOW, 1)
+    start_at(p[0]["sensor"], s[0]["sensor"], wrench, slow[0, WANDER:])
 
 
 def _zero(sim: Simulator, signal: FloatArray) -> None:

@@ -19,8 +19,9 @@ from ves_twin.simulator.build import belief_of, build_computers, build_reference
 from ves_twin.simulator.clock import Clock
 from ves_twin.simulator.engine import address_of
 from ves_twin.simulator.loop import run_ticks
+from ves_twin.simulator.codes import RUNNING
 from ves_twin.simulator.noise import NoiseStreams
-from ves_twin.simulator.outcome import OUTCOME_OF_CODE, RUNNING, Outcome
+from ves_twin.simulator.outcome import OUTCOME_OF_CODE, Outcome
 from ves_twin.simulator.recorder import MemorySink, Recorder, Sink
 from ves_twin.simulator.settle import settle
 from ves_twin.types import Block
@@ -140,7 +141,7 @@ class Simulator:
             self.state,
             self.board.block,
             self.board.row,
-            self.noise.window(self.tick, count),
+            *self.noise.window(self.tick, count),
             self.recorder.log,
             self.recorder.rows,
         )

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from ves_twin.compiled import compiled
-from ves_twin.types import FloatArray, Record
+from ves_twin.types import FloatArray, Record, SingleArray
 
 PARAMETERS = np.dtype(
     [
@@ -15,6 +15,7 @@ PARAMETERS = np.dtype(
         ("noise", np.float64, 6),
         ("wander", np.float64, 6),
         ("wander_decay", np.float64),
+        ("wander_kick", np.float64),
         ("numerator", np.float64, 3),
         ("denominator", np.float64, 3),
         ("range", np.float64, 6),
@@ -23,7 +24,7 @@ PARAMETERS = np.dtype(
     ]
 )
 """gain: signal per wrench, cross-talk off the diagonal; drift [1/s]; noise: white sd per sample;
-wander: sd of the slow part with its decay per sample; low-pass coefficients; range; counts;
+wander: sd of the slow part, its decay and kick per step; low-pass coefficients; range; counts;
 calibration: what the computer multiplies with."""
 
 STATE = np.dtype(
@@ -41,7 +42,7 @@ STATE = np.dtype(
 
 
 @compiled
-def start_at(p: Record, s: Record, wrench: FloatArray, wander: FloatArray) -> None:
+def start_at(p: Record, s: Record, wrench: FloatArray, wander: SingleArray) -> None:
     """Put the chain into the steady state of a constant wrench.
 
     Args:
@@ -64,10 +65,17 @@ def start_at(p: Record, s: Record, wrench: FloatArray, wander: FloatArray) -> No
 
 
 @compiled
+def wander_on(p: Record, s: Record, normal: SingleArray) -> None:
+    """Advance the slow noise, x <- decay x + kick sd n: below 1 Hz (Gauss-Markov)."""
+    for i in range(6):
+        s.wander[i] = p.wander_decay * s.wander[i] + p.wander_kick * p.wander[i] * normal[i]
+
+
+@compiled
 def sample_wrench(
-    p: Record, s: Record, wrench: FloatArray, time: float, white: FloatArray, slow: FloatArray
+    p: Record, s: Record, wrench: FloatArray, time: float, white: SingleArray
 ) -> bool:
-    """One sample: gain, offset, drift, slow and white noise, low-pass, range, counts, zero.
+    """One sample: gain, offset, drift, noise, low-pass, range, counts, zero.
 
     Args:
         p: PARAMETERS.
@@ -75,7 +83,6 @@ def sample_wrench(
         wrench: true wrench of the payload on the platform, sensor axes [N, N m] (6,).
         time: time since the start of the run, for drift [s].
         white: standard normal numbers of the white noise (6,).
-        slow: standard normal numbers that drive the slow noise (6,).
 
     Returns:
         Whether every axis is within range.
@@ -84,10 +91,8 @@ def sample_wrench(
     """
     b, a = p.numerator, p.denominator
     inside = True
-    kick = np.sqrt(1.0 - p.wander_decay * p.wander_decay)
     for i in range(6):
         s.true[i] = wrench[i]
-        s.wander[i] = p.wander_decay * s.wander[i] + kick * p.wander[i] * slow[i]
         x = p.offset[i] + p.drift[i] * time + s.wander[i] + p.noise[i] * white[i]
         for j in range(6):
             x += p.gain[i, j] * wrench[j]

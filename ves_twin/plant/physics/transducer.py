@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from ves_twin.compiled import compiled
-from ves_twin.types import FloatArray, Record
+from ves_twin.types import FloatArray, Record, SingleArray
 
 PARAMETERS = np.dtype(
     [("home", np.float64, 6), ("noise", np.float64), ("resolution", np.float64)]
@@ -14,7 +14,7 @@ PARAMETERS = np.dtype(
 
 
 @compiled
-def read_lengths(p: Record, slide: FloatArray, normal: FloatArray, length: FloatArray) -> None:
+def read_lengths(p: Record, slide: FloatArray, normal: SingleArray, length: FloatArray) -> None:
     """Leg lengths as the cards report them: home + slide + noise, rounded to the resolution.
 
     Bending of the leg is invisible to it: the magnet rides on the rod inside the cylinder.

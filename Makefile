@@ -1,0 +1,45 @@
+# Two commands do all the set-up: `make demo` and `make test`. Both create and use .venv/.
+# Needs Python 3.11 or 3.12; name another one with `make PYTHON=python3.12 demo`.
+PYTHON ?= $(shell for p in python3.12 python3.11 python3 python; do \
+	$$p -c 'import sys; sys.exit(not (3, 11) <= sys.version_info[:2] < (3, 13))' 2>/dev/null \
+	&& echo $$p && break; done)
+BIN := .venv/bin
+PIP := $(BIN)/python -m pip install --quiet --disable-pip-version-check
+
+.PHONY: demo test check fast types lint layers bench wheel clean
+
+demo: .venv/.run
+	$(BIN)/ves-twin run beam_horizontal_truth --out runs/demo
+
+test: .venv/.dev lint layers types
+	$(BIN)/python -m pytest -n 2 --dist loadgroup
+
+check: .venv/.dev lint layers types fast
+
+fast: .venv/.dev
+	$(BIN)/python -m pytest -n 2 --dist loadgroup -m "not slow"
+
+lint: .venv/.dev
+	$(BIN)/ruff check . && $(BIN)/ruff format --check .
+
+types: .venv/.dev
+	$(BIN)/mypy
+
+layers: .venv/.dev
+	$(BIN)/lint-imports
+
+bench: .venv/.dev
+	$(BIN)/python benchmarks/loop_speed.py
+
+.venv/.run: pyproject.toml constraints.txt
+	@test -n "$(PYTHON)" || { echo "ves_twin needs Python 3.11 or 3.12; none was found (make PYTHON=... demo)"; exit 1; }
+	test -x $(BIN)/python || $(PYTHON) -m venv .venv
+	$(PIP) --constraint constraints.txt --editable .
+	@touch $@
+
+.venv/.dev: .venv/.run
+	$(PIP) --constraint constraints.txt --editable ".[dev]"
+	@touch $@
+
+clean:
+	rm -rf .venv build dist runs

@@ -1,0 +1,68 @@
+"""Closed loop against bare mj_step on the same model, interleaved in one process.
+
+Run by `make bench`. Prints the median over rounds of (time of bare mj_step) / (time of the closed
+loop): 1.00 means that control, hydraulics, sensor chain and logging to disk cost nothing.
+"""
+
+from __future__ import annotations
+
+import argparse
+import copy
+import statistics
+import tempfile
+from pathlib import Path
+from time import perf_counter
+
+import mujoco
+
+import ves_twin as vt
+from ves_twin.recording.stream import RecordingStream
+from ves_twin.simulator.recorder import NoSink
+from ves_twin.simulator.simulate import recording_info
+
+ROUND = 0.5
+"""Simulated time of one round [s]."""
+
+
+def ratios(log: str, references: bool, rounds: int, folder: Path) -> tuple[list[float], float]:
+    changes = {"run.log": log, "run.duration": 1e6}
+    scenario = vt.Scenario.load("beam_horizontal_truth", changes)
+    sim = vt.Simulator(None, scenario, sink=NoSink())
+    if not references:
+        sim.recorder.drop_references()
+    stream = RecordingStream(folder, sim.recorder.names, recording_info(sim))
+    sim.recorder.sink = stream
+    steps = sim.clock.ticks(ROUND)
+    sim.advance(ROUND)
+    found, loop_time = [], 0.0
+    for _ in range(rounds):
+        bare = copy.copy(sim.data)
+        begin = perf_counter()
+        mujoco.mj_step(sim.model, bare, steps)
+        middle = perf_counter()
+        sim.advance(ROUND)
+        end = perf_counter()
+        found.append((middle - begin) / (end - middle))
+        loop_time += end - middle
+    stream.close()
+    return found, rounds * ROUND / loop_time
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--rounds", type=int, default=60)
+    rounds = parser.parse_args().rounds
+    print(f"{'logging':<12}{'zero-g reference':<18}{'ratio':>8}{'5 %':>8}{'95 %':>8}{'x real time':>13}")
+    for log in ("admittance", "leg", "tick"):
+        for references in (False, True):
+            with tempfile.TemporaryDirectory() as folder:
+                found, speed = ratios(log, references, rounds, Path(folder))
+            cuts = statistics.quantiles(found, n=20)
+            print(
+                f"{log:<12}{'yes' if references else 'no':<18}{statistics.median(found):8.3f}"
+                f"{cuts[0]:8.3f}{cuts[-1]:8.3f}{speed:13.1f}"
+            )
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,99 @@
+"""info: versions, models, controllers; with --plant what differs from the nominal rig."""
+
+from __future__ import annotations
+
+import argparse
+import json
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from ves_twin.plant.plant import Plant
+
+SUMMARY = "versions, models and controllers; with --plant what differs from nominal"
+
+NOMINAL = "ves2"
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Options of the command."""
+    parser.add_argument("--plant", metavar="FILE", help="a plant: a name or a TOML file")
+    parser.add_argument("--json", action="store_true", help="one JSON object on stdout")
+
+
+def execute(arguments: argparse.Namespace) -> int:
+    """Print what is installed and known."""
+    content = plant_content(arguments.plant) if arguments.plant else general_content()
+    if arguments.json:
+        print(json.dumps(content, indent=2))
+        return 0
+    for title, entries in content.items():
+        print(f"{title}:" if not isinstance(entries, str) else f"{title}: {entries}")
+        if isinstance(entries, dict):
+            width = max(map(len, entries), default=0)
+            for name, value in entries.items():
+                print(f"  {name:<{width}}  {value if isinstance(value, str) else _words(value)}")
+        elif isinstance(entries, list):
+            print(f"  {', '.join(map(str, entries))}" if entries else "  none")
+    return 0
+
+
+def general_content() -> dict[str, object]:
+    """Versions, plants, emulated systems, controllers, scenarios, signals."""
+    from ves_twin.compiled import cache_folder
+    from ves_twin.control.registry import GRAVITY_COMPENSATIONS, PLATFORM_CONTROLLERS
+    from ves_twin.plant.plant import Plant
+    from ves_twin.resources import resource_folder
+    from ves_twin.scenario.load import scenario_questions
+    from ves_twin.signals import SIGNALS
+    from ves_twin.simulator.simulate import versions
+
+    models = resource_folder("models")
+    return {
+        "versions": versions(),
+        "plants": {p.stem: Plant.load(p.stem).hash for p in sorted(models.glob("*.toml"))},
+        "emulated systems": [p.stem for p in sorted((models / "emulated").glob("*.toml"))],
+        "platform controllers": list(PLATFORM_CONTROLLERS),
+        "gravity compensations": list(GRAVITY_COMPENSATIONS),
+        "scenarios": list(scenario_questions()),
+        "signals": {
+            s.name: f"{s.width} {', '.join(dict.fromkeys(s.units))}; {s.role.value}; {s.meaning}"
+            for s in SIGNALS.values()
+        },
+        "compiled code": str(cache_folder()),
+    }
+
+
+def plant_content(name: str) -> dict[str, object]:
+    """One plant: identity, grades of its numbers, and every difference from nominal."""
+    from ves_twin.plant.plant import Plant
+
+    plant = Plant.load(name)
+    grades: dict[str, str] = {}
+    for parameter in plant.parameters.values():
+        count = int(grades.get(parameter.grade.value, "0")) + 1
+        grades[parameter.grade.value] = str(count)
+    return {
+        "plant": plant.name,
+        "hash": plant.hash,
+        "fidelity": plant.fidelity.value,
+        "numbers by grade": grades,
+        f"differences from {NOMINAL}": _differences(plant),
+    }
+
+
+def _differences(plant: Plant) -> dict[str, object]:
+    from ves_twin.plant.plant import Plant
+
+    nominal = Plant.load(NOMINAL).parameters
+    return {
+        name: {
+            "nominal": there.tolist(),
+            "here": here.tolist(),
+            "unit": plant.parameters[name].unit,
+        }
+        for name, (here, there) in plant.parameters.differences(nominal).items()
+    }
+
+
+def _words(difference: dict[str, object]) -> str:
+    return f"{difference['nominal']} -> {difference['here']} {difference['unit']}"

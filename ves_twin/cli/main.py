@@ -1,0 +1,84 @@
+"""main: the ves-twin command; parses, dispatches, and turns errors into one line."""
+
+from __future__ import annotations
+
+import argparse
+import os
+import sys
+from collections.abc import Sequence
+from typing import NoReturn
+
+from ves_twin import __version__
+from ves_twin.cli import info, run, scenarios, view
+from ves_twin.errors import UnknownNameError, VesTwinError, one_line
+
+COMMANDS = {"scenarios": scenarios, "run": run, "view": view, "info": info}
+"""Name -> module with SUMMARY, add_arguments(parser) and execute(arguments) -> exit code."""
+
+DONE, BAD_INPUT, ENDED_EARLY, INTERRUPTED = 0, 2, 3, 130
+"""Exit codes."""
+
+
+class Parser(argparse.ArgumentParser):
+    """A parser that answers bad arguments with one line and exit code 2."""
+
+    def error(self, message: str) -> NoReturn:
+        """Raise instead of printing the usage."""
+        prefix = "unrecognized arguments: "
+        if message.startswith(prefix):
+            name = message.removeprefix(prefix).split()[0].split("=")[0]
+            raise UnknownNameError("option", name, self._option_string_actions)
+        raise VesTwinError(f"{self.prog}: {message}")
+
+    def parse_known_args(  # type: ignore[no-untyped-def, override]  # noqa: D102
+        self, args=None, namespace=None  # noqa: ANN001
+    ):
+        found, rest = super().parse_known_args(args, namespace)
+        if rest and self.prog != "ves-twin":
+            self.error(f"unrecognized arguments: {' '.join(rest)}")
+        return found, rest
+
+
+def build_parser() -> Parser:
+    """The parser of all commands."""
+    parser = Parser(
+        prog="ves-twin",
+        description="Digital twin of the VES II micro-gravity emulator.",
+    )
+    parser.add_argument("--version", action="version", version=f"ves-twin {__version__}")
+    commands = parser.add_subparsers(dest="command", metavar="COMMAND", parser_class=Parser)
+    for name, module in COMMANDS.items():
+        command = commands.add_parser(name, help=module.SUMMARY, description=module.SUMMARY)
+        module.add_arguments(command)
+    return parser
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Run a command.
+
+    Returns:
+        0 done; 2 bad input; 3 the run ended early; 130 interrupted.
+    """
+    words = list(sys.argv[1:] if arguments is None else arguments)
+    try:
+        if words and not words[0].startswith("-") and words[0] not in COMMANDS:
+            raise UnknownNameError("command", words[0], COMMANDS)
+        parser = build_parser()
+        if not words:
+            parser.print_help()
+            return BAD_INPUT
+        found = parser.parse_args(words)
+        return int(COMMANDS[found.command].execute(found))
+    except VesTwinError as error:
+        print(f"ves-twin: {one_line(error)}", file=sys.stderr)
+        return BAD_INPUT
+    except KeyboardInterrupt:
+        print("ves-twin: interrupted", file=sys.stderr)
+        return INTERRUPTED
+    except BrokenPipeError:
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        return DONE
+
+
+if __name__ == "__main__":
+    sys.exit(main())

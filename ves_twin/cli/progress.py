@@ -1,0 +1,53 @@
+"""RunProgress: a progress bar on stderr, and a keyboard stop at a safe point."""
+
+from __future__ import annotations
+
+import signal
+import sys
+from types import FrameType, TracebackType
+from typing import Any
+
+from tqdm import tqdm
+
+from ves_twin.compiled import cache_folder
+
+
+class RunProgress:
+    """Called with the time reached; the first Ctrl-C ends the run between two slices."""
+
+    def __init__(self, name: str, duration: float) -> None:
+        self._bar = tqdm(
+            total=duration,
+            desc=name,
+            unit="s",
+            file=sys.stderr,
+            disable=None,  # silent where stderr is no terminal
+            bar_format="{desc} {percentage:3.0f}% |{bar}| {n:.1f}/{total:.1f} s simulated [{elapsed}]",
+        )
+        self._stopped = False
+        self._before: Any = None
+
+    def __call__(self, reached: float) -> None:
+        self._bar.update(reached - self._bar.n)
+        if self._stopped:
+            raise KeyboardInterrupt
+
+    def __enter__(self) -> RunProgress:
+        if not any(cache_folder().iterdir()):
+            print("compiling the inner loop, once: about half a minute", file=sys.stderr)
+        self._before = signal.signal(signal.SIGINT, self._stop)
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        trace: TracebackType | None,
+    ) -> None:
+        signal.signal(signal.SIGINT, self._before)
+        self._bar.close()
+
+    def _stop(self, number: int, frame: FrameType | None) -> None:
+        if self._stopped:  # the second Ctrl-C does not wait
+            raise KeyboardInterrupt
+        self._stopped = True

@@ -1,0 +1,104 @@
+"""run: run a scenario, write recording, summary and rerun file, print the summary."""
+
+from __future__ import annotations
+
+import argparse
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from ves_twin.plant.plant import Plant
+    from ves_twin.scenario.schema import Scenario
+    from ves_twin.simulator.simulate import Summary
+
+SUMMARY = "run a scenario and write its recording"
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Options of the command."""
+    parser.add_argument("scenario", metavar="SCENARIO", help="a name or a TOML file")
+    add_run_options(parser)
+    parser.add_argument("--json", action="store_true", help="the summary as JSON on stdout")
+
+
+def add_run_options(parser: argparse.ArgumentParser) -> None:
+    """Options that every command that runs a scenario shares."""
+    parser.add_argument(
+        "--set",
+        dest="settings",
+        metavar="KEY=VALUE",
+        action="append",
+        default=[],
+        help="override a key of the scenario, for instance legs.gain=16",
+    )
+    parser.add_argument("--plant", metavar="FILE", help="another plant: a name or a TOML file")
+    parser.add_argument("--seed", type=int, metavar="N", help="seed of the noise")
+    parser.add_argument("--out", metavar="DIR", help="output folder (default: runs/SCENARIO)")
+    parser.add_argument("--no-rrd", action="store_true", help="write no rerun file")
+
+
+def execute(arguments: argparse.Namespace) -> int:
+    """Run the scenario; the exit code tells how it ended."""
+    summary, folder = run_scenario(arguments)
+    if arguments.json:
+        print(summary.to_json())
+    else:
+        from ves_twin.cli.summary_text import summary_text
+
+        print(summary_text(summary, folder))
+    return exit_code(summary)
+
+
+def exit_code(summary: Summary) -> int:
+    """0 completed, 130 interrupted, 3 any other end."""
+    from ves_twin.simulator.outcome import Outcome
+
+    return {Outcome.COMPLETED: 0, Outcome.INTERRUPTED: 130}.get(summary.outcome, 3)
+
+
+def run_scenario(arguments: argparse.Namespace) -> tuple[Summary, Path]:
+    """Run the scenario that the arguments name into its output folder."""
+    from ves_twin.cli.progress import RunProgress
+    from ves_twin.simulator.simulate import record
+
+    scenario, plant = load(arguments)
+    folder = output_folder(arguments.out, scenario.name)
+    with RunProgress(scenario.name, scenario.run.duration) as progress:
+        summary = record(scenario, folder, plant, arguments.seed, progress)
+    if not arguments.no_rrd and summary.duration > 0:
+        from ves_twin.recording.files import load_recording
+        from ves_twin.rerun_log.write import write_rrd
+
+        write_rrd(load_recording(folder), folder / "run.rrd")
+    return summary, folder
+
+
+def load(arguments: argparse.Namespace) -> tuple[Scenario, Plant | None]:
+    """Scenario with the overrides, and the plant given instead of the scenario's own.
+
+    Raises:
+        VesTwinError: anything in them that cannot be used.
+    """
+    from ves_twin.errors import InvalidInputError
+    from ves_twin.plant.plant import Plant
+    from ves_twin.scenario.load import load_scenario, parse_setting
+
+    changes = dict(parse_setting(text) for text in arguments.settings)
+    scenario = load_scenario(arguments.scenario, changes)
+    if arguments.seed is not None and arguments.seed < 0:
+        raise InvalidInputError("--seed", arguments.seed, "a whole number of at least 0")
+    if arguments.plant is None:
+        return scenario, None
+    return scenario, Plant.load(arguments.plant).with_values(scenario.parameters)
+
+
+def output_folder(given: str | None, name: str) -> Path:
+    """The folder asked for, or the next free runs/NAME, runs/NAME-2, ..."""
+    if given is not None:
+        return Path(given)
+    folder, number = Path("runs") / name, 1
+    while folder.exists():
+        number += 1
+        folder = Path("runs") / f"{name}-{number}"
+    return folder

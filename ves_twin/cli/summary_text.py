@@ -1,0 +1,49 @@
+"""summary_text: the account of a run as a person reads it."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from ves_twin.simulator.emulation_error import AxisError
+from ves_twin.simulator.simulate import SUMMARY_NAME, Summary
+
+_MILLI = 1e3
+
+
+def summary_text(summary: Summary, folder: Path) -> str:
+    """Question, outcome, emulation error per axis, speed, and where the files lie."""
+    lines = [
+        f"{summary.scenario}: {summary.question}",
+        f"  outcome   {summary.outcome.value} at {summary.duration:.2f} s ({summary.advice})",
+        f"  plant     {summary.plant} {summary.plant_hash}, seed {summary.seed}",
+        f"  speed     {summary.timing.real_time_factor:.1f} x real time,"
+        f" admittance loop at {summary.timing.admittance_rate:.2f} Hz",
+    ]
+    if summary.emulation_error:
+        lines += ["", *_error_table(summary.emulation_error)]
+    warnings = [e for e in summary.events if e["kind"] not in {"settled", "zeroed"}]
+    lines += ["", *(f"  {e['time']:8.3f} s  {e['kind']}: {e['message']}" for e in warnings)]
+    files = [name for name in sorted(p.name for p in folder.iterdir()) if _ours(name)]
+    lines += ["", f"  files     {folder}/", *(f"              {name}" for name in files)]
+    if "run.rrd" in files:
+        lines += [f"  look      ves-twin view {folder}"]
+    return "\n".join(lines)
+
+
+def _ours(name: str) -> bool:
+    return name == SUMMARY_NAME or name.endswith((".parquet", ".rrd", ".arrows"))
+
+
+def _error_table(errors: dict[str, AxisError]) -> list[str]:
+    rows = [
+        "  emulation error against the zero-g reference",
+        "  axis       rms      peak  of the motion   legs alone   the rest",
+    ]
+    for axis, error in errors.items():
+        unit = "mrad" if axis.startswith("r") else "mm"
+        rows.append(
+            f"  {axis:<3}{unit:>5}{error.rms * _MILLI:8.3f}{error.peak * _MILLI:10.3f}"
+            f"{error.relative:14.1%}{error.rms_leg_lag * _MILLI:13.3f}{error.rms_rest * _MILLI:11.3f}"
+        )
+    rows.append("  (legs alone: rms that the legs' bandwidth alone causes; the rest: rms without it)")
+    return rows

@@ -1,0 +1,62 @@
+"""view: look at a recording or a scenario in rerun, or step a scenario in MuJoCo's viewer."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+import tempfile
+import time
+from pathlib import Path
+
+from ves_twin.cli.run import add_run_options, load, run_scenario
+
+SUMMARY = "look at a recording or a scenario: rerun, or MuJoCo's viewer with --live"
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Options of the command."""
+    parser.add_argument("scenario", metavar="SCENARIO|RECORDING", help="a name, file or run folder")
+    add_run_options(parser)
+    parser.add_argument("--web", action="store_true", help="serve on 127.0.0.1 for a browser")
+    parser.add_argument("--live", action="store_true", help="step a scenario in MuJoCo's viewer")
+
+
+def execute(arguments: argparse.Namespace) -> int:
+    """Open the viewer."""
+    if arguments.live:
+        return _live(arguments)
+    from ves_twin.rerun_log.viewer import open_viewer
+
+    path = Path(arguments.scenario)
+    is_recording = path.is_dir() or path.suffix in {".parquet", ".arrows", ".rrd"}
+    if not is_recording:
+        _, folder = run_scenario(arguments)
+        return open_viewer(folder / "run.rrd", arguments.web)
+    if path.suffix == ".rrd":
+        return open_viewer(path, arguments.web)
+    from ves_twin.recording.files import load_recording
+    from ves_twin.rerun_log.write import write_rrd
+
+    with tempfile.TemporaryDirectory(prefix="ves_twin-") as folder:
+        rrd = write_rrd(load_recording(path), Path(folder) / "run.rrd")
+        return open_viewer(rrd, arguments.web)
+
+
+def _live(arguments: argparse.Namespace) -> int:
+    """Step in real time; closing the window ends it."""
+    import mujoco.viewer
+
+    from ves_twin.simulator.recorder import NoSink
+    from ves_twin.simulator.simulator import Simulator
+
+    scenario, plant = load(arguments)
+    sim = Simulator(plant, scenario, arguments.seed, sink=NoSink())
+    frame = 1.0 / 60.0
+    with mujoco.viewer.launch_passive(sim.model, sim.data) as window:
+        while window.is_running() and not sim.done:
+            begin = time.perf_counter()
+            sim.advance(frame)
+            window.sync()
+            time.sleep(max(0.0, frame - (time.perf_counter() - begin)))
+    print(f"{scenario.name}: at {sim.time:.2f} s", file=sys.stderr)
+    return 0

@@ -1,0 +1,116 @@
+"""structural_modes: frequencies and damping of the rig with valves closed, by linearisation."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import mujoco
+import numpy as np
+
+from ves_twin.plant.assembly import JOINTS, LEGS, assemble
+from ves_twin.plant.layout import Layout
+from ves_twin.plant.plant import Plant
+from ves_twin.plant.statics import place_rig, static_leg_forces
+from ves_twin.types import FloatArray
+
+SETTLE_SECONDS = 3.0
+"""Time for the preload error of the placed rig to die out: ten time constants of the first mode."""
+
+PERTURBATION = 1e-6
+"""Step of the centred differences [m, rad]: far above round-off, far below any nonlinearity."""
+
+
+@dataclass(frozen=True)
+class Mode:
+    """One mode of vibration.
+
+    Attributes:
+        frequency: undamped natural frequency [Hz].
+        damping: damping ratio.
+        bending_share: part of the potential energy of springs and oil that sits in leg bending.
+    """
+
+    frequency: float
+    damping: float
+    bending_share: float
+
+
+def structural_modes(
+    plant: Plant, pose: FloatArray, q: FloatArray, highest: float = 40.0
+) -> list[Mode]:
+    """Modes of platform, legs and payload at a pose, valves closed, arm held by its servo.
+
+    The oil columns and the joint servos become joint springs and dampers, the rig settles, and
+    MuJoCo's transition matrix about the rest gives the eigenvalues s = log(z) / h.
+
+    Args:
+        plant: the rig.
+        pose: platform pose from home [m, rad] (6,).
+        q: joint angles of the arm [rad] (3,).
+        highest: leave out modes above this [Hz].
+
+    Returns:
+        Modes by rising frequency.
+
+    Source: thesis 5.2 (first modes 10 to 13 Hz, falling with leg extension).
+    """
+    tick = plant.parameters.number("clock.tick")
+    model, data = _resting(plant, tick, np.asarray(pose, float), np.asarray(q, float))
+    size = 2 * model.nv + model.na
+    transition = np.zeros((size, size))
+    mujoco.mjd_transitionFD(model, data, PERTURBATION, True, transition, None, None, None)
+    values, vectors = np.linalg.eig(transition)
+    poles = np.log(values.astype(complex)) / tick
+    bending = _bending_dofs(model)
+    modes = []
+    for pole, vector in zip(poles, vectors.T, strict=True):
+        frequency = abs(pole) / (2 * np.pi)
+        if pole.imag > 1.0 and frequency < highest:
+            energy = _spring_energy(model, vector[: model.nv])
+            share = float(np.sum(energy[bending]) / np.sum(energy))
+            modes.append(Mode(float(frequency), float(-pole.real / abs(pole)), share))
+    return sorted(modes, key=lambda mode: mode.frequency)
+
+
+def _resting(
+    plant: Plant, tick: float, pose: FloatArray, q: FloatArray
+) -> tuple[mujoco.MjModel, mujoco.MjData]:
+    spec = assemble(plant, tick)
+    number, array = plant.parameters.number, plant.parameters.array
+    for i in range(1, LEGS + 1):
+        slide = spec.joint(f"leg{i}/slide")
+        slide.stiffness = np.array([number("hydraulics.oil_stiffness"), 0.0, 0.0])
+        slide.damping = np.array([number("hydraulics.oil_damping"), 0.0, 0.0])
+    stiffness, damping = array("servo.stiffness"), array("servo.damping")
+    for j, name in enumerate(JOINTS):
+        joint = spec.joint(f"arm/{name}")
+        joint.stiffness = np.array([stiffness[j], 0.0, 0.0])
+        joint.damping = joint.damping + np.array([damping[j], 0.0, 0.0])
+    model = spec.compile()
+    data = mujoco.MjData(model)
+    layout = Layout.of(model)
+    place_rig(data, layout, plant.geometry, pose, q)
+    force = static_leg_forces(model, data, layout, plant.geometry, pose)
+    preload = force / number("hydraulics.oil_stiffness")
+    model.qpos_spring[layout.slide_qpos] = data.qpos[layout.slide_qpos] + preload
+    sag = data.qfrc_bias[layout.arm_dof] / stiffness
+    model.qpos_spring[layout.arm_qpos] = q + sag
+    mujoco.mj_step(model, data, round(SETTLE_SECONDS / tick))
+    return model, data
+
+
+def _bending_dofs(model: mujoco.MjModel) -> list[int]:
+    return [
+        int(model.joint(f"leg{i}/bending_{axis}").dofadr[0])
+        for i in range(1, LEGS + 1)
+        for axis in "xy"
+    ]
+
+
+def _spring_energy(model: mujoco.MjModel, shape: FloatArray) -> FloatArray:
+    """Potential energy per degree of freedom of a mode shape, up to a common factor."""
+    stiffness = np.zeros(model.nv)
+    for j in range(model.njnt):
+        if model.jnt_type[j] != mujoco.mjtJoint.mjJNT_FREE:
+            stiffness[model.jnt_dofadr[j]] = np.ravel(model.jnt_stiffness[j])[0]
+    return stiffness * np.abs(shape) ** 2

@@ -1,0 +1,161 @@
+"""write_rrd: a recording as a rerun file: 3-D, plots, events, account and their layout."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterator
+from pathlib import Path
+
+import numpy as np
+import rerun as rr
+
+from ves_twin.errors import FileAccessError
+from ves_twin.recording.recording import Recording
+from ves_twin.rerun_log.account import account
+from ves_twin.rerun_log.blueprint import blueprint_of
+from ves_twin.rerun_log.colours import GHOST
+from ves_twin.rerun_log.poses import (
+    GHOST_ARM,
+    GHOST_POSE,
+    MACHINE_ARM,
+    MACHINE_POSE,
+    body_frames,
+)
+from ves_twin.rerun_log.rig import DrawnRig
+from ves_twin.rerun_log.series import Series, series_of
+from ves_twin.rerun_log.shapes import send_shapes
+from ves_twin.simulator.outcome import Outcome
+from ves_twin.types import IntArray
+
+ROWS_PER_CHUNK = 20_000
+"""Rows sent at a time: a megabyte per six columns."""
+
+GHOST_PARTS = ("platform/", "sensor/", "arm/")
+"""Prefixes of the bodies that the zero-g reference has; it knows no legs."""
+
+GHOST_GROWTH = 0.004
+"""Thickness [m] by which the ghost covers a machine that follows it without error."""
+
+FAILURES = frozenset(set(Outcome) - {Outcome.COMPLETED})
+
+
+def write_rrd(recording: Recording, path: Path) -> Path:
+    """Write a recording as a rerun file, for the viewer of the same release.
+
+    Timelines are `sim_time` [s] and `row`. The file takes its name only once it is whole.
+
+    Args:
+        recording: measured or simulated.
+        path: the .rrd file; one that exists is replaced.
+
+    Returns:
+        The path.
+
+    Raises:
+        FileAccessError: the file cannot be written.
+    """
+    partial = path.with_name(path.name + ".partial")
+    _check_target(path, partial)
+    try:
+        _write(recording, partial)
+        os.replace(partial, path)
+    except OSError as error:
+        raise FileAccessError(f"cannot write '{path}': {error.strerror or error}") from None
+    finally:
+        partial.unlink(missing_ok=True)
+    return path
+
+
+def _check_target(path: Path, partial: Path) -> None:
+    if path.is_dir():
+        raise FileAccessError(f"cannot write '{path}': it is a folder")
+    if path.exists() and not os.access(path, os.W_OK):
+        raise FileAccessError(f"cannot write '{path}': the file is read-only")
+    try:
+        partial.touch()
+    except OSError as error:
+        raise FileAccessError(f"cannot write '{path}': {error.strerror}") from None
+
+
+def _write(recording: Recording, path: Path) -> None:
+    rig = DrawnRig.of(recording.info)
+    series = series_of(recording)
+    name = recording.info.scenario or "recording"
+    # the viewer keeps one layout per application, so runs of unlike scenarios must differ in it
+    stream = rr.RecordingStream(f"ves_twin {name}")
+    blueprint = blueprint_of(frozenset(s.entity for s in series))
+    stream.save(path, default_blueprint=blueprint)
+    stream.send_recording_name(f"{name}, seed {recording.info.seed}")
+    stream.log("/", rr.ViewCoordinates.RIGHT_HAND_Z_UP, static=True)
+    page = rr.TextDocument(account(recording, rig.note), media_type=rr.MediaType.MARKDOWN)
+    stream.log("account", page, static=True)
+    _send_events(stream, recording)
+    _send_machine(stream, recording, rig)
+    if "reference.pose" in recording.signals:
+        _send_ghost(stream, recording, rig)
+    for lines in series:
+        _send_series(stream, recording, lines)
+    stream.disconnect()
+
+
+def _send_machine(stream: rr.RecordingStream, recording: Recording, rig: DrawnRig) -> None:
+    send_shapes(stream, "machine", rig.model, ("world", *rig.bodies))
+    _send_frames(stream, recording, rig, "machine", (MACHINE_POSE, MACHINE_ARM), rig.bodies)
+
+
+def _send_ghost(stream: rr.RecordingStream, recording: Recording, rig: DrawnRig) -> None:
+    bodies = tuple(body for body in rig.bodies if body.startswith(GHOST_PARTS))
+    send_shapes(stream, "ghost", rig.model, bodies, GHOST, GHOST_GROWTH)
+    _send_frames(stream, recording, rig, "ghost", (GHOST_POSE, GHOST_ARM), bodies)
+
+
+def _send_frames(
+    stream: rr.RecordingStream,
+    recording: Recording,
+    rig: DrawnRig,
+    root: str,
+    signals: tuple[tuple[str, ...], tuple[str, ...]],
+    bodies: tuple[str, ...],
+) -> None:
+    for frames in body_frames(recording, rig, *signals):
+        times = _times(recording, frames.rows)
+        for body in bodies:
+            i = rig.bodies.index(body)
+            poses = rr.Transform3D.columns(
+                translation=frames.position[:, i], quaternion=frames.turn[:, i]
+            )
+            stream.send_columns(f"{root}/{body}", times, poses)
+        stream.flush()
+
+
+def _send_series(stream: rr.RecordingStream, recording: Recording, lines: Series) -> None:
+    style = rr.SeriesLines(names=lines.names, colors=lines.colours, widths=[1.5] * len(lines.names))
+    stream.log(lines.entity, style, static=True)
+    for rows in _chunks(len(recording)):
+        times = _times(recording, np.arange(rows.start, rows.stop))
+        stream.send_columns(lines.entity, times, rr.Scalars.columns(scalars=lines.values(rows)))
+    stream.flush()
+
+
+def _send_events(stream: rr.RecordingStream, recording: Recording) -> None:
+    events = recording.info.events
+    if not events:
+        return
+    at = np.array([event.time for event in events])
+    rows = np.clip(np.searchsorted(recording.time, at), 0, max(len(recording) - 1, 0))
+    levels = [rr.TextLogLevel.ERROR if e.kind in FAILURES else rr.TextLogLevel.INFO for e in events]
+    texts = [f"{event.kind}: {event.message}" for event in events]
+    times = [rr.TimeColumn("sim_time", duration=at), rr.TimeColumn("row", sequence=rows)]
+    stream.send_columns("events", times, rr.TextLog.columns(text=texts, level=levels))
+
+
+def _chunks(count: int) -> Iterator[slice]:
+    for start in range(0, count, ROWS_PER_CHUNK):
+        yield slice(start, min(start + ROWS_PER_CHUNK, count))
+
+
+def _times(recording: Recording, rows: IntArray) -> list[rr.TimeColumn]:
+    return [
+        rr.TimeColumn("sim_time", duration=recording.time[rows]),
+        rr.TimeColumn("row", sequence=rows),
+    ]
