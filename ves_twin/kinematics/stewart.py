@@ -99,28 +99,44 @@ def solve_pose(
 
 @compiled
 def track_poses(
-    lengths: FloatArray, guess: FloatArray, base: FloatArray, top: FloatArray, home: FloatArray
+    lengths: FloatArray,
+    pose: FloatArray,
+    inverse: FloatArray,
+    base: FloatArray,
+    top: FloatArray,
+    home: FloatArray,
 ) -> FloatArray:
     """Poses (n, 6) of a time series of lengths (n, 6), each solved from the one before.
 
-    Works with the Jacobian of the first row (chord steps) and falls back to Newton.
+    Chord steps with the inverse Jacobian of an earlier row, Newton where they do not converge.
+    All memory is in the arguments, so a series cut into pieces gives the same bits as a whole.
+
+    Args:
+        lengths: leg lengths, a row per instant [m] (n, 6).
+        pose: pose of the row before [m, rad] (6,); holds the last pose on return.
+        inverse: inverse of `pose_jacobian` near there (6, 6); kept up to date.
+        base: base joints, inertial [m] (6, 3).
+        top: platform joints in the top frame [m] (6, 3).
+        home: origin of the top frame at home [m] (3,).
+
+    Returns:
+        Poses [m, rad] (n, 6).
     """
     poses = np.empty_like(lengths)
-    pose = guess.copy()
-    inverse = np.linalg.inv(pose_jacobian(pose, base, top, home))
     for n in range(lengths.shape[0]):
+        guess = pose.copy()
         converged = False
         for _ in range(8):
-            error = lengths[n] - leg_lengths(pose, base, top, home)
+            error = lengths[n] - leg_lengths(guess, base, top, home)
             if np.max(np.abs(error)) < 1e-11:
                 converged = True
                 break
-            pose = pose + inverse @ error
+            guess = guess + inverse @ error
         if not converged:
-            last = poses[n - 1] if n else guess
-            pose, _ = solve_pose(lengths[n], last, base, top, home, 1e-11, 50)
-            inverse = np.linalg.inv(pose_jacobian(pose, base, top, home))
-        poses[n] = pose
+            guess, _ = solve_pose(lengths[n], pose, base, top, home, 1e-11, 50)
+            inverse[:] = np.linalg.inv(pose_jacobian(guess, base, top, home))
+        pose[:] = guess
+        poses[n] = guess
     return poses
 
 

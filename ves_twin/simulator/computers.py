@@ -133,8 +133,9 @@ class Computers:
         return pose
 
     def _refusal(self, pose: object, time: float) -> ControllerError:
+        came = " ".join(repr(pose).split())
         name = type(self.controller).__name__
         return ControllerError(
-            f"controller {name} returned {pose!r} at t = {time:.3f} s, expected a pose of 6"
+            f"controller {name} returned {came} at t = {time:.3f} s, expected a pose of 6"
             " finite numbers"
         )

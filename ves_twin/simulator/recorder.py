@@ -9,7 +9,7 @@ from typing import Protocol
 
 import numpy as np
 
-from ves_twin.kinematics.stewart import StewartGeometry, track_poses
+from ves_twin.kinematics.stewart import StewartGeometry, pose_jacobian, track_poses
 from ves_twin.signals import SIGNALS
 from ves_twin.simulator.board import SLICES, WIDTH
 from ves_twin.simulator.clock import Clock
@@ -60,7 +60,11 @@ class _Buffers:
 
     rows: int
     cycles: int
-    guess: FloatArray
+    pose: FloatArray
+    inverse: FloatArray
+
+    def copy(self) -> _Buffers:
+        return _Buffers(self.rows, self.cycles, self.pose.copy(), self.inverse.copy())
 
 
 class Recorder:
@@ -91,7 +95,8 @@ class Recorder:
         self.log = np.zeros((capacity * (clock.admittance // clock.log + 2), WIDTH + 1))
         self._points = np.zeros((capacity, 4, 3))
         self._starts = np.zeros(capacity)
-        self._at = _Buffers(rows=0, cycles=0, guess=guess.copy())
+        jacobian = pose_jacobian(guess, geometry.base, geometry.top, geometry.home)
+        self._at = _Buffers(0, 0, guess.copy(), np.linalg.inv(jacobian))
         self._flushed = monotonic()
         self.names = tuple(n for n in SIGNALS if n not in (IDEAL, LEG_LAG) or n in references)
 
@@ -136,12 +141,12 @@ class Recorder:
         kept = len(self.sink.parts) if isinstance(self.sink, MemorySink) else -1
         references = {name: r.snapshot() for name, r in self._references.items()}
         waiting = self.log[: at.rows].copy(), self._points.copy(), self._starts.copy()
-        return _Buffers(at.rows, at.cycles, at.guess.copy()), waiting, references, kept
+        return at.copy(), waiting, references, kept
 
     def restore(self, snapshot: object) -> None:
         """Go back to a snapshot; rows handed to a file cannot be taken back."""
         at, (log, points, starts), references, kept = snapshot  # type: ignore[misc]
-        self._at = _Buffers(at.rows, at.cycles, at.guess.copy())
+        self._at = at.copy()
         self.log[: at.rows] = log
         self._points[:], self._starts[:] = points, starts
         for name, state in references.items():
@@ -150,13 +155,11 @@ class Recorder:
             del self.sink.parts[kept:]
 
     def _add_platform_pose(self, rows: FloatArray) -> None:
-        if not len(rows):
-            return
         lengths = np.ascontiguousarray(rows[:, SLICES["leg.length"]])
         g = self._geometry
-        poses = track_poses(lengths, self._at.guess, g.base, g.top, g.home)
+        at = self._at
+        poses = track_poses(lengths, at.pose, at.inverse, g.base, g.top, g.home)
         rows[:, SLICES["platform.pose"]] = poses
-        self._at.guess = poses[-1].copy()
 
     def _add_reference(
         self,

@@ -1,0 +1,48 @@
+"""Noise is a function of seed, channel and tick alone."""
+
+import numpy as np
+
+from ves_twin.simulator.codes import FAST_CHANNELS, SLOW
+from ves_twin.simulator.noise import BLOCK, NoiseStreams
+
+
+def test_a_tick_has_the_same_number_whatever_was_asked_before():
+    one, two = NoiseStreams(5), NoiseStreams(5)
+    one.window(-7000, 37)
+    one.window(3 * BLOCK, 37)
+    for tick in (-7000, -1, 0, BLOCK - 10, BLOCK, 5 * BLOCK + 3):
+        fast_one, slow_one = one.window(tick, 37)
+        fast_two, slow_two = two.window(tick, 37)
+        assert np.array_equal(fast_one, fast_two)
+        assert np.array_equal(slow_one[:3], slow_two[:3])
+
+
+def test_windows_join_without_a_seam():
+    streams = NoiseStreams(5)
+    start = BLOCK - 20
+    whole = streams.window(start, 40)[0].copy()
+    parts = [streams.window(start + k, 1)[0].copy() for k in range(40)]
+    assert np.array_equal(whole, np.vstack(parts))
+
+
+def test_slow_rows_change_once_in_sixteen_ticks():
+    streams = NoiseStreams(5)
+    first = streams.window(0, 1)[1][0].copy()
+    assert np.array_equal(first, streams.window(SLOW - 1, 1)[1][0])
+    assert not np.array_equal(first, streams.window(SLOW, 1)[1][0])
+
+
+def test_channels_and_seeds_are_independent_and_standard_normal():
+    numbers = NoiseStreams(5).window(0, BLOCK)[0].copy()
+    other = NoiseStreams(6).window(0, BLOCK)[0]
+    spread = 5.0 / np.sqrt(BLOCK)  # five standard errors of a correlation of nothing
+    correlation = np.corrcoef(numbers.T)
+    assert np.max(np.abs(correlation - np.eye(FAST_CHANNELS))) < spread
+    assert abs(np.corrcoef(numbers[:, 0], other[:, 0])[0, 1]) < spread
+    assert np.allclose(numbers.std(axis=0), 1.0, atol=5.0 / np.sqrt(2 * BLOCK))
+
+
+def test_noise_off_is_zero():
+    fast, slow = NoiseStreams(5, enabled=False).window(100, 37)
+    assert not fast.any()
+    assert not slow.any()

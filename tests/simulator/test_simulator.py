@@ -1,0 +1,183 @@
+"""The simulator repeats itself to the last bit, also from snapshots, and ends by name."""
+
+import copy
+
+import mujoco
+import numpy as np
+import pytest
+
+import ves_twin as vt
+from ves_twin.errors import ControllerError, UnreachableError
+from ves_twin.scenario.load import scenario_questions
+from ves_twin.simulator.outcome import Outcome
+
+SHORT = {"run.duration": 0.5, "run.settle": 0.5}
+
+
+def same(one: vt.Recording, two: vt.Recording) -> bool:
+    """Whether two recordings are equal to the last bit."""
+    return np.array_equal(one.time, two.time) and all(
+        np.array_equal(one[name], two[name]) for name in one.signals
+    )
+
+
+def test_same_seed_gives_the_same_recording_to_the_last_bit():
+    scenario = vt.Scenario.load("beam_horizontal_truth", {"run.duration": 1.0})
+    assert same(vt.simulate(scenario, seed=3), vt.simulate(scenario, seed=3))
+
+
+def test_another_seed_gives_another_recording():
+    scenario = vt.Scenario.load("beam_horizontal_truth", SHORT)
+    one, two = vt.simulate(scenario, seed=3), vt.simulate(scenario, seed=4)
+    assert not np.array_equal(one["sensor.wrench"], two["sensor.wrench"])
+
+
+@pytest.mark.parametrize("log", ["admittance", "leg"])
+def test_restored_snapshot_repeats_the_run_to_the_last_bit(log):
+    scenario = vt.Scenario.load("beam_horizontal_truth", {"run.duration": 4.0, "run.log": log})
+    sim = vt.Simulator(None, scenario, seed=1)
+    sim.advance(3.0)
+    snapshot = sim.snapshot()
+    sim.advance(10.0)
+    first = copy.deepcopy(sim.recorder.sink.collect())
+    sim.restore(snapshot)
+    assert sim.outcome is None
+    sim.advance(10.0)
+    second = sim.recorder.sink.collect()
+    assert np.array_equal(first[0], second[0])
+    for name, values in first[1].items():
+        assert np.array_equal(values, second[1][name]), name
+    assert sim.outcome is Outcome.COMPLETED
+
+
+def test_snapshot_taken_between_two_interrupts_repeats_too():
+    scenario = vt.Scenario.load("beam_horizontal_truth", {"run.duration": 1.0})
+    sim = vt.Simulator(None, scenario, seed=1)
+    sim.advance(0.5004)
+    assert sim.tick % sim.clock.admittance != 0
+    snapshot = sim.snapshot()
+    sim.advance(0.3)
+    first = sim.data.qpos.copy()
+    sim.restore(snapshot)
+    sim.advance(0.3)
+    assert np.array_equal(first, sim.data.qpos)
+
+
+def test_advancing_in_pieces_equals_advancing_at_once():
+    scenario = vt.Scenario.load("beam_horizontal_truth", SHORT)
+    whole, pieces = vt.Simulator(None, scenario), vt.Simulator(None, scenario)
+    whole.advance(0.5)
+    for _ in range(52):
+        pieces.advance(0.01001)
+    assert pieces.done
+    assert np.array_equal(whole.data.qpos, pieces.data.qpos)
+
+
+@pytest.mark.parametrize("name", list(scenario_questions()))
+def test_every_scenario_starts_settled_and_records_every_signal(name):
+    sim = vt.Simulator(None, vt.Scenario.load(name, {"run.duration": 0.2}))
+    sim.advance(0.2)
+    time, signals = sim.recorder.sink.collect()
+    assert sim.events[0].kind == "settled"
+    assert not any(event.kind == "not_still" for event in sim.events)
+    assert time[0] == 0.0
+    assert set(signals) == set(sim.recorder.names)
+    assert all(np.all(np.isfinite(values)) for values in signals.values())
+
+
+# The shortest admittance-loop wavelength is 12 ms; half a millisecond of travel in it is far more
+# than the closure's own error, so the limit tests the constraint and not the motion.
+CLOSURE_LIMIT = 1e-5  # m, the figure asked of every scenario
+
+
+@pytest.mark.parametrize("name", list(scenario_questions()))
+def test_legs_stay_closed_in_every_scenario(name):
+    sim = vt.Simulator(None, vt.Scenario.load(name, {"run.duration": 4.0}))
+    worst = 0.0
+    while not sim.done:
+        sim.advance(0.05)
+        if sim.outcome not in (None, Outcome.COMPLETED):
+            break
+        mujoco.mj_kinematics(sim.model, sim.data)
+        for i in range(1, 7):
+            gap = sim.data.site(f"leg{i}/rod_end").xpos - sim.data.site(f"platform/joint{i}").xpos
+            worst = max(worst, float(np.linalg.norm(gap)))
+    assert worst < CLOSURE_LIMIT
+
+
+def test_unstable_loop_ends_by_name_and_keeps_its_rows():
+    recording = vt.simulate(vt.Scenario.load("beam_horizontal_corrected"))
+    assert recording.info.outcome in {Outcome.WRENCH_RANGE, Outcome.LEG_LIMIT}
+    assert len(recording) > 5
+    assert recording.info.events[-1].kind == recording.info.outcome
+
+
+def test_command_beyond_the_margin_is_not_sent():
+    changes = {"platform.motion.amplitude": [0.0, 0.0, 0.3, 0.0, 0.0, 0.0], "run.duration": 5.0}
+    sim = vt.Simulator(None, vt.Scenario.load("position_sine", changes))
+    sim.advance(5.0)
+    travel = sim.plant.parameters.number("leg.stroke") / 2
+    margin = sim.plant.parameters.number("leg.margin")
+    home = sim.plant.geometry.lengths(np.zeros(6))
+    sent = sim.recorder.sink.collect()[1]["leg.command"]
+    assert sim.outcome is Outcome.LEG_LIMIT
+    assert np.max(np.abs(sent - home)) <= travel - margin
+
+
+def test_rate_faster_than_the_computer_is_an_overrun():
+    changes = {"platform.rate": 95.0, "run.duration": 1.0}
+    sim = vt.Simulator(None, vt.Scenario.load("beam_horizontal_truth", changes))
+    assert sim.outcome is Outcome.OVERRUN
+
+
+def test_wrench_beyond_the_sensor_range_ends_by_name():
+    changes = {"parameters": {"sensor.range": [1500.0, 1500.0, 900.0, 600.0, 600.0, 600.0]}}
+    sim = vt.Simulator(None, vt.Scenario.load("position_sine", {**SHORT, **changes}))
+    assert sim.outcome is Outcome.WRENCH_RANGE
+
+
+def test_state_that_is_not_finite_ends_as_diverged():
+    sim = vt.Simulator(None, vt.Scenario.load("position_sine", SHORT))
+    sim.data.qvel[:] = np.nan
+    sim.advance(0.1)
+    assert sim.outcome is Outcome.DIVERGED
+
+
+def test_start_pose_out_of_reach_is_refused_with_the_leg():
+    scenario = vt.Scenario.load("position_sine", {"platform.start": [0.4, 0, 0.2, 0, 0, 0]})
+    with pytest.raises(UnreachableError, match=r"needs leg \d"):
+        vt.Simulator(None, scenario)
+
+
+class _Broken:
+    def __init__(self, answer):
+        self.answer = answer
+
+    def update(self, time, readings):
+        if isinstance(self.answer, Exception):
+            raise self.answer
+        return self.answer
+
+
+@pytest.mark.parametrize(
+    "answer",
+    [np.full(6, np.nan), np.zeros(5), np.zeros((6, 1)), None, [0.0] * 6, ValueError("no\nroot")],
+)
+def test_controller_that_fails_is_named_in_one_line(answer):
+    sim = vt.Simulator(None, vt.Scenario.load("position_sine", SHORT))
+    sim.computers.controller = _Broken(answer)
+    with pytest.raises(ControllerError, match="controller _Broken") as caught:
+        sim.advance(0.1)
+    assert "\n" not in str(caught.value)
+
+
+def test_readings_cannot_be_written_by_a_controller():
+    sim = vt.Simulator(None, vt.Scenario.load("position_sine", SHORT))
+    with pytest.raises(ValueError, match="read-only"):
+        sim.computers.readings.leg_length[0] = 1.0
+
+
+def test_real_admittance_rate_is_the_nearest_whole_period():
+    sim = vt.Simulator(None, vt.Scenario.load("beam_horizontal_truth", SHORT))
+    assert sim.clock.admittance == 37
+    assert sim.clock.rate == pytest.approx(79.26, abs=0.01)
