@@ -52,7 +52,7 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--rounds", type=int, default=60)
     rounds = parser.parse_args().rounds
-    print(f"{'logging':<12}{'zero-g reference':<18}{'ratio':>8}{'5 %':>8}{'95 %':>8}{'x real time':>13}")
+    print("logging     zero-g reference     ratio     5 %    95 %  x real time")
     for log in ("admittance", "leg", "tick"):
         for references in (False, True):
             with tempfile.TemporaryDirectory() as folder:

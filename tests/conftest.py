@@ -1,19 +1,75 @@
-"""Shared fixtures: short runs that many tests look at are made once."""
+"""Shared fixtures: short runs made once, and figures that tests measure and docs print."""
 
 from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
 
 import pytest
 
 import ves_twin as vt
 
 
-@pytest.fixture(scope="session")
-def beam_run() -> vt.Recording:
-    """Five seconds of the beam scenario: the arm's move and the first swing."""
-    return vt.simulate(vt.Scenario.load("beam_horizontal_truth", {"run.duration": 5.0}))
+@dataclass(frozen=True)
+class Figure:
+    """One measured number beside what was asked of it."""
+
+    what: str
+    value: float
+    limit: float
+    unit: str
+    test: str
+
+
+FIGURES = pytest.StashKey[list[Figure]]()
+
+
+def pytest_addoption(parser: pytest.Parser) -> None:
+    parser.addoption("--figures", metavar="FILE", help="write the measured figures as a page")
+
+
+def pytest_configure(config: pytest.Config) -> None:
+    config.stash[FIGURES] = []
+
+
+@pytest.fixture
+def figure(request: pytest.FixtureRequest) -> Callable[[str, float, float, str], None]:
+    """`figure(what, value, limit, unit)`: assert value <= limit, and keep it for the page."""
+
+    def measure(what: str, value: float, limit: float, unit: str) -> None:
+        test = request.node.nodeid.split("[")[0]
+        request.config.stash[FIGURES].append(Figure(what, float(value), limit, unit, test))
+        assert value <= limit, f"{what}: {value:.3g} {unit}, limit {limit:.3g}"
+
+    return measure
+
+
+def pytest_sessionfinish(session: pytest.Session) -> None:
+    path = session.config.getoption("--figures")
+    if path:
+        Path(path).write_text(_page(session.config.stash[FIGURES]), encoding="utf-8")
+
+
+def _page(figures: list[Figure]) -> str:
+    lines = [
+        "# Figures of the rig",
+        "",
+        "Measured by the tests named beside them; `make figures` writes this page anew.",
+        "Each row repeats with `.venv/bin/python -m pytest TEST`. Speed is in"
+        " [speed.md](speed.md), since it depends on the machine.",
+        "",
+        "| what | measured | asked | test |",
+        "|---|--:|--:|---|",
+    ]
+    for f in figures:
+        lines.append(
+            f"| {f.what} | {f.value:.3g} {f.unit} | <= {f.limit:.3g} {f.unit} | `{f.test}` |"
+        )
+    return "\n".join(lines) + "\n"
 
 
 @pytest.fixture(scope="session")
-def quiet_beam() -> vt.Scenario:
-    """The beam scenario without noise, short."""
-    return vt.Scenario.load("beam_horizontal_truth", {"run.duration": 3.0, "run.noise": False})
+def beam_minute() -> vt.Recording:
+    """The beam scenario as shipped, 60 s."""
+    return vt.simulate(vt.Scenario.load("beam_horizontal_truth"))

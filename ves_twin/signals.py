@@ -66,9 +66,7 @@ _TABLE = (
     _signal("leg.length", _LEGS, "m", Role.MEASUREMENT, "leg", "length by the transducer"),
     _signal("valve.command", _LEGS, "1", Role.COMMAND, "leg", "spool command, -1 to 1"),
     _signal("platform.command", _POSE, _POSE_UNITS, Role.COMMAND, _HOME, "commanded pose"),
-    _signal(
-        "platform.pose", _POSE, _POSE_UNITS, Role.MEASUREMENT, _HOME, "pose from leg lengths"
-    ),
+    _signal("platform.pose", _POSE, _POSE_UNITS, Role.MEASUREMENT, _HOME, "pose from leg lengths"),
     _signal(
         "sensor.wrench",
         _WRENCH,
@@ -111,9 +109,7 @@ _TABLE = (
     ),
     _signal("truth.arm_q", _JOINTS, "rad", Role.TRUTH, "joint", "true joint angle"),
     _signal("truth.leg_force", _LEGS, "N", Role.TRUTH, "leg", "force of the cylinder"),
-    _signal(
-        "truth.leg_bending", _BENDING, "rad", Role.TRUTH, "leg", "bending angles of each leg"
-    ),
+    _signal("truth.leg_bending", _BENDING, "rad", Role.TRUTH, "leg", "bending angles of each leg"),
 )
 
 SIGNALS: dict[str, Signal] = {signal.name: signal for signal in _TABLE}

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 FloatArray = NDArray[np.float64]
+ComplexArray = NDArray[np.complex128]
 SingleArray = NDArray[np.float32]
 IntArray = NDArray[np.int64]
 Block = np.ndarray[tuple[int, ...], np.dtype[np.void]]

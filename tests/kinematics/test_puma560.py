@@ -30,7 +30,7 @@ def closed_form_origins(q):
     s23, c23 = np.sin(q[1] + q[2]), np.cos(q[1] + q[2])
     o1 = np.array([0.0, 0.0, D0 + D1])
     o2 = np.array([A2 * c1 * c2 + D2 * s1, A2 * s1 * c2 - D2 * c1, A2 * s2 + D0 + D1])
-    o3 = o2 + [A3 * c1 * c23 + D3 * s1, A3 * s1 * c23 - D3 * c1, A3 * s23]
+    o3 = o2 + np.array([A3 * c1 * c23 + D3 * s1, A3 * s1 * c23 - D3 * c1, A3 * s23])
     return np.array([o1, o2, o3])
 
 

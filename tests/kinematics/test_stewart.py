@@ -100,9 +100,22 @@ def test_tracking_survives_jumps_across_the_workspace(geometry, poses):
     assert_tracked(geometry, poses)
 
 
+def track(geometry, pieces, start):
+    g, pose = geometry, start.copy()
+    inverse = np.linalg.inv(pose_jacobian(pose, g.base, g.top, g.home))
+    return np.vstack([track_poses(rows, pose, inverse, g.base, g.top, g.home) for rows in pieces])
+
+
+def test_a_series_in_pieces_gives_the_same_bits_as_a_whole(geometry, poses):
+    lengths = np.array([geometry.lengths(pose) for pose in poses])
+    whole = track(geometry, [lengths], poses[0])
+    pieces = track(geometry, [lengths[:7], lengths[7:8], lengths[8:]], poses[0])
+    np.testing.assert_array_equal(whole, pieces)
+
+
 def assert_tracked(geometry, series):
     lengths = np.array([geometry.lengths(pose) for pose in series])
-    tracked = track_poses(lengths, series[0], geometry.base, geometry.top, geometry.home)
+    tracked = track(geometry, [lengths], series[0])
     np.testing.assert_allclose(tracked, series, atol=INVERSION)
     np.testing.assert_allclose(
         tracked,
@@ -160,8 +173,7 @@ def test_lengths_at_random_are_solved_or_refused_but_never_crash(geometry):
         lengths = rng.uniform(-0.5, 4.0, 6)
         try:
             pose = geometry.pose(lengths)
-        except UnreachableError as error:
-            assert "\n" not in str(error)
+        except UnreachableError:
             refused += 1
         else:
             np.testing.assert_allclose(geometry.lengths(pose), lengths, atol=INVERSION)

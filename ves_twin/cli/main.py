@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import os
+import re
 import sys
 from collections.abc import Sequence
 from typing import NoReturn
@@ -24,19 +25,7 @@ class Parser(argparse.ArgumentParser):
 
     def error(self, message: str) -> NoReturn:
         """Raise instead of printing the usage."""
-        prefix = "unrecognized arguments: "
-        if message.startswith(prefix):
-            name = message.removeprefix(prefix).split()[0].split("=")[0]
-            raise UnknownNameError("option", name, self._option_string_actions)
         raise VesTwinError(f"{self.prog}: {message}")
-
-    def parse_known_args(  # type: ignore[no-untyped-def, override]  # noqa: D102
-        self, args=None, namespace=None  # noqa: ANN001
-    ):
-        found, rest = super().parse_known_args(args, namespace)
-        if rest and self.prog != "ves-twin":
-            self.error(f"unrecognized arguments: {' '.join(rest)}")
-        return found, rest
 
 
 def build_parser() -> Parser:
@@ -53,6 +42,14 @@ def build_parser() -> Parser:
     return parser
 
 
+def _options(command: str) -> list[str]:
+    """Option names of a command, for the nearest match."""
+    probe = Parser(prog=command)
+    if command in COMMANDS:
+        COMMANDS[command].add_arguments(probe)
+    return re.findall(r"--[a-z][a-z-]+", probe.format_help())
+
+
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run a command.
 
@@ -67,7 +64,9 @@ def main(arguments: Sequence[str] | None = None) -> int:
         if not words:
             parser.print_help()
             return BAD_INPUT
-        found = parser.parse_args(words)
+        found, rest = parser.parse_known_args(words)
+        if rest:
+            raise UnknownNameError("option", rest[0].split("=")[0], _options(words[0]))
         return int(COMMANDS[found.command].execute(found))
     except VesTwinError as error:
         print(f"ves-twin: {one_line(error)}", file=sys.stderr)

@@ -22,12 +22,13 @@ class RunProgress:
             unit="s",
             file=sys.stderr,
             disable=None,  # silent where stderr is no terminal
-            bar_format="{desc} {percentage:3.0f}% |{bar}| {n:.1f}/{total:.1f} s simulated [{elapsed}]",
+            bar_format="{desc} {percentage:3.0f}% |{bar}| {n:.1f}/{total:.1f} s [{elapsed}]",
         )
         self._stopped = False
         self._before: Any = None
 
     def __call__(self, reached: float) -> None:
+        """Move the bar to the time reached [s]; stop if Ctrl-C was pressed."""
         self._bar.update(reached - self._bar.n)
         if self._stopped:
             raise KeyboardInterrupt

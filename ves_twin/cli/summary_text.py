@@ -30,6 +30,10 @@ def summary_text(summary: Summary, folder: Path) -> str:
     return "\n".join(lines)
 
 
+def _share(value: float | None) -> str:
+    return "-" if value is None else f"{value:.1%}"
+
+
 def _ours(name: str) -> bool:
     return name == SUMMARY_NAME or name.endswith((".parquet", ".rrd", ".arrows"))
 
@@ -41,9 +45,14 @@ def _error_table(errors: dict[str, AxisError]) -> list[str]:
     ]
     for axis, error in errors.items():
         unit = "mrad" if axis.startswith("r") else "mm"
-        rows.append(
-            f"  {axis:<3}{unit:>5}{error.rms * _MILLI:8.3f}{error.peak * _MILLI:10.3f}"
-            f"{error.relative:14.1%}{error.rms_leg_lag * _MILLI:13.3f}{error.rms_rest * _MILLI:11.3f}"
+        rms, peak, legs, rest = (
+            _MILLI * value for value in (error.rms, error.peak, error.rms_leg_lag, error.rms_rest)
         )
-    rows.append("  (legs alone: rms that the legs' bandwidth alone causes; the rest: rms without it)")
+        share = _share(error.relative)
+        rows.append(
+            f"  {axis:<3}{unit:>5}{rms:8.3f}{peak:10.3f}{share:>14}{legs:13.3f}{rest:11.3f}"
+        )
+    rows.append(
+        "  (legs alone: rms that the legs' bandwidth alone causes; the rest: rms without it)"
+    )
     return rows

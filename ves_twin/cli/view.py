@@ -37,8 +37,8 @@ def execute(arguments: argparse.Namespace) -> int:
     from ves_twin.recording.files import load_recording
     from ves_twin.rerun_log.write import write_rrd
 
-    with tempfile.TemporaryDirectory(prefix="ves_twin-") as folder:
-        rrd = write_rrd(load_recording(path), Path(folder) / "run.rrd")
+    with tempfile.TemporaryDirectory(prefix="ves_twin-") as scratch:
+        rrd = write_rrd(load_recording(path), Path(scratch) / "run.rrd")
         return open_viewer(rrd, arguments.web)
 
 

@@ -29,16 +29,26 @@ class GravityCompensation(abc.ABC):
     def wrench(self, time: float, readings: Readings) -> FloatArray:
         """Gravity wrench of the payload on the platform, sensor axes [N, N m] (6,)."""
 
+    @abc.abstractmethod
     def snapshot(self) -> object:
-        """A copy of what changes from cycle to cycle; nothing unless overridden."""
-        return None
+        """A copy of what changes from cycle to cycle."""
 
+    @abc.abstractmethod
     def restore(self, snapshot: object) -> None:
         """Go back to a snapshot."""
 
 
+class _Stateless(GravityCompensation):
+    def snapshot(self) -> object:
+        """Nothing changes from cycle to cycle."""
+        return None
+
+    def restore(self, snapshot: object) -> None:
+        """Nothing to go back to."""
+
+
 @final
-class NoCompensation(GravityCompensation):
+class NoCompensation(_Stateless):
     """Nothing is subtracted: the payload's weight pushes the emulated base."""
 
     subtracts = False
@@ -49,7 +59,7 @@ class NoCompensation(GravityCompensation):
 
 
 @final
-class TruthCompensation(GravityCompensation):
+class TruthCompensation(_Stateless):
     """The plant's own gravity wrench, for tests: no laboratory has it."""
 
     def __init__(self, port: TruthPort) -> None:

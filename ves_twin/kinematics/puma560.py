@@ -82,9 +82,7 @@ class Puma560:
         """End of the forearm O3 in t [m] (3,)."""
         return np.array(self.transforms(q)[2, :3, 3])
 
-    def inverse(
-        self, tip: FloatArray, elbow: int = -1, shoulder: int = 1
-    ) -> FloatArray:
+    def inverse(self, tip: FloatArray, elbow: int = -1, shoulder: int = 1) -> FloatArray:
         """Joint angles that bring the end of the forearm to a point.
 
         With D = d2 + d3 the plane of the arm is e^{i q1} (r - i D), so

@@ -199,7 +199,9 @@ class StewartGeometry:
             top_offset: top plate (frame t) above the platform joint plane [m].
         """
         thirds = np.radians([0.0, 120.0, 240.0])
-        base_angles = np.ravel(np.column_stack([thirds - base_half_angle, thirds + base_half_angle]))
+        base_angles = np.ravel(
+            np.column_stack([thirds - base_half_angle, thirds + base_half_angle])
+        )
         sixth = np.pi / 3
         top_angles = np.ravel(
             np.column_stack([thirds - sixth + top_half_angle, thirds + sixth - top_half_angle])

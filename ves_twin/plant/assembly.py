@@ -5,6 +5,7 @@ from __future__ import annotations
 import mujoco
 import numpy as np
 
+from ves_twin.errors import InvalidInputError, one_line
 from ves_twin.plant.arm_part import arm_part
 from ves_twin.plant.leg_part import leg_part
 from ves_twin.plant.parameters import ParameterTable
@@ -46,17 +47,33 @@ def assemble(plant: Plant, timestep: float) -> mujoco.MjSpec:
     sensor = _part("sensor.xml")
     sensor.site("wrench").pos = parameters.array("sensor.position")
     spec.attach(sensor, prefix="sensor/", site=spec.site("platform/top"))
-    spec.attach(arm_part(_part("puma560.xml"), parameters), prefix="arm/", site=spec.site("sensor/mount"))
+    spec.attach(
+        arm_part(_part("puma560.xml"), parameters), prefix="arm/", site=spec.site("sensor/mount")
+    )
     _close_legs(spec, timestep)
     _actuators_and_sensors(spec)
     return spec
+
+
+def compile_model(spec: mujoco.MjSpec) -> mujoco.MjModel:
+    """Compile a specification.
+
+    Raises:
+        InvalidInputError: numbers that no rigid body can have, in MuJoCo's words.
+    """
+    try:
+        return spec.compile()
+    except ValueError as error:
+        raise InvalidInputError(
+            f"plant {spec.modelname}", one_line(error), "a rig that MuJoCo can compile"
+        ) from None
 
 
 def assemble_free_arm(plant: Plant) -> mujoco.MjSpec:
     """The arm on a base with six free coordinates and without gravity, for the zero-g reference.
 
     The base moves by three slides along X, Y, Z and three hinges about Z, Y, X, so that its
-    coordinates are those of a platform pose: R = Rz Ry Rx. Order of joints: x y z rz ry rx q1 q2 q3.
+    coordinates are those of a platform pose, R = Rz Ry Rx. Joints: x y z rz ry rx q1 q2 q3.
     """
     spec = mujoco.MjSpec()
     spec.modelname = f"{plant.name} zero-g"
@@ -93,9 +110,7 @@ def _part(file: str) -> mujoco.MjSpec:
     return mujoco.MjSpec.from_file(str(mjcf_part(file)))
 
 
-def _platform(
-    spec: mujoco.MjSpec, parameters: ParameterTable, joints: FloatArray
-) -> mujoco.MjSpec:
+def _platform(spec: mujoco.MjSpec, parameters: ParameterTable, joints: FloatArray) -> mujoco.MjSpec:
     top = spec.body("top")
     top.mass = parameters.number("platform.mass")
     top.inertia = parameters.array("platform.inertia")
@@ -124,7 +139,10 @@ def _actuators_and_sensors(spec: mujoco.MjSpec) -> None:
         spec.add_actuator(name=f"leg{i}", target=f"leg{i}/slide", trntype=joint).set_to_motor()
     for name in JOINTS:
         spec.add_actuator(name=name, target=f"arm/{name}", trntype=joint).set_to_motor()
-    for name, kind in (("force", mujoco.mjtSensor.mjSENS_FORCE), ("torque", mujoco.mjtSensor.mjSENS_TORQUE)):
+    for name, kind in (
+        ("force", mujoco.mjtSensor.mjSENS_FORCE),
+        ("torque", mujoco.mjtSensor.mjSENS_TORQUE),
+    ):
         spec.add_sensor(
             name=name, type=kind, objtype=mujoco.mjtObj.mjOBJ_SITE, objname="sensor/wrench"
         )

@@ -59,7 +59,9 @@ def leg_part(
     return spec, quaternion
 
 
-def _slender(body: mujoco.MjsBody, mass: float, length: float, radius: float, middle: float) -> None:
+def _slender(
+    body: mujoco.MjsBody, mass: float, length: float, radius: float, middle: float
+) -> None:
     across = mass * length**2 / 12.0
     body.mass = mass
     body.ipos = [0.0, 0.0, middle]

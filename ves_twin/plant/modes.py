@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import mujoco
 import numpy as np
 
-from ves_twin.plant.assembly import JOINTS, LEGS, assemble
+from ves_twin.plant.assembly import JOINTS, LEGS, assemble, compile_model
 from ves_twin.plant.layout import Layout
 from ves_twin.plant.plant import Plant
 from ves_twin.plant.statics import place_rig, static_leg_forces
@@ -86,7 +86,7 @@ def _resting(
         joint = spec.joint(f"arm/{name}")
         joint.stiffness = np.array([stiffness[j], 0.0, 0.0])
         joint.damping = joint.damping + np.array([damping[j], 0.0, 0.0])
-    model = spec.compile()
+    model = compile_model(spec)
     data = mujoco.MjData(model)
     layout = Layout.of(model)
     place_rig(data, layout, plant.geometry, pose, q)
@@ -113,4 +113,4 @@ def _spring_energy(model: mujoco.MjModel, shape: FloatArray) -> FloatArray:
     for j in range(model.njnt):
         if model.jnt_type[j] != mujoco.mjtJoint.mjJNT_FREE:
             stiffness[model.jnt_dofadr[j]] = np.ravel(model.jnt_stiffness[j])[0]
-    return stiffness * np.abs(shape) ** 2
+    return np.asarray(stiffness * np.abs(shape) ** 2)

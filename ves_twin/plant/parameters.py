@@ -66,9 +66,10 @@ class Parameter:
         if array.shape != self.value.shape:
             shape = f"shape {self.value.shape}" if self.value.shape else "a single number"
             raise InvalidInputError(self.name, value, shape)
-        return replace(self, value=array)._checked(value)
+        return replace(self, value=array).checked(value)
 
-    def _checked(self, came: object) -> Parameter:
+    def checked(self, came: object) -> Parameter:
+        """This parameter, if its value is within bounds; `came` is what a message shows."""
         if np.any(self.value < self.low) or np.any(self.value > self.high):
             bounds = f"a value of at least {self.low:g} {self.unit}"
             if np.isfinite(self.high):
@@ -186,7 +187,7 @@ def _parameter(name: str, entry: Mapping[str, object]) -> Parameter:
         high=float(_numbers(entry.get("high", "inf"), unit, f"{name}.high")),
         grade=Grade(str(entry["grade"])),
         source=str(entry["source"]),
-    )._checked(entry["value"])
+    ).checked(entry["value"])
 
 
 def _numbers(value: object, unit: str, what: str) -> FloatArray:

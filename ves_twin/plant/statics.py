@@ -52,7 +52,11 @@ def universal_angles(geometry: StewartGeometry, pose: FloatArray) -> FloatArray:
 
 
 def static_leg_forces(
-    model: mujoco.MjModel, data: mujoco.MjData, layout: Layout, geometry: StewartGeometry, pose: FloatArray
+    model: mujoco.MjModel,
+    data: mujoco.MjData,
+    layout: Layout,
+    geometry: StewartGeometry,
+    pose: FloatArray,
 ) -> FloatArray:
     """Cylinder forces (6,) [N] that hold the platform and its payload at rest, legs weightless."""
     mujoco.mj_forward(model, data)

@@ -67,7 +67,9 @@ class RecordingStream:
                     writer.write_table(table)
             os.replace(partial, target)
         except OSError as error:
-            raise FileAccessError(f"cannot write {target}: {error}; rows kept in {self._path}") from None
+            raise FileAccessError(
+                f"cannot write {target}: {error}; rows kept in {self._path}"
+            ) from None
         self._path.unlink()
         return target
 

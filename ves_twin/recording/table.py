@@ -64,7 +64,9 @@ def recording_of(table: pa.Table, where: object) -> Recording:
     try:
         info = RecordingInfo.from_dict(json.loads(metadata[KEY]))
     except (ValueError, TypeError) as error:
-        raise InvalidInputError(f"metadata of {where}", str(error), "a ves-twin recording") from None
+        raise InvalidInputError(
+            f"metadata of {where}", str(error), "a ves-twin recording"
+        ) from None
     groups: dict[str, list[str]] = {}
     for column in table.column_names[1:]:
         signal = (table.schema.field(column).metadata or {}).get(b"signal", b"").decode()

@@ -23,26 +23,21 @@ def account(recording: Recording, note: str = "") -> str:
         recording: what it is about.
         note: what differs between the drawn rig and the recorded one.
     """
-    info = recording.info
-    parts = [f"## {info.scenario or 'Recording'}"]
-    question = settings_of(info).get("question")
-    if question:
-        parts.append(str(question))
-    parts += [_facts(recording, note), _error_table(recording), _versions(info)]
+    question = str(settings_of(recording.info).get("question") or "")
+    parts = [question, _error_table(recording), *_facts(recording, note)]
     return "\n\n".join(part for part in parts if part) + "\n"
 
 
-def _facts(recording: Recording, note: str) -> str:
+def _facts(recording: Recording, note: str) -> tuple[str, ...]:
     info = recording.info
-    lines = [
+    return (
         f"**{_outcome(info)}**",
-        f"{info.origin}, plant {info.plant or 'unknown'} (hash {info.plant_hash or 'unknown'}),"
-        f" seed {info.seed}, {len(recording)} rows on the {info.log or 'unknown'} clock,"
-        f" {_period(info)}",
-    ]
-    if note:
-        lines.append(f"Drawing: {note}")
-    return "\n\n".join(lines)
+        f"{info.scenario or 'no scenario'}, {info.origin}; plant {info.plant or 'unknown'}"
+        f" (hash {info.plant_hash or 'unknown'}), seed {info.seed}; {len(recording)} rows on the"
+        f" {info.log or 'unknown'} clock, {_period(info)}",
+        note,
+        ", ".join(f"{name} {version}" for name, version in info.versions.items()),
+    )
 
 
 def _outcome(info: RecordingInfo) -> str:
@@ -70,15 +65,10 @@ def _error_table(recording: Recording) -> str:
         factor, label = shown("truth.pose", unit)
         values = (error.rms, error.peak, error.rms_leg_lag, error.rms_rest)
         numbers = [f"{factor * value:.3g}" for value in values]
-        rows.append((f"{axis} [{label}]", *numbers, f"{100 * error.relative:.2g} %"))
+        relative = "-" if error.relative is None else f"{100 * error.relative:.2g} %"
+        rows.append((f"{axis} [{label}]", *numbers, relative))
     head = ("axis", "rms", "peak", "rms, leg lag alone", "rms, the rest", "peak / motion")
     return "Emulation error: true pose less zero-g reference\n\n" + _table(head, rows)
-
-
-def _versions(info: RecordingInfo) -> str:
-    if not info.versions:
-        return ""
-    return "Versions: " + ", ".join(f"{name} {v}" for name, v in info.versions.items())
 
 
 def _table(head: tuple[str, ...], rows: Sequence[tuple[str, ...]]) -> str:

@@ -9,7 +9,7 @@ import rerun.blueprint as rrb
 
 from ves_twin.rerun_log.colours import BACKGROUND
 
-EYE = (2.6, -2.5, 2.1)
+EYE = (2.4, -2.3, 2.0)
 LOOK_AT = (0.0, 0.0, 1.05)
 """Camera and the point it looks at [m], inertial frame: the whole rig from its front corner."""
 
@@ -60,7 +60,7 @@ _PAGES = (
     ),
     Page(
         "Legs",
-        1,
+        2,
         (
             Plot("Leg command [mm]", ("signals/leg.command",)),
             Plot("Leg length [mm]", ("signals/leg.length",), legend=False),
@@ -89,6 +89,7 @@ _PAGES = (
         1,
         (
             Plot("Joint angle and command [rad]", ("signals/arm.q", "signals/arm.command")),
+            Plot("Servo error: command less angle [mrad]", ("arm/error",)),
             Plot("Joint torque [N*m]", ("signals/arm.torque",)),
         ),
     ),
@@ -124,7 +125,7 @@ def blueprint_of(entities: frozenset[str]) -> rrb.Blueprint:
     upper = rrb.Horizontal(_machine(), rrb.Tabs(*pages, active_tab=0), column_shares=[5, 6])
     lower = rrb.Horizontal(_events(), _account(), column_shares=[5, 6])
     return rrb.Blueprint(
-        rrb.Vertical(upper, lower, row_shares=[5, 2]),
+        rrb.Vertical(upper, lower, row_shares=[9, 4]),
         rrb.TopPanel(state="collapsed"),
         rrb.BlueprintPanel(state="collapsed"),
         rrb.SelectionPanel(state="collapsed"),

@@ -65,7 +65,7 @@ def _plant_of(info: RecordingInfo) -> tuple[Plant, str]:
     try:
         plant = Plant.load(name).with_values(changes if isinstance(changes, dict) else {})
     except VesTwinError as error:
-        return Plant.load(DEFAULT_PLANT), f"drawn as {DEFAULT_PLANT}: {error}"
+        return Plant.load(DEFAULT_PLANT), f"The drawing shows {DEFAULT_PLANT}: {error}"
     if info.plant_hash and plant.hash != info.plant_hash:
-        return plant, f"drawn with plant hash {plant.hash}; the plant has changed since the run"
+        return plant, f"The drawing shows plant hash {plant.hash}: the plant has changed since"
     return plant, ""

@@ -61,7 +61,7 @@ def series_of(recording: Recording) -> tuple[Series, ...]:
     Lengths are shown in mm and small angles in mrad; the arm's joint angles stay in rad.
     """
     found = [s for name in recording.signals for s in _signal_series(recording, name)]
-    return (*found, *_base_motion(recording), *_leg_error(recording), *_dynamic_wrench(recording))
+    return (*found, *_base_motion(recording), *_errors(recording))
 
 
 def shown(name: str, unit: str) -> tuple[float, str]:
@@ -129,27 +129,30 @@ def _beside(sources: list[FloatArray], column: int, factor: float) -> Callable[[
     return lambda rows: factor * np.column_stack([s[rows, column] for s in sources])
 
 
-def _leg_error(recording: Recording) -> list[Series]:
-    if not {"leg.command", "leg.length"} <= set(recording.signals):
-        return []
-    return _differences(recording, "legs/error", "leg.command", "leg.length")
-
-
-def _dynamic_wrench(recording: Recording) -> list[Series]:
-    if not {"sensor.wrench", "gravity.estimate"} <= set(recording.signals):
-        return []
-    return _differences(recording, "dynamic_wrench", "sensor.wrench", "gravity.estimate")
+def _errors(recording: Recording) -> list[Series]:
+    """What the loops leave over: the legs, the arm's servo, and the wrench beyond gravity."""
+    pairs = (
+        ("legs/error", "leg.command", "leg.length"),
+        ("arm/error", "arm.command", "arm.q"),
+        ("dynamic_wrench", "sensor.wrench", "gravity.estimate"),
+    )
+    return [
+        series
+        for entity, minuend, other in pairs
+        if {minuend, other} <= set(recording.signals)
+        for series in _differences(recording, entity, minuend, other)
+    ]
 
 
 def _differences(recording: Recording, entity: str, minuend: str, other: str) -> list[Series]:
-    """Minuend less the other signal, one entity per unit."""
+    """Minuend less the other signal, one entity per unit, angles in mrad even for joints."""
     signal = SIGNALS[minuend]
     units = tuple(dict.fromkeys(signal.units))
     first, second = recording[minuend], recording[other]
     result = []
     for unit in units:
         columns = [i for i, u in enumerate(signal.units) if u == unit]
-        factor, label = shown(minuend, unit)
+        factor, label = SHOWN_UNITS.get(unit, (1.0, unit))
         result.append(
             Series(
                 entity if len(units) == 1 else f"{entity}/{GROUPS[unit]}",

@@ -95,6 +95,7 @@ def _write(recording: Recording, path: Path) -> None:
         _send_ghost(stream, recording, rig)
     for lines in series:
         _send_series(stream, recording, lines)
+    _flush(stream)
     stream.disconnect()
 
 
@@ -125,7 +126,7 @@ def _send_frames(
                 translation=frames.position[:, i], quaternion=frames.turn[:, i]
             )
             stream.send_columns(f"{root}/{body}", times, poses)
-        stream.flush()
+        _flush(stream)
 
 
 def _send_series(stream: rr.RecordingStream, recording: Recording, lines: Series) -> None:
@@ -134,7 +135,7 @@ def _send_series(stream: rr.RecordingStream, recording: Recording, lines: Series
     for rows in _chunks(len(recording)):
         times = _times(recording, np.arange(rows.start, rows.stop))
         stream.send_columns(lines.entity, times, rr.Scalars.columns(scalars=lines.values(rows)))
-    stream.flush()
+    _flush(stream)
 
 
 def _send_events(stream: rr.RecordingStream, recording: Recording) -> None:
@@ -147,6 +148,13 @@ def _send_events(stream: rr.RecordingStream, recording: Recording) -> None:
     texts = [f"{event.kind}: {event.message}" for event in events]
     times = [rr.TimeColumn("sim_time", duration=at), rr.TimeColumn("row", sequence=rows)]
     stream.send_columns("events", times, rr.TextLog.columns(text=texts, level=levels))
+
+
+def _flush(stream: rr.RecordingStream) -> None:
+    try:
+        stream.flush()
+    except RuntimeError as error:  # the writer's thread has ended: disk full, quota
+        raise OSError(str(error)) from None
 
 
 def _chunks(count: int) -> Iterator[slice]:

@@ -36,7 +36,10 @@ def _row(value: object, units: tuple[str, ...]) -> tuple[float, ...]:
     if not isinstance(value, list | tuple) or len(value) != len(units):
         raise ValueError(f"got {value!r}, expected {len(units)} numbers in {', '.join(units)}")
     try:
-        return tuple(to_si(v, unit, f"[{i}]") for i, (v, unit) in enumerate(zip(value, units), 1))
+        return tuple(
+            to_si(v, unit, f"[{i}]")
+            for i, (v, unit) in enumerate(zip(value, units, strict=True), 1)
+        )
     except InvalidInputError as error:
         raise ValueError(str(error)) from None
 
@@ -89,9 +92,9 @@ class SineMotion(Part):
     kind: Literal["sine"]
     amplitude: Pose
     frequency: Annotated[tuple[Hertz, ...], Field(min_length=6, max_length=6)]
-    phase: Annotated[tuple[Annotated[float, _si("rad")], ...], Field(min_length=6, max_length=6)] = (
-        ZERO_POSE
-    )
+    phase: Annotated[
+        tuple[Annotated[float, _si("rad")], ...], Field(min_length=6, max_length=6)
+    ] = ZERO_POSE
     fade: Annotated[Seconds, Field(ge=0)] = 1.0
 
 
@@ -117,10 +120,15 @@ class Platform(Part):
 
 
 class Gravity(Part):
-    """Gravity compensation; `age` is how many cycles old the estimate is when it is used."""
+    """Gravity compensation; `age` is how many cycles old the estimate is when it is used.
+
+    The estimate comes from another computer through shared memory, one cycle late (thesis 2.4.2).
+    That is also nearly the delay of the force sensor's 20 Hz low-pass, so a fresher estimate is
+    a worse one: it runs ahead of the reading that it is taken off.
+    """
 
     method: Annotated[str, _named("gravity method", GRAVITY_COMPENSATIONS)] = "none"
-    age: Annotated[int, Field(ge=0, le=50)] = 0
+    age: Annotated[int, Field(ge=0, le=50)] = 1
     zero: bool = True
 
 

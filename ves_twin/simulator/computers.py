@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections import deque
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -15,6 +16,15 @@ from ves_twin.control.safety import NOT_A_POSE, SAFE, checked_lengths
 from ves_twin.errors import ControllerError, VesTwinError, one_line
 from ves_twin.simulator.board import Board
 from ves_twin.types import Block, FloatArray
+
+
+@dataclass(frozen=True)
+class ComputersSnapshot:
+    """What changes from cycle to cycle outside the board and the state block."""
+
+    controller: object
+    gravity: object
+    shared: tuple[FloatArray, ...]
 
 
 class Computers:
@@ -104,18 +114,17 @@ class Computers:
         for i in range(4):
             self._points[i] = self._arm.q(time + (i - 2) * self._period)
 
-    def snapshot(self) -> object:
-        """Everything that changes from cycle to cycle outside the board and the state block."""
+    def snapshot(self) -> ComputersSnapshot:
+        """A copy of everything that the next cycle depends on."""
         shared = tuple(estimate.copy() for estimate in self._shared)
-        return self.controller.snapshot(), self.gravity.snapshot(), shared
+        return ComputersSnapshot(self.controller.snapshot(), self.gravity.snapshot(), shared)
 
-    def restore(self, snapshot: object) -> None:
+    def restore(self, snapshot: ComputersSnapshot) -> None:
         """Go back to a snapshot."""
-        controller, gravity, shared = snapshot  # type: ignore[misc]
-        self.controller.restore(controller)
-        self.gravity.restore(gravity)
+        self.controller.restore(snapshot.controller)
+        self.gravity.restore(snapshot.gravity)
         self._shared.clear()
-        self._shared.extend(estimate.copy() for estimate in shared)
+        self._shared.extend(estimate.copy() for estimate in snapshot.shared)
 
     def _decide(self, time: float) -> FloatArray:
         try:

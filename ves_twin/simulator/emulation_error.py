@@ -17,14 +17,15 @@ class AxisError:
     Attributes:
         rms: root mean square of truth less reference [m or rad].
         peak: its largest magnitude [m or rad].
-        relative: peak over the peak of the reference's translation (or rotation) norm.
+        relative: peak over the peak of the reference's translation (or rotation)
+            norm; None where the reference does not move.
         rms_leg_lag: rms that the leg bandwidth alone would cause [m or rad].
         rms_rest: rms of what the leg bandwidth does not explain [m or rad].
     """
 
     rms: float
     peak: float
-    relative: float
+    relative: float | None
     rms_leg_lag: float
     rms_rest: float
 
@@ -53,7 +54,7 @@ def emulation_error(
         result[axis] = AxisError(
             rms=_rms(error[:, i]),
             peak=peak,
-            relative=peak / float(size[i]) if size[i] > 0 else 0.0,
+            relative=peak / float(size[i]) if size[i] > 0 else None,
             rms_leg_lag=_rms(legs[:, i]),
             rms_rest=_rms(error[:, i] - legs[:, i]),
         )

@@ -17,7 +17,7 @@ from ves_twin.compiled import compiled
 # The address is an argument, not a global: a function with a ctypes global is never cached.
 
 
-@intrinsic
+@intrinsic  # type: ignore[untyped-decorator]
 def _call(typing_context: Any, address: Any, model: Any, data: Any) -> Any:
     signature = types.void(types.int64, types.int64, types.int64)
 
@@ -45,6 +45,11 @@ def _library() -> ctypes.CDLL:
         for path in sorted(folder.glob(pattern)):
             return ctypes.CDLL(str(path))
     raise OSError(f"no MuJoCo library beside {folder}")
+
+
+def handles(model: mujoco.MjModel, data: mujoco.MjData) -> tuple[int, int]:
+    """Addresses of the C structures, for calls from compiled code; valid while the objects live."""
+    return int(model._address), int(data._address)  # noqa: SLF001  (no public name for it)
 
 
 def address_of(function: str) -> int:

@@ -28,7 +28,6 @@ from ves_twin.simulator.engine import call_engine
 from ves_twin.types import Block, FloatArray, Record, SingleArray
 
 
-
 @compiled
 def _drive_arm(
     p: Record, s: Record, board: Record, tick: int, qpos: FloatArray, qvel: FloatArray,
@@ -80,6 +79,42 @@ def _push_legs(
     push_rods(p.cylinder, s.cylinder, s.valve.mean, work.slide, work.speed, step)
     for i in range(6):
         ctrl[p.layout.leg_ctrl[i]] = s.cylinder.force[i]
+
+
+@compiled
+def _read_and_command(
+    p: Record, s: Record, board: Record, tick: int, qpos: FloatArray, qvel: FloatArray,
+    ctrl: FloatArray, fast: SingleArray, slow: SingleArray,
+) -> None:  # fmt: skip
+    """Transducers, gauge, arm servo, and the leg loop and amplifiers when their clocks strike."""
+    for i in range(6):
+        s.work.slide[i] = qpos[p.layout.slide_qpos[i]]
+    read_lengths(p.transducer, s.work.slide, fast[LENGTH:], board.leg_length)
+    board.supply_pressure[0] = p.pressure + p.noise.pressure * slow[PRESSURE]
+    _drive_arm(p, s, board, tick, qpos, qvel, ctrl, slow)
+    if tick % p.clock.leg == 0:
+        control_legs(p.legs, s.legs, board.leg_length, board.valve_command)
+    if tick % p.clock.amplifier == 0:
+        for i in range(6):
+            s.current[i] = board.valve_command[i]
+
+
+@compiled
+def _move_rig(
+    p: Record, s: Record, time: float, mj_step: int, model: int, data: int, qpos: FloatArray,
+    qvel: FloatArray, ctrl: FloatArray, sensordata: FloatArray, fast: SingleArray,
+) -> bool:  # fmt: skip
+    """The physics of one tick, and the force sensor's sample of its start."""
+    inside = True
+    step = p.clock.tick / p.clock.substeps
+    for k in range(p.clock.substeps):
+        _push_legs(p, s, qpos, qvel, ctrl, step)
+        call_engine(mj_step, model, data)
+        if k == 0:  # later sub-steps carry the forces of later instants
+            for i in range(6):
+                s.work.wrench[i] = -sensordata[p.layout.wrench_sensor + i]
+            inside = sample_wrench(p.sensor, s.sensor, s.work.wrench, time, fast[WHITE:])
+    return inside
 
 
 @compiled
@@ -144,36 +179,21 @@ def run_ticks(
         Code of the outcome, ticks done, rows in the buffer.
     """
     p, s, b = parameters[0], state[0], board[0]
-    step = p.clock.tick / p.clock.substeps
     for n in range(count):
         tick = start + n
+        time = tick * p.clock.tick
         fast, slow = fast_normal[n], slow_normal[(start % SLOW + n) // SLOW]
         if tick % SLOW == 0:
             wander_on(p.sensor, s.sensor, slow[WANDER:])
-        for i in range(6):
-            s.work.slide[i] = qpos[p.layout.slide_qpos[i]]
-        read_lengths(p.transducer, s.work.slide, fast[LENGTH:], b.leg_length)
-        b.supply_pressure[0] = p.pressure + p.noise.pressure * slow[PRESSURE]
-        _drive_arm(p, s, b, tick, qpos, qvel, ctrl, slow)
-        if tick % p.clock.leg == 0:
-            control_legs(p.legs, s.legs, b.leg_length, b.valve_command)
-        if tick % p.clock.amplifier == 0:
-            for i in range(6):
-                s.current[i] = b.valve_command[i]
+        _read_and_command(p, s, b, tick, qpos, qvel, ctrl, fast, slow)
         if tick >= 0 and tick % p.clock.log == 0:
             _read_truth(p, s, b, qpos)
-            log[logged, 0] = tick * p.clock.tick
+            log[logged, 0] = time
             log[logged, 1:] = row
             logged += 1
-        inside = True
-        for k in range(p.clock.substeps):
-            _push_legs(p, s, qpos, qvel, ctrl, step)
-            call_engine(mj_step, model, data)
-            if k == 0:  # later sub-steps carry the forces of later instants
-                for i in range(6):
-                    s.work.wrench[i] = -sensordata[p.layout.wrench_sensor + i]
-                time = tick * p.clock.tick
-                inside = sample_wrench(p.sensor, s.sensor, s.work.wrench, time, fast[WHITE:])
+        inside = _move_rig(
+            p, s, time, mj_step, model, data, qpos, qvel, ctrl, sensordata, fast
+        )  # fmt: skip
         for i in range(6):
             b.sensor_wrench[i] = s.sensor.reading[i]
         code = _verdict(p, qpos, inside)

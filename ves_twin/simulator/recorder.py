@@ -67,6 +67,18 @@ class _Buffers:
         return _Buffers(self.rows, self.cycles, self.pose.copy(), self.inverse.copy())
 
 
+@dataclass(frozen=True)
+class RecorderSnapshot:
+    """Copy of the buffers, the references and the length of the memory sink."""
+
+    at: _Buffers
+    log: FloatArray
+    points: FloatArray
+    starts: FloatArray
+    references: Mapping[str, FloatArray]
+    kept: int
+
+
 class Recorder:
     """Completes rows with the pose from leg lengths and the zero-g references, and passes them on.
 
@@ -96,7 +108,7 @@ class Recorder:
         self._points = np.zeros((capacity, 4, 3))
         self._starts = np.zeros(capacity)
         jacobian = pose_jacobian(guess, geometry.base, geometry.top, geometry.home)
-        self._at = _Buffers(0, 0, guess.copy(), np.linalg.inv(jacobian))
+        self._at = _Buffers(0, 0, guess.copy(), np.asarray(np.linalg.inv(jacobian)))
         self._flushed = monotonic()
         self.names = tuple(n for n in SIGNALS if n not in (IDEAL, LEG_LAG) or n in references)
 
@@ -135,24 +147,26 @@ class Recorder:
         self._references = {}
         self.names = tuple(n for n in self.names if n not in (IDEAL, LEG_LAG))
 
-    def snapshot(self) -> object:
+    def snapshot(self) -> RecorderSnapshot:
         """Buffers, references, and how much the memory sink holds."""
-        at = self._at
-        kept = len(self.sink.parts) if isinstance(self.sink, MemorySink) else -1
-        references = {name: r.snapshot() for name, r in self._references.items()}
-        waiting = self.log[: at.rows].copy(), self._points.copy(), self._starts.copy()
-        return at.copy(), waiting, references, kept
+        return RecorderSnapshot(
+            at=self._at.copy(),
+            log=self.log[: self._at.rows].copy(),
+            points=self._points.copy(),
+            starts=self._starts.copy(),
+            references={name: r.snapshot() for name, r in self._references.items()},
+            kept=len(self.sink.parts) if isinstance(self.sink, MemorySink) else 0,
+        )
 
-    def restore(self, snapshot: object) -> None:
-        """Go back to a snapshot; rows handed to a file cannot be taken back."""
-        at, (log, points, starts), references, kept = snapshot  # type: ignore[misc]
-        self._at = at.copy()
-        self.log[: at.rows] = log
-        self._points[:], self._starts[:] = points, starts
-        for name, state in references.items():
+    def restore(self, snapshot: RecorderSnapshot) -> None:
+        """Go back to a snapshot; rows that a file already has stay there."""
+        self._at = snapshot.at.copy()
+        self.log[: self._at.rows] = snapshot.log
+        self._points[:], self._starts[:] = snapshot.points, snapshot.starts
+        for name, state in snapshot.references.items():
             self._references[name].restore(state)
         if isinstance(self.sink, MemorySink):
-            del self.sink.parts[kept:]
+            del self.sink.parts[snapshot.kept :]
 
     def _add_platform_pose(self, rows: FloatArray) -> None:
         lengths = np.ascontiguousarray(rows[:, SLICES["leg.length"]])

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-
 import platform as host
 from collections.abc import Callable
 from dataclasses import asdict, dataclass
@@ -193,7 +192,8 @@ def _summary(sim: Simulator, recording: Path, prepare: float, run: float) -> Sum
                 np.column_stack([table.column(c).to_numpy() for c in group])
                 for group in columns.values()
             )
-            errors = emulation_error(truth, ideal, lag)
+            if np.all(np.isfinite(ideal)) and np.all(np.isfinite(lag)):
+                errors = emulation_error(truth, ideal, lag)
     return Summary(
         scenario=sim.scenario.name,
         question=sim.scenario.question,

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import mujoco
 import numpy as np
 
-from ves_twin.plant.assembly import assemble
+from ves_twin.plant.assembly import assemble, compile_model
 from ves_twin.plant.layout import Layout
 from ves_twin.plant.plant import Plant
 from ves_twin.recording.recording import Event
@@ -17,12 +17,13 @@ from ves_twin.simulator.blocks import STATE, parameter_block
 from ves_twin.simulator.board import Board
 from ves_twin.simulator.build import belief_of, build_computers, build_references
 from ves_twin.simulator.clock import Clock
-from ves_twin.simulator.engine import address_of
-from ves_twin.simulator.loop import run_ticks
 from ves_twin.simulator.codes import RUNNING
+from ves_twin.simulator.computers import ComputersSnapshot
+from ves_twin.simulator.engine import address_of, handles
+from ves_twin.simulator.loop import run_ticks
 from ves_twin.simulator.noise import NoiseStreams
 from ves_twin.simulator.outcome import OUTCOME_OF_CODE, Outcome
-from ves_twin.simulator.recorder import MemorySink, Recorder, Sink
+from ves_twin.simulator.recorder import MemorySink, Recorder, RecorderSnapshot, Sink
 from ves_twin.simulator.settle import settle
 from ves_twin.types import Block
 
@@ -37,8 +38,8 @@ class Snapshot:
     data: mujoco.MjData
     state: Block
     board: Block
-    computers: object
-    recorder: object
+    computers: ComputersSnapshot
+    recorder: RecorderSnapshot
 
 
 class Simulator:
@@ -77,7 +78,7 @@ class Simulator:
         self.plant = plant or plant_of(scenario)
         self.seed = scenario.run.seed if seed is None else seed
         self.clock = Clock.of(scenario, self.plant.parameters)
-        self.model = assemble(self.plant, self.clock.tick / self.clock.substeps).compile()
+        self.model = compile_model(assemble(self.plant, self.clock.tick / self.clock.substeps))
         self.data = mujoco.MjData(self.model)
         self.layout = Layout.of(self.model)
         self.board = Board()
@@ -98,7 +99,7 @@ class Simulator:
             MemorySink() if sink is None else sink,
         )
         self._step = address_of("mj_step")
-        self._handles = (self.model._address, self.data._address)
+        self._handles = handles(self.model, self.data)
         self._arrays = (self.data.qpos, self.data.qvel, self.data.ctrl, self.data.sensordata)
         self._end = self.clock.ticks(scenario.run.duration)
         self.tick = 0

@@ -24,13 +24,12 @@ def blocks():
     p["gain"] = p["calibration"] = np.eye(6)
     p["numerator"], p["denominator"] = butter(2, CORNER, fs=1.0 / TICK)
     p["range"] = 1e9
-    p["wander_decay"] = 1.0
     return p, s
 
 
-def sample(blocks, wrench, time=0.0, white=QUIET, slow=QUIET):
+def sample(blocks, wrench, time=0.0, white=QUIET):
     p, s = blocks
-    inside = force_sensor.sample_wrench(p[0], s[0], np.asarray(wrench, float), time, white, slow)
+    inside = force_sensor.sample_wrench(p[0], s[0], np.asarray(wrench, float), time, white)
     return inside, s["reading"][0].copy()
 
 
@@ -93,7 +92,7 @@ def test_cross_talk_carries_one_axis_into_another(blocks):
     p["gain"][0, 3, 2] = 0.01  # Fz into Mx
     start(blocks, WRENCH)
     _, reading = sample(blocks, WRENCH)
-    expected = WRENCH + [0, 0, 0, 0.01 * WRENCH[2], 0, 0]
+    expected = WRENCH + np.array([0, 0, 0, 0.01 * WRENCH[2], 0, 0])
     np.testing.assert_allclose(reading, expected, atol=STEADY)
 
 
@@ -157,16 +156,22 @@ def test_the_slow_noise_keeps_its_standard_deviation(blocks):
     """Gauss-Markov: sd stays, one step's correlation is the decay."""
     p, s = blocks
     decay = 0.9
-    p["wander"], p["wander_decay"] = 0.5, decay
-    if "wander_kick" in force_sensor.PARAMETERS.names:
-        p["wander_kick"] = np.sqrt(1 - decay**2)
+    p["wander"], p["wander_decay"], p["wander_kick"] = 0.5, decay, np.sqrt(1 - decay**2)
     slow = np.random.default_rng(12).normal(size=(20000, 6)).astype(np.float32)
     start(blocks, np.zeros(6), wander=slow[0])
-    series = []
-    for row in slow[1:]:
-        sample(blocks, np.zeros(6), slow=row)
-        series.append(s["wander"][0].copy())
-    series = np.array(series)
+    series = np.empty((len(slow) - 1, 6))
+    for i, row in enumerate(slow[1:]):
+        force_sensor.wander_on(p[0], s[0], row)
+        series[i] = s["wander"][0]
     # 120 000 samples, 6000 of them independent: sd to 1 %, four sigma
     assert abs(np.std(series) - 0.5) < 0.5 * 0.04
     assert abs(np.mean(series[1:] * series[:-1]) / np.var(series) - decay) < 0.01
+
+
+def test_the_slow_noise_adds_to_the_signal(blocks):
+    _, s = blocks
+    start(blocks, WRENCH)
+    s["wander"] = 0.25
+    for _ in range(3000):  # 1 s: the low-pass has settled
+        _, reading = sample(blocks, WRENCH)
+    np.testing.assert_allclose(reading, WRENCH + 0.25, atol=1e-8)

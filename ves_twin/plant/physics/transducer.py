@@ -7,9 +7,7 @@ import numpy as np
 from ves_twin.compiled import compiled
 from ves_twin.types import FloatArray, Record, SingleArray
 
-PARAMETERS = np.dtype(
-    [("home", np.float64, 6), ("noise", np.float64), ("resolution", np.float64)]
-)
+PARAMETERS = np.dtype([("home", np.float64, 6), ("noise", np.float64), ("resolution", np.float64)])
 """home: length at zero slide [m]; noise: white sd per sample [m]; resolution [m]."""
 
 
