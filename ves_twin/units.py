@@ -3,13 +3,29 @@
 from __future__ import annotations
 
 import math
+import re
 from functools import lru_cache
 from typing import TYPE_CHECKING
 
-from ves_twin.errors import InvalidInputError
+from ves_twin.errors import InvalidInputError, UnknownNameError
 
 if TYPE_CHECKING:
     from pint import UnitRegistry
+
+
+SI_UNITS = frozenset(
+    (
+        *("1", "m", "rad", "s", "Hz", "kg", "N", "Pa", "m/s", "rad/s", "m/s^2", "1/s", "N/m"),
+        *("N*m", "N*s/m", "N*m/rad", "N*m/rad/s", "N*m*s/rad", "kg*m^2", "N/s", "N*m/s"),
+    )
+)
+"""Units that numbers have inside; files may give others, which are converted."""
+
+
+def check_unit(unit: str, what: str) -> None:
+    """Raise UnknownNameError unless a unit is one that numbers have inside."""
+    if unit not in SI_UNITS:
+        raise UnknownNameError(f"unit in {what}", unit, SI_UNITS)
 
 
 @lru_cache(maxsize=1)
@@ -41,15 +57,24 @@ def to_si(value: object, unit: str, what: str) -> float:
     return number
 
 
-def _parse(text: str, unit: str, what: str) -> float:
-    import pint
+_QUANTITY = re.compile(r"\s*([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*([^\d\s].*)?")
+"""A number, then the rest as its unit: a text such as "12,5 mm" must not pass as 125 mm."""
 
+_ANGLE = re.compile(r"rad|deg|turn|rev|rpm|arcmin|arcsec", re.IGNORECASE)
+
+
+def _parse(text: str, unit: str, what: str) -> float:
+    wrong = InvalidInputError(what, text, f'a finite quantity in {unit}, as in "1 {unit}"')
+    match = _QUANTITY.fullmatch(text)
+    if match is None:
+        raise wrong
+    number, given = float(match[1]), (match[2] or "").strip()
+    if not given:
+        return number
+    # angles have no dimension, so 1 Hz would pass as 1 rad/s
+    if bool(_ANGLE.search(given)) != bool(_ANGLE.search(unit)):
+        raise wrong
     try:
-        quantity = _registry().Quantity(text)
-        if quantity.unitless:
-            return float(quantity.magnitude)
-        return float(quantity.to(unit).magnitude)
-    except pint.DimensionalityError:
-        raise InvalidInputError(what, text, f"a quantity in {unit}") from None
+        return float(_registry().Quantity(number, given.replace("%", "percent")).to(unit).magnitude)
     except Exception:  # pint raises tokenizer, syntax and attribute errors alike
-        raise InvalidInputError(what, text, f'a number in {unit}, or "1 {unit}"') from None
+        raise wrong from None

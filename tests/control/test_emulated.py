@@ -193,7 +193,6 @@ def test_a_wrong_file_is_refused_in_one_line(load, changes, kind, words):
         assert word in str(caught.value)
 
 
-@pytest.mark.xfail(reason="reported: RecursionError of tomllib passes", raises=RecursionError)
 def test_a_file_nested_too_deeply_is_refused(load):
     with pytest.raises(VesTwinError):
         load(mass="[" * 20000)

@@ -8,8 +8,8 @@ from ves_twin.control import leg_loop
 from ves_twin.control.leg_loop import FilterPlace, chebyshev_section
 
 RATE = 1.0 / 0.001705  # Hz, five transducer periods (facts 2)
-DIGITS = 1e-4
-"""One unit of the fourth digit of Table 5-1."""
+DIGITS = 1.5e-4
+"""Half a unit of the fourth digit of Table 5-1, and half a hertz of rate, moving a2 by 9e-5."""
 LONG_DIGITS = 5e-9
 """Half of the eighth digit of the fact sheet."""
 ROUND_OFF = 1e-11

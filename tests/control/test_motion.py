@@ -82,7 +82,7 @@ def test_a_sine_starts_at_rest_at_its_middle(sine):
 
 
 def test_a_faded_in_sine_has_its_amplitude_and_period(sine):
-    time = np.arange(10000) * 1e-3 + 10.0  # whole periods of all six, fade long over
+    time = np.arange(20000) * 1e-3 + 10.0  # whole periods of all six, fade long over
     poses = np.array([sine.pose(t) for t in time])
     np.testing.assert_allclose(poses.mean(axis=0), sine.at, atol=1e-12)
     for k in range(6):

@@ -116,7 +116,6 @@ def test_a_point_outside_the_workspace_is_refused_in_one_line(tip, says):
     assert "\n" not in str(caught.value)
 
 
-@pytest.mark.xfail(reason="reported: abs(nan) > 1 is False, inverse returns nan")
 def test_a_point_that_is_not_a_number_is_refused():
     with pytest.raises(UnreachableError):
         ARM.inverse(np.array([np.nan, 0.0, 1.0]))

@@ -165,7 +165,6 @@ def test_lengths_that_no_pose_has_are_refused_in_one_line(geometry, lengths):
     assert "\n" not in str(caught.value)
 
 
-@pytest.mark.xfail(reason="reported: solve_pose lets numpy's LinAlgError through")
 def test_lengths_at_random_are_solved_or_refused_but_never_crash(geometry):
     rng = np.random.default_rng(2)
     refused = 0

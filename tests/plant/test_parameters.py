@@ -103,7 +103,6 @@ def test_a_wrong_value_is_refused(table, name, value, word):
     refused(lambda: table.with_values({name: value}), name, word)
 
 
-@pytest.mark.xfail(reason="reported: the bounds' 'inf' also passes as a value")
 @pytest.mark.parametrize(
     ("name", "value"), [("leg.rod_mass", "inf"), ("sensor.offset", ["inf"] * 6)]
 )
@@ -117,14 +116,12 @@ def test_a_text_with_another_unit_is_converted(table):
     assert turned.number("platform.base_half_angle") == pytest.approx(np.pi, rel=1e-15)
 
 
-@pytest.mark.xfail(reason="reported: all six axes are read in the unit of the force")
 def test_moments_of_a_wrench_take_the_unit_of_a_moment(table):
     offset = ["1 N", "2 N", "3 N", "4 N*m", "5 N*m", "6 N*m"]
     changed = table.with_values({"sensor.offset": offset})
     np.testing.assert_array_equal(changed.array("sensor.offset"), [1, 2, 3, 4, 5, 6])
 
 
-@pytest.mark.xfail(reason="reported: a numpy array raises a bare ValueError", raises=ValueError)
 def test_an_array_is_taken_like_a_list(table):
     position = np.array([0.0, 0.0, 0.2])
     changed = table.with_values({"sensor.position": position})
@@ -172,19 +169,11 @@ def test_a_complete_entry_is_read(load):
         ({"value": "nan"}, ["finite"]),
         ({"value": "[]"}, ["one shape"]),
         ({"value": '"9.81 m"'}, ["m/s^2"]),
-        pytest.param({"sd": "-1.0"}, ["sd"], marks=pytest.mark.xfail(reason="reported: accepted")),
-        pytest.param(
-            {"sd": "[1.0, 2.0]"}, ["sd"], marks=pytest.mark.xfail(reason="reported: ValueError")
-        ),
-        pytest.param(
-            {"low": "[1.0, 2.0]"}, ["low"], marks=pytest.mark.xfail(reason="reported: TypeError")
-        ),
-        pytest.param(
-            {"source": '""'}, ["source"], marks=pytest.mark.xfail(reason="reported: accepted")
-        ),
-        pytest.param(
-            {"unit": '"foo"'}, ["unit"], marks=pytest.mark.xfail(reason="reported: accepted")
-        ),
+        ({"sd": "-1.0"}, ["sd"]),
+        ({"sd": "[1.0, 2.0]"}, ["sd"]),
+        ({"low": "[1.0, 2.0]"}, ["low"]),
+        ({"source": '""'}, ["source"]),
+        ({"unit": '"foo"'}, ["unit"]),
     ],
     ids=str,
 )
@@ -207,7 +196,6 @@ def test_a_file_that_is_not_toml_is_refused(tmp_path):
         assert isinstance(refused(lambda: read_plant_file(path), "TOML"), InvalidInputError)
 
 
-@pytest.mark.xfail(reason="reported: RecursionError of tomllib passes", raises=RecursionError)
 def test_a_file_nested_too_deeply_is_refused(tmp_path):
     path = tmp_path / "rig.toml"
     path.write_text("a = " + "[" * 20000)

@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
-import tomllib
 from dataclasses import dataclass
 from enum import StrEnum
 from pathlib import Path
 
 import numpy as np
 
-from ves_twin.errors import FileAccessError, InvalidInputError, UnknownNameError, VersionError
+from ves_twin.errors import InvalidInputError, UnknownNameError
 from ves_twin.resources import find_resource
+from ves_twin.toml_file import check_schema, read_toml
 from ves_twin.types import FloatArray
 
 SCHEMA = 1
@@ -56,12 +56,7 @@ class EmulatedSystem:
             VersionError: another version of the format.
         """
         path = find_resource("emulated model", "models/emulated", name_or_path)
-        try:
-            content = tomllib.loads(path.read_text(encoding="utf-8"))
-        except OSError as error:
-            raise FileAccessError(f"emulated model {path}: {error.strerror}") from None
-        except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
-            raise InvalidInputError(f"emulated model {path}", str(error), "valid TOML") from None
+        content, _ = read_toml("emulated model", path)
         return _parse(content, path)
 
     def discretise(self, period: float) -> tuple[FloatArray, FloatArray]:
@@ -92,8 +87,7 @@ def _parse(content: dict[str, object], path: Path) -> EmulatedSystem:
     for key in content:
         if key not in _KEYS:
             raise UnknownNameError(f"key in {path.name}", key, _KEYS)
-    if content.get("schema") != SCHEMA:
-        raise VersionError(path, content.get("schema"), SCHEMA)
+    check_schema(content, path, SCHEMA)
     coupling = str(content.get("coupling"))
     if coupling not in set(Coupling):
         raise UnknownNameError("coupling", coupling, set(Coupling))

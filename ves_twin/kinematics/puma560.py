@@ -104,7 +104,7 @@ class Puma560:
         offset = self.d2 + self.d3
         height = z - self.d0 - self.d1
         plane = x * x + y * y - offset * offset
-        if plane < 0:
+        if not plane >= 0:
             raise UnreachableError(
                 f"arm tip {[x, y, z]} m is {np.hypot(x, y):.3f} m from the joint-1 axis,"
                 f" nearer than the arm offset {abs(offset):.3f} m"
@@ -112,7 +112,7 @@ class Puma560:
         r = shoulder * np.sqrt(plane)
         reach = r * r + height * height
         cosine = (reach - self.a2**2 - self.a3**2) / (2 * self.a2 * self.a3)
-        if abs(cosine) > 1 + 1e-12:  # round-off of a stretched arm
+        if not abs(cosine) <= 1 + 1e-12:  # round-off of a stretched arm
             raise UnreachableError(
                 f"arm tip {[x, y, z]} m is {np.sqrt(reach):.3f} m from the shoulder, reach is"
                 f" {abs(self.a2 - self.a3):.3f} to {self.a2 + self.a3:.3f} m"

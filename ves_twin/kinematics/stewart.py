@@ -170,9 +170,12 @@ class StewartGeometry:
         """
         start = np.zeros(6) if guess is None else np.asarray(guess, dtype=float)
         target = np.asarray(lengths, dtype=float)
-        pose, worst = solve_pose(
-            target, start, self.base, self.top, self.home, FK_TOLERANCE, FK_ITERATIONS
-        )
+        try:
+            pose, worst = solve_pose(
+                target, start, self.base, self.top, self.home, FK_TOLERANCE, FK_ITERATIONS
+            )
+        except np.linalg.LinAlgError:  # Newton ran into a singular pose
+            pose, worst = start, np.inf
         if not worst < 1e-9:  # Newton stalls at round-off well below this where a pose exists
             raise UnreachableError(
                 f"no platform pose near the guess has leg lengths {np.round(target, 4).tolist()} m"

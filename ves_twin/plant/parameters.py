@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import tomllib
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from enum import StrEnum
@@ -10,9 +9,10 @@ from pathlib import Path
 
 import numpy as np
 
-from ves_twin.errors import FileAccessError, InvalidInputError, UnknownNameError, VersionError
+from ves_twin.errors import InvalidInputError, UnknownNameError
+from ves_twin.toml_file import check_schema, read_toml
 from ves_twin.types import FloatArray
-from ves_twin.units import to_si
+from ves_twin.units import check_unit, to_si
 
 SCHEMA = 1
 """Version of the plant file format."""
@@ -135,14 +135,8 @@ def read_plant_file(path: Path) -> dict[str, object]:
         InvalidInputError: not TOML.
         VersionError: written for another version of the format.
     """
-    try:
-        content = tomllib.loads(path.read_text(encoding="utf-8"))
-    except OSError as error:
-        raise FileAccessError(f"plant file {path}: {error.strerror}") from None
-    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
-        raise InvalidInputError(f"plant file {path}", str(error), "valid TOML") from None
-    if content.get("schema") != SCHEMA:
-        raise VersionError(path, content.get("schema"), SCHEMA)
+    content, _ = read_toml("plant file", path)
+    check_schema(content, path, SCHEMA)
     return content
 
 
@@ -172,31 +166,50 @@ def _parameter(name: str, entry: Mapping[str, object]) -> Parameter:
         if key not in _KEYS:
             raise UnknownNameError(f"key of {name}", key, _KEYS)
     for key in ("unit", "grade", "source"):
-        if not isinstance(entry.get(key), str):
+        if not isinstance(entry.get(key), str) or not entry[key]:
             raise InvalidInputError(f"{name}.{key}", entry.get(key), "a text")
     if entry["grade"] not in set(Grade):
         raise UnknownNameError(f"grade of {name}", str(entry["grade"]), set(Grade))
     unit = str(entry["unit"])
+    for part in unit.split(", "):
+        check_unit(part, f"{name}.unit")
     value = _numbers(entry["value"], unit, name)
+    sd = _numbers(entry.get("sd"), unit, f"{name}.sd")
+    if sd.shape not in {(), value.shape[-1:], value.shape} or np.any(sd < 0):
+        raise InvalidInputError(f"{name}.sd", entry["sd"], "one number >= 0, or one for each value")
     return Parameter(
         name=name,
         value=value,
         unit=unit,
-        sd=np.broadcast_to(_numbers(entry.get("sd"), unit, f"{name}.sd"), value.shape),
-        low=float(_numbers(entry.get("low", "-inf"), unit, f"{name}.low")),
-        high=float(_numbers(entry.get("high", "inf"), unit, f"{name}.high")),
+        sd=np.broadcast_to(sd, value.shape),
+        low=_bound(entry, "low", -np.inf, unit, name),
+        high=_bound(entry, "high", np.inf, unit, name),
         grade=Grade(str(entry["grade"])),
         source=str(entry["source"]),
     ).checked(entry["value"])
 
 
+def _bound(entry: Mapping[str, object], key: str, default: float, unit: str, name: str) -> float:
+    if key not in entry:
+        return default
+    return to_si(entry[key], unit.split(", ")[0], f"{name}.{key}")
+
+
 def _numbers(value: object, unit: str, what: str) -> FloatArray:
-    """Nested lists of numbers or texts with units as an array in SI."""
-    if value in ("inf", "-inf"):
-        return np.array(float(str(value)))
+    """Nested lists of numbers or texts with units as an array in SI.
+
+    A unit such as "N, N*m" is that of the first half of the values and that of the second.
+    """
+    if isinstance(value, np.ndarray):
+        value = value.tolist()
+    units = unit.split(", ")
     if isinstance(value, list | tuple):
-        rows = [_numbers(item, unit, f"{what}[{i + 1}]") for i, item in enumerate(value)]
+        share = max(1, len(value) // len(units))
+        rows = [
+            _numbers(item, units[min(i // share, len(units) - 1)], f"{what}[{i + 1}]")
+            for i, item in enumerate(value)
+        ]
         if not rows or len({row.shape for row in rows}) != 1:
             raise InvalidInputError(what, value, "numbers of one shape")
         return np.array(rows)
-    return np.array(to_si(value, unit.split(",")[0], what))
+    return np.array(to_si(value, units[0], what))

@@ -61,7 +61,7 @@ class Plant:
                 raise UnknownNameError("key", key, {"schema", "name", "base", "parameters"})
         name = str(content.get("name", path.stem))
         if "base" in content:
-            base = Plant.load(str(content["base"]))
+            base = _load_base(str(content["base"]), path)
             return replace(base, name=name).with_values(changes)
         return Plant(name, parse_parameters(content, path)).with_values(changes)
 
@@ -102,6 +102,15 @@ class Plant:
         for file in MJCF_FILES:
             digest.update((resource_folder("models") / file).read_bytes())
         return digest.hexdigest()[:16]
+
+
+def _load_base(name: str, path: Path) -> Plant:
+    try:
+        return Plant.load(name)
+    except RecursionError:
+        raise InvalidInputError(
+            f"{path}: base", name, "a plant that does not lead back here"
+        ) from None
 
 
 _ARM_LENGTHS = ("d0", "d1", "d2", "d3", "a2", "a3")

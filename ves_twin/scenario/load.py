@@ -11,9 +11,10 @@ from typing import Any, get_args
 
 from pydantic import BaseModel, ValidationError
 
-from ves_twin.errors import FileAccessError, InvalidInputError, UnknownNameError
+from ves_twin.errors import InvalidInputError, UnknownNameError
 from ves_twin.resources import find_resource, resource_folder
 from ves_twin.scenario.schema import Scenario
+from ves_twin.toml_file import read_toml
 
 
 def load_scenario(name_or_path: str, changes: Mapping[str, object]) -> Scenario:
@@ -65,13 +66,7 @@ def parse_setting(text: str) -> tuple[str, object]:
 
 
 def _read(path: Path) -> tuple[dict[str, Any], str]:
-    try:
-        text = path.read_text(encoding="utf-8")
-        content = tomllib.loads(text)
-    except OSError as error:
-        raise FileAccessError(f"scenario {path}: {error.strerror}") from None
-    except (tomllib.TOMLDecodeError, UnicodeDecodeError, RecursionError) as error:
-        raise InvalidInputError(f"scenario {path}", str(error), "valid TOML") from None
+    content, text = read_toml("scenario", path)
     first = text.lstrip().split("\n", 1)[0]
     if not first.startswith("#"):
         raise InvalidInputError(
@@ -82,8 +77,10 @@ def _read(path: Path) -> tuple[dict[str, Any], str]:
 
 def _with_key(content: Mapping[str, Any], key: str, value: object) -> dict[str, Any]:
     result: dict[str, Any] = copy.deepcopy(dict(content))
-    if key.startswith("parameters."):
-        result.setdefault("parameters", {})[key.removeprefix("parameters.")] = value
+    if key.startswith("parameters."):  # their names hold dots themselves
+        table = result.setdefault("parameters", {})
+        if isinstance(table, dict):
+            table[key.removeprefix("parameters.")] = value
         return result
     node = result
     *parents, last = key.split(".")
@@ -98,7 +95,8 @@ def _with_key(content: Mapping[str, Any], key: str, value: object) -> dict[str, 
 
 def _first_error(error: ValidationError, where: str) -> Exception:
     """One line for the first thing that is wrong."""
-    first = error.errors(include_url=False)[0]
+    found = error.errors(include_url=False)
+    first = next((e for e in found if e["type"] == "extra_forbidden"), found[0])
     location = [str(part) for part in first["loc"]]
     key = ".".join(location) or "scenario"
     if first["type"] == "extra_forbidden":

@@ -46,7 +46,7 @@ def _row(value: object, units: tuple[str, ...]) -> tuple[float, ...]:
 
 def _named(kind: str, known: Any) -> BeforeValidator:
     def check(value: object) -> object:
-        if value not in known:
+        if not isinstance(value, str) or value not in known:
             raise ValueError(str(UnknownNameError(kind, str(value), known)))
         return value
 
