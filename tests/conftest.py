@@ -73,3 +73,9 @@ def _page(figures: list[Figure]) -> str:
 def beam_minute() -> vt.Recording:
     """The beam scenario as shipped, 60 s."""
     return vt.simulate(vt.Scenario.load("beam_horizontal_truth"))
+
+
+@pytest.fixture(scope="session")
+def beam_short() -> vt.Recording:
+    """Three seconds of the beam scenario: the arm's move."""
+    return vt.simulate(vt.Scenario.load("beam_horizontal_truth", {"run.duration": 3.0}))

@@ -23,25 +23,29 @@ def blend(points, u):
 def test_at_a_command_the_path_is_the_smoothed_command(k):
     points = COMMANDS[k - 1 : k + 3]
     q, _ = blend(points, 0.0)
-    np.testing.assert_allclose(q, (points[0] + 4 * points[1] + points[2]) / 6, atol=ROUND_OFF)
+    np.testing.assert_allclose(
+        q, (points[0] + 4 * points[1] + points[2]) / 6, rtol=0, atol=ROUND_OFF
+    )
     q, _ = blend(points, 1.0)
-    np.testing.assert_allclose(q, (points[1] + 4 * points[2] + points[3]) / 6, atol=ROUND_OFF)
+    np.testing.assert_allclose(
+        q, (points[1] + 4 * points[2] + points[3]) / 6, rtol=0, atol=ROUND_OFF
+    )
 
 
 @pytest.mark.parametrize("k", range(7))
 def test_angle_and_rate_are_continuous_from_cycle_to_cycle(k):
     end, end_rate = blend(COMMANDS[k : k + 4], 1.0)
     begin, begin_rate = blend(COMMANDS[k + 1 : k + 5], 0.0)
-    np.testing.assert_allclose(end, begin, atol=ROUND_OFF)
-    np.testing.assert_allclose(end_rate, begin_rate, atol=ROUND_OFF / CYCLE)
+    np.testing.assert_allclose(end, begin, rtol=0, atol=ROUND_OFF)
+    np.testing.assert_allclose(end_rate, begin_rate, rtol=0, atol=ROUND_OFF / CYCLE)
 
 
 def test_the_path_is_the_uniform_cubic_b_spline_of_scipy():
     reference = BSpline(np.arange(-3.0, 5.0), COMMANDS[:4], 3)
     for u in np.linspace(0.0, 1.0, 21, endpoint=False):
         q, rate = blend(COMMANDS[:4], u)
-        np.testing.assert_allclose(q, reference(u), atol=ROUND_OFF)
-        np.testing.assert_allclose(rate, reference(u, 1) / CYCLE, atol=ROUND_OFF / CYCLE)
+        np.testing.assert_allclose(q, reference(u), rtol=0, atol=ROUND_OFF)
+        np.testing.assert_allclose(rate, reference(u, 1) / CYCLE, rtol=0, atol=ROUND_OFF / CYCLE)
 
 
 def test_a_straight_line_is_reproduced():
@@ -50,8 +54,8 @@ def test_a_straight_line_is_reproduced():
     points = start + slope * CYCLE * np.array([[-1.0], [0.0], [1.0], [2.0]])
     for u in np.linspace(0.0, 1.0, 11):
         q, rate = blend(points, u)
-        np.testing.assert_allclose(q, start + slope * CYCLE * u, atol=ROUND_OFF)
-        np.testing.assert_allclose(rate, slope, atol=ROUND_OFF / CYCLE)
+        np.testing.assert_allclose(q, start + slope * CYCLE * u, rtol=0, atol=ROUND_OFF)
+        np.testing.assert_allclose(rate, slope, rtol=0, atol=ROUND_OFF / CYCLE)
 
 
 def torque(integral=0.0, q_set=0.0, rate_set=0.0, q=0.0, rate=0.0, limit=100.0):
@@ -67,7 +71,7 @@ def torque(integral=0.0, q_set=0.0, rate_set=0.0, q=0.0, rate=0.0, limit=100.0):
 def test_the_torque_is_stiffness_damping_and_integral():
     found = torque(integral=0.5, q_set=1.0, rate_set=2.0, q=0.4, rate=-1.0)
     expected = np.array([7.0, 8.0, 9.0]) * 0.6 + np.array([0.7, 0.8, 0.9]) * 3.0 + 0.5
-    np.testing.assert_allclose(found, expected, atol=1e-14)
+    np.testing.assert_allclose(found, expected, rtol=0, atol=1e-14)
 
 
 def test_on_its_set_point_the_joint_gets_the_integral_alone():

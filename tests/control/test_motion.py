@@ -54,14 +54,14 @@ def test_the_arm_rests_before_between_and_after_its_moves():
         (4.0, second.to),
         (99.0, second.to),
     ):
-        np.testing.assert_allclose(motion.q(t), expected, atol=ROUND_OFF)
-    np.testing.assert_allclose(motion.q(3.5), (TURN.to + second.to) / 2, atol=ROUND_OFF)
+        np.testing.assert_allclose(motion.q(t), expected, rtol=0, atol=ROUND_OFF)
+    np.testing.assert_allclose(motion.q(3.5), (TURN.to + second.to) / 2, rtol=0, atol=ROUND_OFF)
 
 
 def test_moves_that_touch_make_a_continuous_path():
     motion = ArmMotion(np.zeros(3), (TURN, Move(2.5, 1.0, np.ones(3))))
     before, after = motion.q(2.5 - 1e-9), motion.q(2.5 + 1e-9)
-    np.testing.assert_allclose(before, after, atol=1e-12)
+    np.testing.assert_allclose(before, after, rtol=0, atol=1e-12)
 
 
 @pytest.fixture
@@ -78,13 +78,13 @@ def sine():
 def test_a_sine_starts_at_rest_at_its_middle(sine):
     np.testing.assert_array_equal(sine.pose(-1.0), sine.at)
     np.testing.assert_array_equal(sine.pose(0.0), sine.at)
-    np.testing.assert_allclose(slope(sine.pose, 0.0), 0.0, atol=DIFFERENCE)
+    np.testing.assert_allclose(slope(sine.pose, 0.0), 0.0, rtol=0, atol=DIFFERENCE)
 
 
 def test_a_faded_in_sine_has_its_amplitude_and_period(sine):
     time = np.arange(20000) * 1e-3 + 10.0  # whole periods of all six, fade long over
     poses = np.array([sine.pose(t) for t in time])
-    np.testing.assert_allclose(poses.mean(axis=0), sine.at, atol=1e-12)
+    np.testing.assert_allclose(poses.mean(axis=0), sine.at, rtol=0, atol=1e-12)
     for k in range(6):
         angle = 2 * np.pi * sine.frequency[k] * time + sine.phase[k]
         in_phase = 2 * np.mean((poses[:, k] - sine.at[k]) * np.sin(angle))
@@ -96,7 +96,7 @@ def test_without_fading_the_amplitude_is_full_at_once(sine):
 
     sudden = dataclasses.replace(sine, fade=0.0)
     late = sine.pose(2.0 + 1 / 8)
-    np.testing.assert_allclose(sudden.pose(2.0 + 1 / 8), late, atol=1e-15)
+    np.testing.assert_allclose(sudden.pose(2.0 + 1 / 8), late, rtol=0, atol=1e-15)
     assert not np.allclose(sudden.pose(0.1), sine.pose(0.1), atol=1e-4)
 
 

@@ -35,7 +35,9 @@ def closed_form_origins(q):
 
 
 def test_frame_origins_follow_the_closed_forms(q):
-    np.testing.assert_allclose(ARM.transforms(q)[:, :3, 3], closed_form_origins(q), atol=ROUND_OFF)
+    np.testing.assert_allclose(
+        ARM.transforms(q)[:, :3, 3], closed_form_origins(q), rtol=0, atol=ROUND_OFF
+    )
 
 
 def test_frame_axes_follow_the_closed_forms(q):
@@ -43,11 +45,13 @@ def test_frame_axes_follow_the_closed_forms(q):
     frames, origins = ARM.transforms(q), closed_form_origins(q)
     z = [np.sin(q[0]), -np.cos(q[0]), 0.0]
     for frame in frames:
-        np.testing.assert_allclose(frame[:3, 2], z, atol=ROUND_OFF)
-        np.testing.assert_allclose(frame[:3, :3] @ frame[:3, :3].T, np.eye(3), atol=ROUND_OFF)
+        np.testing.assert_allclose(frame[:3, 2], z, rtol=0, atol=ROUND_OFF)
+        np.testing.assert_allclose(
+            frame[:3, :3] @ frame[:3, :3].T, np.eye(3), rtol=0, atol=ROUND_OFF
+        )
     for i, (length, d) in enumerate(((A2, D2), (A3, D3)), start=1):
         along = (origins[i] - origins[i - 1] - d * np.array(z)) / length
-        np.testing.assert_allclose(frames[i, :3, 0], along, atol=ROUND_OFF)
+        np.testing.assert_allclose(frames[i, :3, 0], along, rtol=0, atol=ROUND_OFF)
 
 
 def test_homogeneous_rows_end_in_zero_zero_zero_one(q):
@@ -57,7 +61,7 @@ def test_homogeneous_rows_end_in_zero_zero_zero_one(q):
 def test_ready_position_points_straight_up():
     """Fact sheet 4: PUMA home is 180, 90, 0 deg."""
     tip = ARM.tip(np.radians([180.0, 90.0, 0.0]))
-    np.testing.assert_allclose(tip, [0.0, D2 + D3, D0 + D1 + A2 + A3], atol=ROUND_OFF)
+    np.testing.assert_allclose(tip, [0.0, D2 + D3, D0 + D1 + A2 + A3], rtol=0, atol=ROUND_OFF)
 
 
 @pytest.mark.parametrize("link", [1, 2, 3])
@@ -70,16 +74,16 @@ def test_the_jacobian_is_the_derivative_of_a_point_on_a_link(q, link):
         spin = rate[:3, :3] @ ARM.transforms(q)[link - 1, :3, :3].T
         numeric[:3, k] = (rate @ local)[:3]
         numeric[3:, k] = spin[2, 1], spin[0, 2], spin[1, 0]
-    np.testing.assert_allclose(ARM.jacobian(q, point, link), numeric, atol=DIFFERENCE)
+    np.testing.assert_allclose(ARM.jacobian(q, point, link), numeric, rtol=0, atol=DIFFERENCE)
 
 
 def test_the_axes_are_lines_that_stay_where_they_are_when_the_joint_turns(q):
     points, directions = ARM.axes(q)
     for i in range(3):
         moved = ARM.axes(q + 0.7 * np.eye(3)[i])
-        np.testing.assert_allclose(moved[0][i], points[i], atol=ROUND_OFF)
-        np.testing.assert_allclose(moved[1][i], directions[i], atol=ROUND_OFF)
-        np.testing.assert_allclose(np.linalg.norm(directions[i]), 1.0, atol=ROUND_OFF)
+        np.testing.assert_allclose(moved[0][i], points[i], rtol=0, atol=ROUND_OFF)
+        np.testing.assert_allclose(moved[1][i], directions[i], rtol=0, atol=ROUND_OFF)
+        np.testing.assert_allclose(np.linalg.norm(directions[i]), 1.0, rtol=0, atol=ROUND_OFF)
 
 
 @pytest.mark.parametrize("elbow", [-1, 1])
@@ -87,7 +91,7 @@ def test_the_axes_are_lines_that_stay_where_they_are_when_the_joint_turns(q):
 def test_every_branch_of_the_inverse_brings_the_tip_to_the_point(q, elbow, shoulder):
     tip = ARM.tip(q)
     found = ARM.inverse(tip, elbow, shoulder)
-    np.testing.assert_allclose(ARM.tip(found), tip, atol=INVERSION)
+    np.testing.assert_allclose(ARM.tip(found), tip, rtol=0, atol=INVERSION)
     assert np.sign(found[2]) == elbow
     forward = np.cos(found[0]) * tip[0] + np.sin(found[0]) * tip[1]
     assert np.sign(forward) == shoulder

@@ -52,14 +52,16 @@ def direct_lengths(geometry, position, rotation):
 
 def test_forward_kinematics_inverts_inverse_kinematics(geometry, poses):
     for pose in poses:
-        np.testing.assert_allclose(geometry.pose(geometry.lengths(pose)), pose, atol=INVERSION)
+        np.testing.assert_allclose(
+            geometry.pose(geometry.lengths(pose)), pose, rtol=0, atol=INVERSION
+        )
 
 
 def test_lengths_are_distances_between_joints(geometry, poses):
     for pose in poses:
         rotation = Rotation.from_euler("xyz", pose[3:]).as_matrix()
         np.testing.assert_allclose(
-            geometry.lengths(pose), direct_lengths(geometry, pose[:3], rotation), atol=1e-14
+            geometry.lengths(pose), direct_lengths(geometry, pose[:3], rotation), rtol=0, atol=1e-14
         )
 
 
@@ -74,7 +76,7 @@ def test_the_jacobian_is_the_derivative_of_the_lengths_by_the_twist(geometry, po
                 turn = Rotation.from_rotvec(sign * axis if k >= 3 else np.zeros(3)) * rotation
                 moved.append(direct_lengths(geometry, pose[:3] + shift, turn.as_matrix()))
             numeric[:, k] = (moved[0] - moved[1]) / (2 * STEP)
-        np.testing.assert_allclose(geometry.jacobian(pose), numeric, atol=DIFFERENCE)
+        np.testing.assert_allclose(geometry.jacobian(pose), numeric, rtol=0, atol=DIFFERENCE)
 
 
 def test_the_pose_jacobian_is_the_derivative_of_the_lengths_by_the_pose(geometry, poses):
@@ -86,7 +88,7 @@ def test_the_pose_jacobian_is_the_derivative_of_the_lengths_by_the_pose(geometry
             ]
         )
         jacobian = pose_jacobian(pose, geometry.base, geometry.top, geometry.home)
-        np.testing.assert_allclose(jacobian, numeric, atol=DIFFERENCE)
+        np.testing.assert_allclose(jacobian, numeric, rtol=0, atol=DIFFERENCE)
 
 
 def test_tracking_a_slow_series_equals_solving_each_pose(geometry):
@@ -116,10 +118,11 @@ def test_a_series_in_pieces_gives_the_same_bits_as_a_whole(geometry, poses):
 def assert_tracked(geometry, series):
     lengths = np.array([geometry.lengths(pose) for pose in series])
     tracked = track(geometry, [lengths], series[0])
-    np.testing.assert_allclose(tracked, series, atol=INVERSION)
+    np.testing.assert_allclose(tracked, series, rtol=0, atol=INVERSION)
     np.testing.assert_allclose(
         tracked,
         [geometry.pose(row, guess) for row, guess in zip(lengths, series, strict=True)],
+        rtol=0,
         atol=INVERSION,
     )
 
@@ -140,18 +143,20 @@ def test_the_start_of_table_5_2_leaves_12_mm_of_stroke(geometry, plant):
 def test_at_home_all_legs_are_as_long_as_the_law_of_cosines_says(geometry):
     """Circles of 0.7 and 0.5 m, joints 60 - 10 - 10 = 40 deg apart, planes 0.95 m apart."""
     expected = np.sqrt(0.95**2 + 0.7**2 + 0.5**2 - 2 * 0.7 * 0.5 * np.cos(np.radians(40.0)))
-    np.testing.assert_allclose(geometry.lengths(np.zeros(6)), expected, atol=1e-14)
+    np.testing.assert_allclose(geometry.lengths(np.zeros(6)), expected, rtol=0, atol=1e-14)
 
 
 def test_the_geometry_repeats_every_120_degrees(geometry):
     third = Rotation.from_euler("z", 120, degrees=True).as_matrix()
     for joints in (geometry.base, geometry.top):
-        np.testing.assert_allclose(np.roll(joints, -2, axis=0), joints @ third.T, atol=1e-14)
+        np.testing.assert_allclose(
+            np.roll(joints, -2, axis=0), joints @ third.T, rtol=0, atol=1e-14
+        )
 
 
 def test_the_platform_frame_lies_its_offset_above_the_joint_plane(geometry):
-    np.testing.assert_allclose(geometry.top[:, 2], -0.05, atol=1e-15)
-    np.testing.assert_allclose(geometry.home, [0.0, 0.0, 1.0], atol=1e-15)
+    np.testing.assert_allclose(geometry.top[:, 2], -0.05, rtol=0, atol=1e-15)
+    np.testing.assert_allclose(geometry.home, [0.0, 0.0, 1.0], rtol=0, atol=1e-15)
 
 
 @pytest.mark.parametrize(
@@ -175,5 +180,5 @@ def test_lengths_at_random_are_solved_or_refused_but_never_crash(geometry):
         except UnreachableError:
             refused += 1
         else:
-            np.testing.assert_allclose(geometry.lengths(pose), lengths, atol=INVERSION)
+            np.testing.assert_allclose(geometry.lengths(pose), lengths, rtol=0, atol=INVERSION)
     assert refused > 200

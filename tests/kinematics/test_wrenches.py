@@ -60,7 +60,7 @@ def test_the_printed_last_sign_would_cost_a_tenth_of_a_newton_metre_at_80_newton
     """Errata E-32: 2 y0 Fx = 0.106 N m."""
     wrench = np.array([80.0, 0.0, 0.0, 0.0, 0.0, 0.0])
     gap = as_printed(wrench, POSITION) - sensor_to_top(wrench, POSITION)
-    np.testing.assert_allclose(gap, [0, 0, 0, 0, 0, 2 * POSITION[1] * 80.0], atol=ROUND_OFF)
+    np.testing.assert_allclose(gap, [0, 0, 0, 0, 0, 2 * POSITION[1] * 80.0], rtol=0, atol=ROUND_OFF)
     assert abs(abs(gap[5]) - 0.106) < 0.0005
 
 

@@ -70,7 +70,9 @@ def test_the_mass_matrix_equals_pinocchio(fixed, other_engine, states):
         mujoco.mj_forward(model, data)
         upper = np.triu(pin.crba(arm, work, q))
         expected = upper + np.triu(upper, 1).T
-        np.testing.assert_allclose(full_mass_matrix(model, data), expected, atol=TWO_ENGINES)
+        np.testing.assert_allclose(
+            full_mass_matrix(model, data), expected, rtol=0, atol=TWO_ENGINES
+        )
 
 
 def test_the_bias_forces_equal_pinocchio(fixed, other_engine, states):
@@ -80,7 +82,7 @@ def test_the_bias_forces_equal_pinocchio(fixed, other_engine, states):
         data.qpos[:], data.qvel[:] = q, rate
         mujoco.mj_forward(model, data)
         expected = pin.nonLinearEffects(arm, work, q, rate)
-        np.testing.assert_allclose(data.qfrc_bias, expected, atol=TWO_ENGINES)
+        np.testing.assert_allclose(data.qfrc_bias, expected, rtol=0, atol=TWO_ENGINES)
 
 
 def test_the_gravity_torques_equal_pinocchio(fixed, other_engine, states):
@@ -90,7 +92,7 @@ def test_the_gravity_torques_equal_pinocchio(fixed, other_engine, states):
         data.qpos[:], data.qvel[:] = q, 0.0
         mujoco.mj_forward(model, data)
         expected = pin.computeGeneralizedGravity(arm, work, q)
-        np.testing.assert_allclose(data.qfrc_bias, expected, atol=TWO_ENGINES)
+        np.testing.assert_allclose(data.qfrc_bias, expected, rtol=0, atol=TWO_ENGINES)
 
 
 def test_the_tip_lies_where_pinocchio_puts_it(fixed, other_engine, states):
@@ -101,7 +103,7 @@ def test_the_tip_lies_where_pinocchio_puts_it(fixed, other_engine, states):
         mujoco.mj_kinematics(model, data)
         pin.forwardKinematics(arm, work, q)
         expected = work.oMi[3].act(np.array([A3, 0.0, D3]))
-        np.testing.assert_allclose(data.site("tip").xpos, expected, atol=TWO_ENGINES)
+        np.testing.assert_allclose(data.site("tip").xpos, expected, rtol=0, atol=TWO_ENGINES)
 
 
 def test_friction_brakes_each_joint_by_its_own_coefficient(fixed, plant):
@@ -149,9 +151,9 @@ def payload(plant):
 
 def test_the_payload_s_inertia_about_the_top_frame_is_the_fact_sheet_s(payload):
     """Its 63.9 about y counts the rotors of joints 2 and 3, which are no inertia of the base."""
-    np.testing.assert_allclose(np.diag(payload)[:3], 93.7, atol=1e-12)
+    np.testing.assert_allclose(np.diag(payload)[:3], 93.7, rtol=0, atol=1e-12)
     rotors = np.array([0.0, ARMATURE[1] + ARMATURE[2], 0.0])
-    np.testing.assert_allclose(np.diag(payload)[3:] + rotors, [54.4, 63.9, 9.44], atol=0.05)
+    np.testing.assert_allclose(np.diag(payload)[3:] + rotors, [54.4, 63.9, 9.44], rtol=0, atol=0.05)
 
 
 @pytest.mark.parametrize(
@@ -185,5 +187,7 @@ def test_the_free_arm_moves_as_the_platform_angles_say(plant):
         data.qpos[:6] = [*pose[:3], pose[5], pose[4], pose[3]]
         mujoco.mj_kinematics(model, data)
         expected = Rotation.from_euler("xyz", pose[3:]).as_matrix()
-        np.testing.assert_allclose(data.body("base").xmat.reshape(3, 3), expected, atol=1e-14)
-        np.testing.assert_allclose(data.body("base").xpos, pose[:3], atol=1e-14)
+        np.testing.assert_allclose(
+            data.body("base").xmat.reshape(3, 3), expected, rtol=0, atol=1e-14
+        )
+        np.testing.assert_allclose(data.body("base").xpos, pose[:3], rtol=0, atol=1e-14)

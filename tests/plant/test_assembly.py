@@ -100,12 +100,12 @@ def test_bodies_of_a_part_keep_the_numbers_of_its_file(rig, file, prefix):
         joined = rig.model.body(prefix + alone.name)
         for field in ("mass", "inertia", "iquat"):
             np.testing.assert_allclose(
-                getattr(joined, field), getattr(alone, field), atol=SAME_NUMBER
+                getattr(joined, field), getattr(alone, field), rtol=0, atol=SAME_NUMBER
             )
-        np.testing.assert_allclose(joined.ipos, alone.ipos, atol=WRITTEN_DIGITS)
+        np.testing.assert_allclose(joined.ipos, alone.ipos, rtol=0, atol=WRITTEN_DIGITS)
         if part.body_parentid[i]:  # a root's place is where it is attached
-            np.testing.assert_allclose(joined.pos, alone.pos, atol=SAME_NUMBER)
-            np.testing.assert_allclose(joined.quat, alone.quat, atol=SAME_NUMBER)
+            np.testing.assert_allclose(joined.pos, alone.pos, rtol=0, atol=SAME_NUMBER)
+            np.testing.assert_allclose(joined.quat, alone.quat, rtol=0, atol=SAME_NUMBER)
 
 
 @pytest.mark.parametrize(("file", "prefix"), PARTS)
@@ -117,7 +117,7 @@ def test_joints_of_a_part_keep_the_numbers_of_its_file(rig, file, prefix):
         assert joined.type == alone.type
         for field in ("damping", "stiffness", "armature", "pos", "axis"):
             np.testing.assert_allclose(
-                getattr(joined, field), getattr(alone, field), atol=SAME_NUMBER
+                getattr(joined, field), getattr(alone, field), rtol=0, atol=SAME_NUMBER
             )
 
 
@@ -127,8 +127,8 @@ def test_sites_of_a_part_keep_the_places_of_its_file(rig, file, prefix):
     for i in range(part.nsite):
         alone = part.site(i)
         joined = rig.model.site(prefix + alone.name)
-        np.testing.assert_allclose(joined.pos, alone.pos, atol=WRITTEN_DIGITS)
-        np.testing.assert_allclose(joined.quat, alone.quat, atol=SAME_NUMBER)
+        np.testing.assert_allclose(joined.pos, alone.pos, rtol=0, atol=WRITTEN_DIGITS)
+        np.testing.assert_allclose(joined.quat, alone.quat, rtol=0, atol=SAME_NUMBER)
 
 
 def test_a_changed_parameter_reaches_the_model(plant):
@@ -149,7 +149,7 @@ def test_the_loop_closes_at_every_pose(rig, placements):
         for leg in range(1, 7):
             rod = rig.data.site(f"leg{leg}/rod_end").xpos
             joint = rig.data.site(f"platform/joint{leg}").xpos
-            np.testing.assert_allclose(rod, joint, atol=CLOSURE)
+            np.testing.assert_allclose(rod, joint, rtol=0, atol=CLOSURE)
 
 
 def test_the_top_site_stands_at_the_commanded_pose(rig, placements):
@@ -157,15 +157,17 @@ def test_the_top_site_stands_at_the_commanded_pose(rig, placements):
         rig.place(pose, q)
         mujoco.mj_kinematics(rig.model, rig.data)
         top = rig.data.site("platform/top")
-        np.testing.assert_allclose(top.xpos, rig.plant.geometry.home + pose[:3], atol=CLOSURE)
+        np.testing.assert_allclose(
+            top.xpos, rig.plant.geometry.home + pose[:3], rtol=0, atol=CLOSURE
+        )
         expected = Rotation.from_euler("xyz", pose[3:]).as_matrix()
-        np.testing.assert_allclose(top.xmat.reshape(3, 3), expected, atol=CLOSURE)
+        np.testing.assert_allclose(top.xmat.reshape(3, 3), expected, rtol=0, atol=CLOSURE)
 
 
 def test_the_fact_sheet_s_first_moments_are_computed_here():
     """P as printed there to three digits; guards the helper, which the next test relies on."""
     expected = [0, 0, 63.171, 0, -5.985, 5.066, -0.104, 2.620, 0]
-    np.testing.assert_allclose(first_moments(), expected, atol=0.001)
+    np.testing.assert_allclose(first_moments(), expected, rtol=0, atol=0.001)
 
 
 def test_at_rest_the_sensor_reads_the_gravity_wrench(rig, placements):
@@ -187,7 +189,7 @@ def test_level_and_stretched_the_arm_weighs_as_the_thesis_computes():
     """Fact sheet 5: M_g about t = (-58.7, 75.4, 0) N m at q = 0."""
     g = np.array([0.0, 0.0, -GRAVITY])
     moment = gravity_regressor(np.zeros(3), g) @ first_moments()
-    np.testing.assert_allclose(moment, [-58.7, 75.4, 0.0], atol=0.05)
+    np.testing.assert_allclose(moment, [-58.7, 75.4, 0.0], rtol=0, atol=0.05)
 
 
 def test_the_closure_holds_the_rig_together_under_its_weight(rig, plant):

@@ -282,6 +282,7 @@ def test_a_missing_scenario_is_refused(tmp_path):
         ("run.duration=2 min", ("run.duration", "2 min")),
         ('run.duration="2 min"', ("run.duration", "2 min")),
         ("platform.mode=position", ("platform.mode", "position")),
+        ("platform.mode =  position ", ("platform.mode", "position")),
         ("question=a=b", ("question", "a=b")),
         ("question=", ("question", "")),
     ],

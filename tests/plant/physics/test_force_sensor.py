@@ -47,15 +47,17 @@ def test_the_start_is_a_steady_state(blocks):
     first = s["signal"][0].copy()
     for _ in range(100):
         sample(blocks, WRENCH)
-        np.testing.assert_allclose(s["signal"][0], first, atol=STEADY)
-    np.testing.assert_allclose(first, p["gain"][0] @ WRENCH + p["offset"][0] + 0.3, atol=STEADY)
+        np.testing.assert_allclose(s["signal"][0], first, rtol=0, atol=STEADY)
+    np.testing.assert_allclose(
+        first, p["gain"][0] @ WRENCH + p["offset"][0] + 0.3, rtol=0, atol=STEADY
+    )
 
 
 def test_the_gain_at_rest_is_one(blocks):
     start(blocks, np.zeros(6))
     for _ in range(3000):  # 1 s: 90 time constants
         _, reading = sample(blocks, WRENCH)
-    np.testing.assert_allclose(reading, WRENCH, atol=1e-8)
+    np.testing.assert_allclose(reading, WRENCH, rtol=0, atol=1e-8)
 
 
 @pytest.mark.parametrize(
@@ -84,7 +86,7 @@ def test_the_chain_is_the_filter_of_scipy(blocks):
     series = RNG.normal(size=(300, 6))
     out = np.array([sample(blocks, row)[1] for row in series])
     b, a = butter(2, CORNER, fs=1.0 / TICK)
-    np.testing.assert_allclose(out, lfilter(b, a, series, axis=0), atol=1e-12)
+    np.testing.assert_allclose(out, lfilter(b, a, series, axis=0), rtol=0, atol=1e-12)
 
 
 def test_cross_talk_carries_one_axis_into_another(blocks):
@@ -93,7 +95,7 @@ def test_cross_talk_carries_one_axis_into_another(blocks):
     start(blocks, WRENCH)
     _, reading = sample(blocks, WRENCH)
     expected = WRENCH + np.array([0, 0, 0, 0.01 * WRENCH[2], 0, 0])
-    np.testing.assert_allclose(reading, expected, atol=STEADY)
+    np.testing.assert_allclose(reading, expected, rtol=0, atol=STEADY)
 
 
 def test_calibration_by_the_inverse_takes_cross_talk_out(blocks):
@@ -101,7 +103,7 @@ def test_calibration_by_the_inverse_takes_cross_talk_out(blocks):
     gain = np.eye(6) + 0.05 * RNG.normal(size=(6, 6))
     p["gain"], p["calibration"] = gain, np.linalg.inv(gain)
     start(blocks, WRENCH)
-    np.testing.assert_allclose(sample(blocks, WRENCH)[1], WRENCH, atol=STEADY)
+    np.testing.assert_allclose(sample(blocks, WRENCH)[1], WRENCH, rtol=0, atol=STEADY)
 
 
 @pytest.mark.parametrize("sign", [-1.0, 1.0])
@@ -114,7 +116,7 @@ def test_beyond_its_range_the_signal_stays_at_the_end_and_says_so(blocks, sign):
     start(blocks, heavy)
     inside, reading = sample(blocks, heavy)
     assert not inside
-    np.testing.assert_allclose(reading, [0, 0, sign * 100.0, 0, 0, 0], atol=STEADY)
+    np.testing.assert_allclose(reading, [0, 0, sign * 100.0, 0, 0, 0], rtol=0, atol=STEADY)
 
 
 def test_a_wrench_that_is_not_a_number_is_out_of_range(blocks):
@@ -126,7 +128,9 @@ def test_the_zero_is_subtracted(blocks):
     _, s = blocks
     s["zero"] = [1.0, 2.0, 3.0, 4.0, 5.0, 6.0]
     start(blocks, WRENCH)
-    np.testing.assert_allclose(sample(blocks, WRENCH)[1], WRENCH - [1, 2, 3, 4, 5, 6], atol=STEADY)
+    np.testing.assert_allclose(
+        sample(blocks, WRENCH)[1], WRENCH - [1, 2, 3, 4, 5, 6], rtol=0, atol=STEADY
+    )
 
 
 def test_counts_round_the_signal(blocks):
@@ -141,7 +145,7 @@ def test_drift_grows_with_time(blocks):
     p["drift"] = 1e-3
     p["numerator"], p["denominator"] = [1.0, 0.0, 0.0], [1.0, 0.0, 0.0]
     _, reading = sample(blocks, WRENCH, time=100.0)
-    np.testing.assert_allclose(reading, WRENCH + 0.1, atol=STEADY)
+    np.testing.assert_allclose(reading, WRENCH + 0.1, rtol=0, atol=STEADY)
 
 
 def test_white_noise_enters_before_the_filter(blocks):
@@ -174,4 +178,4 @@ def test_the_slow_noise_adds_to_the_signal(blocks):
     s["wander"] = 0.25
     for _ in range(3000):  # 1 s: the low-pass has settled
         _, reading = sample(blocks, WRENCH)
-    np.testing.assert_allclose(reading, WRENCH + 0.25, atol=1e-8)
+    np.testing.assert_allclose(reading, WRENCH + 0.25, rtol=0, atol=1e-8)

@@ -29,7 +29,7 @@ def test_a_reading_is_the_nearest_whole_count():
     for slide in RNG.uniform(-0.2, 0.2, (200, 6)):
         length = read(slide, resolution=COUNT)
         counts = length / COUNT
-        np.testing.assert_allclose(counts, np.round(counts), atol=1e-9)
+        np.testing.assert_allclose(counts, np.round(counts), rtol=0, atol=1e-9)
         assert np.max(np.abs(length - HOME - slide)) <= COUNT / 2 + ROUND_OFF
 
 
@@ -41,4 +41,4 @@ def test_rounding_is_not_the_identity():
 def test_noise_enters_by_its_standard_deviation():
     normal = np.array([1.0, -2.0, 0.5, 0.0, 3.0, -1.0], np.float32)
     length = read(np.zeros(6), noise=1e-5, normal=normal)
-    np.testing.assert_allclose(length - HOME, 1e-5 * normal, atol=ROUND_OFF)
+    np.testing.assert_allclose(length - HOME, 1e-5 * normal.astype(float), rtol=0, atol=ROUND_OFF)

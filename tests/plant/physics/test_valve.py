@@ -28,7 +28,7 @@ def moved(step, times=1, lag=LAG):
 @pytest.mark.parametrize("step", [4e-8, 341e-6, 1e-3, 0.004, 0.1])
 def test_the_spool_follows_the_exact_step_response(step):
     expected = CURRENT + (SPOOL - CURRENT) * np.exp(-step / LAG)
-    np.testing.assert_allclose(moved(step)[0], expected, atol=ROUND_OFF)
+    np.testing.assert_allclose(moved(step)[0], expected, rtol=0, atol=ROUND_OFF)
 
 
 @pytest.mark.parametrize("step", [4e-8, 341e-6, 1e-3, 0.004, 0.1])
@@ -43,8 +43,8 @@ def test_the_mean_is_the_integral_over_the_step(step):
 def test_ten_small_steps_are_one_large_step():
     spool, means = moved(1e-4, times=10)
     whole, mean = moved(1e-3)
-    np.testing.assert_allclose(spool, whole, atol=ROUND_OFF)
-    np.testing.assert_allclose(means.mean(axis=0), mean[0], atol=1e-13)
+    np.testing.assert_allclose(spool, whole, rtol=0, atol=ROUND_OFF)
+    np.testing.assert_allclose(means.mean(axis=0), mean[0], rtol=0, atol=1e-13)
 
 
 def test_a_spool_at_its_command_stays():

@@ -1,0 +1,156 @@
+"""The command line: answers, exit codes, and one line for whatever is wrong."""
+
+import json
+import signal
+import subprocess
+import sys
+import time
+
+import pytest
+
+from ves_twin.cli.main import COMMANDS, main
+from ves_twin.recording.files import load_recording
+from ves_twin.scenario.load import scenario_questions
+
+QUICK = ["--set", "run.duration=0.3", "--set", "run.settle=0.3", "--no-rrd"]
+
+
+def test_scenarios_lists_every_question(capsys):
+    assert main(["scenarios"]) == 0
+    out = capsys.readouterr().out
+    for name, question in scenario_questions().items():
+        assert name in out
+        assert question in out
+
+
+def test_json_output_is_one_object_and_nothing_else(capsys, tmp_path):
+    assert main(["scenarios", "--json"]) == 0
+    assert set(json.loads(capsys.readouterr().out)) == set(scenario_questions())
+    assert main(["info", "--json"]) == 0
+    assert json.loads(capsys.readouterr().out)["versions"]["mujoco"].startswith("3.17")
+    assert main(["run", "position_sine", *QUICK, "--json", "--out", str(tmp_path)]) == 0
+    assert json.loads(capsys.readouterr().out)["outcome"] == "completed"
+
+
+def test_run_writes_what_the_contract_names(capsys, tmp_path):
+    command = ["run", "beam_horizontal_truth", "--set", "run.duration=1.5", "--seed", "4"]
+    assert main([*command, "--out", str(tmp_path)]) == 0
+    assert sorted(p.name for p in tmp_path.iterdir()) == [
+        "recording.parquet",
+        "run.rrd",
+        "summary.json",
+    ]
+    summary = json.loads((tmp_path / "summary.json").read_text())
+    assert summary["outcome"] == "completed"
+    assert summary["seed"] == 4
+    assert set(summary["emulation_error"]) == {"x", "y", "z", "rx", "ry", "rz"}
+    assert {"rms", "peak", "relative"} <= set(summary["emulation_error"]["y"])
+    assert {"plant_hash", "duration", "timing"} <= set(summary)
+    assert load_recording(tmp_path).info.seed == 4
+    assert "emulation error" in capsys.readouterr().out
+
+
+def test_runs_without_out_get_folders_of_their_own(capsys, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    assert main(["run", "position_sine", *QUICK]) == 0
+    assert main(["run", "position_sine", *QUICK]) == 0
+    assert sorted(p.name for p in (tmp_path / "runs").iterdir()) == [
+        "position_sine",
+        "position_sine-2",
+    ]
+
+
+def test_run_that_ends_early_exits_3_and_keeps_its_rows(capsys, tmp_path):
+    assert main(["run", "beam_horizontal_corrected", "--no-rrd", "--out", str(tmp_path)]) == 3
+    assert len(load_recording(tmp_path)) > 5
+
+
+BAD = [
+    (["rnu"], "did you mean 'run'"),
+    (["run"], "SCENARIO"),
+    (["run", "beam_horizontal_trut"], "did you mean 'beam_horizontal_truth'"),
+    (["run", "no/such/file.toml"], "does not exist"),
+    (["run", "position_sine", "--set", "legs.gian=3"], "did you mean 'legs.gain'"),
+    (["run", "position_sine", "--set", "legs.gain"], "KEY=VALUE"),
+    (["run", "position_sine", "--set", "legs.gain=3 mm"], "1/s"),
+    (["run", "position_sine", "--set", "run.duration=nan"], "finite"),
+    (["run", "position_sine", "--set", "platform.start=[1,2]"], "6 numbers"),
+    (["run", "position_sine", "--set", "parameters.leg.rod_mass=-2"], "at least 0 kg"),
+    (["run", "position_sine", "--set", "parameters.leg.rod_mass=0"], "leg1/rod"),
+    (["run", "position_sine", "--set", "parameters.leg.rod_mas=2"], "leg.rod_mass"),
+    (["run", "position_sine", "--set", "platform.start=[0.5,0,0,0,0,0]"], "needs leg"),
+    (["run", "position_sine", "--plant", "vse2"], "did you mean 'ves2'"),
+    (["run", "position_sine", "--seed", "-1"], "at least 0"),
+    (["run", "position_sine", "--seed", "one"], "one"),
+    (["run", "position_sine", "--sede", "1"], "did you mean '--seed'"),
+    (["view", "no/such/run.parquet"], "does not exist"),
+    (["info", "--plant", "no.toml"], "does not exist"),
+]
+
+
+@pytest.mark.parametrize(("words", "says"), BAD, ids=[" ".join(words) for words, _ in BAD])
+def test_bad_input_gets_one_line_and_exit_2(capsys, tmp_path, monkeypatch, words, says):
+    monkeypatch.chdir(tmp_path)
+    assert main(words) == 2
+    out, err = capsys.readouterr()
+    assert out == ""
+    assert says in err
+    assert err.count("\n") == 1
+    assert "Traceback" not in err
+
+
+def test_plant_file_of_another_version_gets_one_line(capsys, tmp_path):
+    path = tmp_path / "rig.toml"
+    path.write_text('schema = 99\nbase = "ves2"\n')
+    assert main(["info", "--plant", str(path)]) == 2
+    assert "schema version 99" in capsys.readouterr().err
+
+
+def test_folder_that_cannot_be_made_gets_one_line(capsys, tmp_path):
+    (tmp_path / "file").write_text("")
+    assert main(["run", "position_sine", *QUICK, "--out", str(tmp_path / "file" / "x")]) == 2
+    assert "cannot write" in capsys.readouterr().err
+
+
+def test_info_tells_what_a_plant_changes(capsys, tmp_path):
+    path = tmp_path / "rig.toml"
+    path.write_text('schema = 1\nbase = "ves2"\n[parameters]\n"leg.rod_mass" = "2700 g"\n')
+    assert main(["info", "--plant", str(path)]) == 0
+    assert "leg.rod_mass  2.5 -> 2.7 kg" in capsys.readouterr().out
+
+
+@pytest.mark.parametrize("command", list(COMMANDS))
+def test_every_command_has_help(capsys, command):
+    with pytest.raises(SystemExit) as caught:
+        main([command, "--help"])
+    assert caught.value.code == 0
+    assert command in capsys.readouterr().out
+
+
+@pytest.mark.slow
+def test_ctrl_c_keeps_the_recording_and_exits_130(tmp_path):
+    command = [
+        *(sys.executable, "-m", "ves_twin.cli.main", "run", "position_sine", "--no-rrd"),
+        *("--set", "run.duration=600", "--out", str(tmp_path)),
+    ]
+    run = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True)
+    stream = tmp_path / "recording.arrows"
+    deadline = time.monotonic() + 120
+    while time.monotonic() < deadline and not (stream.exists() and stream.stat().st_size > 3e5):
+        time.sleep(0.05)
+    run.send_signal(signal.SIGINT)
+    out, _ = run.communicate(timeout=60)
+    assert run.returncode == 130
+    assert "interrupted" in out
+    recording = load_recording(tmp_path)
+    assert recording.info.outcome == "interrupted"
+    assert len(recording) > 50
+
+
+def test_help_needs_no_simulator():
+    """`ves-twin --help` imports neither MuJoCo nor numba, so that it answers at once."""
+    code = (
+        "import sys, ves_twin.cli.main;"
+        "sys.exit(any(m in sys.modules for m in ('mujoco', 'numba', 'rerun', 'pydantic')))"
+    )
+    assert subprocess.run([sys.executable, "-c", code], check=False).returncode == 0

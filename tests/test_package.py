@@ -1,0 +1,89 @@
+"""The package as it is installed: names, data files, house rules."""
+
+import ast
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+import ves_twin
+
+PACKAGE = Path(ves_twin.__file__).parent
+ROOT = PACKAGE.parent
+
+
+def test_every_public_name_exists():
+    for name in ves_twin.__all__:
+        assert getattr(ves_twin, name) is not None
+
+
+def test_unknown_public_name_is_an_attribute_error():
+    with pytest.raises(AttributeError, match="no attribute 'simulat'"):
+        ves_twin.simulat  # noqa: B018
+
+
+@pytest.mark.slow
+def test_wheel_carries_models_and_scenarios_and_works_from_another_folder(tmp_path):
+    build = [sys.executable, "-m", "pip", "wheel", "--quiet", "--no-deps", "--no-build-isolation"]
+    subprocess.run([*build, "--wheel-dir", str(tmp_path), str(ROOT)], check=True)
+    (wheel,) = tmp_path.glob("*.whl")
+    site = tmp_path / "site"
+    install = [
+        sys.executable,
+        "-m",
+        "pip",
+        "install",
+        "--quiet",
+        "--no-deps",
+        "--target",
+        str(site),
+    ]
+    subprocess.run([*install, str(wheel)], check=True)
+    elsewhere = tmp_path / "elsewhere"
+    elsewhere.mkdir()
+    code = (
+        "import ves_twin, ves_twin.cli.main as m, sys;"
+        f"assert ves_twin.__file__.startswith({str(site)!r});"
+        "sys.exit(m.main(['run', 'position_sine', '--no-rrd', '--set', 'run.duration=0.2']))"
+    )
+    environment = {**os.environ, "PYTHONPATH": str(site)}
+    subprocess.run([sys.executable, "-c", code], cwd=elsewhere, env=environment, check=True)
+    assert (elsewhere / "runs" / "position_sine" / "recording.parquet").is_file()
+
+
+SOURCES = sorted(PACKAGE.rglob("*.py"))
+
+
+@pytest.mark.parametrize("path", SOURCES, ids=[str(p.relative_to(PACKAGE)) for p in SOURCES])
+def test_house_rules_hold(path):
+    text = path.read_text()
+    tree = ast.parse(text)
+    assert text.count("\n") <= 400
+    assert ast.get_docstring(tree), "the first line says what the file holds"
+    for node in ast.walk(tree):
+        if isinstance(node, ast.FunctionDef):
+            assert node.end_lineno - node.lineno <= 75, node.name
+
+
+@pytest.mark.parametrize("path", SOURCES, ids=[str(p.relative_to(PACKAGE)) for p in SOURCES])
+def test_every_documented_argument_exists(path):
+    """An Args section names only arguments that the function has."""
+    for node in ast.walk(ast.parse(path.read_text())):
+        if not isinstance(node, ast.FunctionDef):
+            continue
+        lines = (ast.get_docstring(node) or "").split("\n")
+        if "Args:" not in lines:
+            continue
+        section = lines[lines.index("Args:") + 1 :]
+        end = next(
+            (i for i, line in enumerate(section) if not line.startswith("    ")), len(section)
+        )
+        named = {
+            line.strip().split(":")[0]
+            for line in section[:end]
+            if line.startswith("    ") and not line.startswith("     ")
+        }
+        arguments = {a.arg for a in [*node.args.args, *node.args.kwonlyargs]}
+        assert named <= arguments, f"{node.name}: {named - arguments}"
