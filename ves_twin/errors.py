@@ -21,6 +21,7 @@ class UnknownNameError(VesTwinError):
 
     def __init__(self, kind: str, name: str, known: Iterable[str]) -> None:
         names = sorted(known)
+        name = name if len(name) < 80 else f"{name[:77]}..."
         near = difflib.get_close_matches(name, names, n=1, cutoff=0.5)
         hint = f"did you mean '{near[0]}'?" if near else f"known: {', '.join(names) or 'none'}"
         super().__init__(f"unknown {kind} '{name}'; {hint}")

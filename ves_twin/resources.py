@@ -35,11 +35,18 @@ def find_resource(kind: str, folder: str, name_or_path: str, suffix: str = ".tom
     """
     given = Path(name_or_path)
     if given.suffix or len(given.parts) > 1:
-        if given.is_file():
+        if _is_file(given):
             return given
         raise FileAccessError(f"{kind} file '{name_or_path}' does not exist")
     root = resource_folder(folder)
     path = root / f"{name_or_path}{suffix}"
-    if path.is_file():
+    if _is_file(path):
         return path
     raise UnknownNameError(kind, name_or_path, (p.stem for p in root.glob(f"*{suffix}")))
+
+
+def _is_file(path: Path) -> bool:
+    try:
+        return path.is_file()
+    except (OSError, ValueError):  # a name too long, or with a NUL
+        return False

@@ -60,7 +60,7 @@ def to_si(value: object, unit: str, what: str) -> float:
 _QUANTITY = re.compile(r"\s*([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*([^\d\s].*)?")
 """A number, then the rest as its unit: a text such as "12,5 mm" must not pass as 125 mm."""
 
-_ANGLE = re.compile(r"rad|deg|turn|rev|rpm|arcmin|arcsec", re.IGNORECASE)
+_ANGLE = re.compile(r"rad|deg|°|turn|rev|cycle|circle|rpm|rps|arcmin|arcsec", re.IGNORECASE)
 
 
 def _parse(text: str, unit: str, what: str) -> float:

@@ -7,6 +7,7 @@ from scipy.spatial.transform import Rotation
 
 from ves_twin.plant.assembly import assemble
 from ves_twin.plant.plant import mjcf_part
+from ves_twin.plant.statics import place_rig
 
 CLOSURE = 1e-12
 """m. Rod end and platform joint come out of different chains of double-precision products."""
@@ -170,11 +171,12 @@ def test_the_fact_sheet_s_first_moments_are_computed_here():
     np.testing.assert_allclose(first_moments(), expected, rtol=0, atol=0.001)
 
 
-def test_at_rest_the_sensor_reads_the_gravity_wrench(rig, placements):
+def test_at_rest_the_sensor_reads_the_gravity_wrench(rig, placements, figure):
     """MuJoCo reads what the platform does to the payload: minus the payload's weight."""
     model, data = rig.model, rig.data
     at = rig.layout.wrench_sensor
     scale = np.repeat([sum(MASS) * GRAVITY, 60.0], 3)
+    worst = 0.0
     for pose, q in placements:
         rig.place(pose, q)
         data.qacc[:] = 0.0
@@ -182,7 +184,8 @@ def test_at_rest_the_sensor_reads_the_gravity_wrench(rig, placements):
         mujoco.mj_sensorAcc(model, data)
         reading = -data.sensordata[at : at + 6]
         expected = gravity_wrench_in_sensor(pose, q)
-        assert np.max(np.abs(reading - expected) / scale) < STATIC
+        worst = max(worst, np.max(np.abs(reading - expected) / scale))
+    figure("static sensor reading against the gravity wrench, 50 poses", worst, STATIC, "relative")
 
 
 def test_level_and_stretched_the_arm_weighs_as_the_thesis_computes():
@@ -193,11 +196,9 @@ def test_level_and_stretched_the_arm_weighs_as_the_thesis_computes():
 
 
 def test_the_closure_holds_the_rig_together_under_its_weight(rig, plant):
-    """Weightless steps would be cheating: 10 ms of free fall into the legs' drives-off state."""
+    """10 ms with the drives off: the platform sinks, the loop stays closed."""
     model = rig.model
     data = mujoco.MjData(model)
-    from ves_twin.plant.statics import place_rig
-
     place_rig(data, rig.layout, plant.geometry, np.zeros(6), np.array([0.0, 1.0, 0.5]))
     mujoco.mj_step(model, data, nstep=30)
     gaps = [

@@ -27,6 +27,7 @@ from ves_twin.units import to_si
         ("100 bar", "Pa", 1e7),
         ("-2.5e-3 s", "s", -0.0025),
         ("2 Hz", "1/s", 2.0),
+        ("90°", "rad", math.pi / 2),
     ],
 )
 def test_a_quantity_is_converted(value, unit, expected):
@@ -55,6 +56,8 @@ def test_a_quantity_is_converted(value, unit, expected):
         ("[1, 2]", "m"),
         ("6.28 rad/s", "Hz"),
         ("1 Hz", "rad/s"),
+        ("5 cycle/s", "Hz"),
+        ("3 rps", "Hz"),
     ],
     ids=str,
 )

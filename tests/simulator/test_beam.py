@@ -39,7 +39,13 @@ def test_no_vibration_grows_at_the_structural_modes(beam_minute, figure):
     figure("beam: largest line from 9 to 14 Hz in the last 6 s", late, 0.05, "mm")
 
 
-@pytest.mark.parametrize("axis", ["y", "z", "rx", "ry", "rz"])
+# A third above what was measured for seed 0; other seeds stay below it (noise is a small part).
+LIMITS = {
+    "y": (9.3, 3.0), "z": (4.1, 3.2), "rx": (0.9, 0.45), "ry": (0.8, 0.47), "rz": (1.2, 0.4),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("axis", list(LIMITS))
 def test_most_of_the_error_is_the_legs_bandwidth_and_noise(beam_minute, figure, axis):
     errors = emulation_error(
         beam_minute["truth.pose"],
@@ -48,8 +54,13 @@ def test_most_of_the_error_is_the_legs_bandwidth_and_noise(beam_minute, figure, 
     )
     error = errors[axis]
     unit = "mrad" if axis.startswith("r") else "mm"
-    figure(f"beam: rms emulation error {axis}", error.rms * 1e3, 12.0, unit)
-    figure(f"beam: rms that the legs do not explain, {axis}", error.rms_rest * 1e3, 4.0, unit)
+    figure(f"beam: rms emulation error {axis}", error.rms * 1e3, LIMITS[axis][0], unit)
+    figure(
+        f"beam: rms that the legs do not explain, {axis}",
+        error.rms_rest * 1e3,
+        LIMITS[axis][1],
+        unit,
+    )
 
 
 def test_leg_bandwidth_explains_most_of_the_error_along_the_swing(beam_minute, figure):

@@ -110,9 +110,12 @@ def _parse(content: dict[str, object], path: Path) -> EmulatedSystem:
 
 def _matrix(value: object, what: str) -> FloatArray:
     try:
-        array = np.array(value, dtype=float)
-    except (TypeError, ValueError):
+        array = np.array(value)
+    except ValueError:  # rows of different lengths
         raise InvalidInputError(what, value, "6 numbers or 6 rows of 6 numbers") from None
+    if array.dtype.kind not in "iuf":
+        raise InvalidInputError(what, value, "6 numbers or 6 rows of 6 numbers")
+    array = array.astype(float)
     if array.shape == (6,):
         array = np.diag(array)
     if array.shape != (6, 6):

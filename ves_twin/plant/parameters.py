@@ -75,6 +75,8 @@ class Parameter:
             if np.isfinite(self.high):
                 bounds += f" and at most {self.high:g}"
             raise InvalidInputError(self.name, came, bounds)
+        if self.unit == "1" and np.any(self.value != np.rint(self.value)):
+            raise InvalidInputError(self.name, came, "a whole number")
         self.value.setflags(write=False)
         return self
 

@@ -13,6 +13,7 @@ from ves_twin.control.motion import ArmMotion, Move, PlatformMotion, Sine
 from ves_twin.control.registry import GRAVITY_COMPENSATIONS, PLATFORM_CONTROLLERS
 from ves_twin.plant.plant import Plant
 from ves_twin.plant.statics import check_reach
+from ves_twin.recording.recording import Event
 from ves_twin.scenario.schema import Platform, Scenario
 from ves_twin.simulator.computers import Computers
 from ves_twin.simulator.recorder import IDEAL, LEG_LAG
@@ -101,6 +102,18 @@ def arm_motion(scenario: Scenario) -> ArmMotion:
     """The arm's moves."""
     moves = tuple(Move(m.start, m.duration, np.array(m.to)) for m in scenario.arm.moves)
     return ArmMotion(np.array(scenario.arm.start), moves)
+
+
+def agenda_of(scenario: Scenario) -> list[Event]:
+    """What the scenario plans, as events in the order of time."""
+    events = []
+    if scenario.platform.emulated is not None:
+        events.append(Event(0.0, "released", "the platform moves as the emulated base"))
+    for number, move in enumerate(scenario.arm.moves, 1):
+        angles = ", ".join(f"{angle:.4g}" for angle in move.to)
+        events.append(Event(move.start, "arm_move", f"move {number} to {angles} rad begins"))
+        events.append(Event(move.start + move.duration, "arm_move", f"move {number} ends"))
+    return sorted(events, key=lambda event: event.time)
 
 
 def _motion(platform: Platform) -> PlatformMotion | None:

@@ -15,7 +15,12 @@ from ves_twin.recording.recording import Event
 from ves_twin.scenario.schema import Scenario
 from ves_twin.simulator.blocks import STATE, parameter_block
 from ves_twin.simulator.board import Board
-from ves_twin.simulator.build import belief_of, build_computers, build_references
+from ves_twin.simulator.build import (
+    agenda_of,
+    belief_of,
+    build_computers,
+    build_references,
+)
 from ves_twin.simulator.clock import Clock
 from ves_twin.simulator.codes import RUNNING
 from ves_twin.simulator.computers import ComputersSnapshot
@@ -35,6 +40,7 @@ class Snapshot:
     tick: int
     outcome: Outcome | None
     events: tuple[Event, ...]
+    agenda: tuple[Event, ...]
     data: mujoco.MjData
     state: Block
     board: Block
@@ -102,6 +108,7 @@ class Simulator:
         self._handles = handles(self.model, self.data)
         self._arrays = (self.data.qpos, self.data.qvel, self.data.ctrl, self.data.sensordata)
         self._end = self.clock.ticks(scenario.run.duration)
+        self._agenda = agenda_of(scenario)
         self.tick = 0
         settle(self)
 
@@ -118,6 +125,7 @@ class Simulator:
     def advance(self, seconds: float) -> None:
         """Run on for a time [s], to the nearest tick, or until the run ends."""
         self.run_to(min(self.tick + self.clock.ticks(seconds), self._end))
+        self._note_agenda()
         if self.tick >= self._end and self.outcome is None:
             self.end(Outcome.COMPLETED, f"reached {self.time:.3f} s")
 
@@ -157,6 +165,7 @@ class Simulator:
     def end(self, outcome: Outcome, why: str) -> None:
         """End the run with a named outcome; what was recorded is kept."""
         self.outcome = outcome
+        self._note_agenda()
         self.note(outcome.value, why)
         self.recorder.flush()
 
@@ -166,6 +175,7 @@ class Simulator:
             tick=self.tick,
             outcome=self.outcome,
             events=tuple(self.events),
+            agenda=tuple(self._agenda),
             data=copy.copy(self.data),
             state=self.state.copy(),
             board=self.board.block.copy(),
@@ -182,6 +192,12 @@ class Simulator:
         self.recorder.restore(snapshot.recorder)
         self.tick, self.outcome = snapshot.tick, snapshot.outcome
         self.events = list(snapshot.events)
+        self._agenda = list(snapshot.agenda)
+
+    def _note_agenda(self) -> None:
+        """What was planned for the time since the last look becomes an event."""
+        while self._agenda and self._agenda[0].time < self.time:
+            self.events.append(self._agenda.pop(0))
 
     def _interrupt(self) -> bool:
         """The clock interrupt of the computers; False if it ends the run."""
