@@ -125,15 +125,16 @@ def track_poses(
     poses = np.empty_like(lengths)
     for n in range(lengths.shape[0]):
         guess = pose.copy()
-        converged = False
-        for _ in range(8):
+        left = np.inf
+        chords = 0
+        while chords < 8 and not left < 1e-11:
             error = lengths[n] - leg_lengths(guess, base, top, home)
-            if np.max(np.abs(error)) < 1e-11:
-                converged = True
-                break
-            guess = guess + inverse @ error
-        if not converged:
+            left = np.max(np.abs(error))
+            guess += inverse @ error
+            chords += 1
+        if not left < 1e-11:
             guess, _ = solve_pose(lengths[n], pose, base, top, home, 1e-11, 50)
+        if chords > 4:  # the Jacobian has aged
             inverse[:] = np.linalg.inv(pose_jacobian(guess, base, top, home))
         pose[:] = guess
         poses[n] = guess

@@ -77,6 +77,7 @@ WORK = np.dtype(
         ("slide", np.float64, 6),
         ("speed", np.float64, 6),
         ("wrench", np.float64, 6),
+        ("lengths", np.float64, 6),
         ("q", np.float64, 3),
         ("rate", np.float64, 3),
         ("q_set", np.float64, 3),

@@ -12,9 +12,10 @@ from ves_twin.control.controller import PlatformController
 from ves_twin.control.gravity import GravityCompensation
 from ves_twin.control.motion import ArmMotion
 from ves_twin.control.readings import Readings
-from ves_twin.control.safety import NOT_A_POSE, SAFE, checked_lengths
+from ves_twin.control.safety import NOT_A_POSE
 from ves_twin.errors import ControllerError, VesTwinError, one_line
 from ves_twin.simulator.board import Board
+from ves_twin.simulator.setpoints import send_setpoints
 from ves_twin.types import Block, FloatArray
 
 
@@ -49,15 +50,11 @@ class Computers:
         self.gravity = gravity
         self._arm = arm
         self._period = period
-        self._geometry = belief.geometry
         g = belief.geometry
         self._reach = (g.base, g.top, g.home, g.lengths(np.zeros(6)), belief.leg_travel)
-        self._lengths = np.zeros(6)
         self._shared: deque[FloatArray] = deque(maxlen=gravity_age + 1)
-        self._cycle_start = state["cycle_start"]
+        self._state, self._board = state, board.block
         self._points = state["servo"]["points"][0]
-        self._leg_set = state["legs"]["command"][0]
-        self._pose, self._legs = board["platform.command"], board["leg.command"]
         self._estimate = board["gravity.estimate"]
         self.readings = Readings(
             leg_length=board.read_only("leg.length"),
@@ -82,32 +79,23 @@ class Computers:
             ControllerError: a controller raised, or its command is not six finite numbers.
         """
         self.estimate_gravity(time)
-        pose = self._decide(time)
-        code = checked_lengths(pose, *self._reach, self._lengths)
-        if code == SAFE:
-            self.send(tick, time, pose, self._lengths)
-        elif code == NOT_A_POSE:
-            raise self._refusal(pose, time)
-        return int(code)
-
-    def lengths(self, pose: FloatArray) -> FloatArray:
-        """Leg lengths [m] (6,) that the computers send for a pose (6,)."""
-        return self._geometry.lengths(pose)
+        return self.send(tick, time, self._decide(time))
 
     def estimate_gravity(self, time: float) -> None:
         """A new estimate goes into shared memory; the one of `age` cycles ago comes out."""
         self._shared.append(self.gravity.wrench(time, self.readings))
         self._estimate[:] = self._shared[0]
 
-    def send(self, tick: int, time: float, pose: FloatArray, lengths: FloatArray) -> None:
-        """Set-points to the legs, and the next commands to the arm's spline."""
-        self._pose[:] = pose
-        self._legs[:] = lengths
-        self._leg_set[:] = lengths
-        self._cycle_start[0] = tick
-        points = self._points
-        points[:3] = points[1:]
-        points[3] = self._arm.q(time + 2.0 * self._period)
+    def send(self, tick: int, time: float, pose: FloatArray) -> int:
+        """Set-points of a pose to the legs if they are safe, and the arm's command to its spline.
+
+        Returns and raises as `cycle`.
+        """
+        ahead = self._arm.q(time + 2.0 * self._period)
+        code = int(send_setpoints(tick, pose, ahead, *self._reach, self._state, self._board))
+        if code == NOT_A_POSE:
+            raise self._refusal(pose, time)
+        return code
 
     def start_arm(self, time: float) -> None:
         """Fill the spline's buffer for the cycle that ended at a time."""

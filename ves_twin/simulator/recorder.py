@@ -16,8 +16,11 @@ from ves_twin.simulator.clock import Clock
 from ves_twin.simulator.reference import ZeroGravityReference
 from ves_twin.types import FloatArray
 
+BUFFER_SECONDS = 4.0
+"""Simulated time that the buffer holds."""
+
 FLUSH_SECONDS = 0.5
-"""Rows leave the buffer at least this often, in simulated and in wall-clock time."""
+"""Rows leave the buffer at least this often in wall-clock time: what a kill can cost."""
 
 IDEAL, LEG_LAG = "reference.pose", "reference.pose_leg_lag"
 
@@ -103,7 +106,7 @@ class Recorder:
         self._references = dict(references)
         self.sink = sink
         self._cycle = clock.admittance * clock.tick
-        capacity = int(FLUSH_SECONDS / self._cycle) + 1
+        capacity = int(BUFFER_SECONDS / self._cycle) + 1
         self.log = np.zeros((capacity * (clock.admittance // clock.log + 2), WIDTH + 1))
         self._points = np.zeros((capacity, 4, 3))
         self._starts = np.zeros(capacity)

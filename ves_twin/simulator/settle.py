@@ -9,7 +9,7 @@ import numpy as np
 from ves_twin.control.leg_loop import start_legs
 from ves_twin.plant.physics.force_sensor import start_at
 from ves_twin.plant.statics import place_rig, static_leg_forces
-from ves_twin.simulator.build import emulated_of
+from ves_twin.simulator.build import belief_of, emulated_of
 from ves_twin.simulator.clock import cycle_time
 from ves_twin.simulator.codes import SLOW, WANDER
 from ves_twin.simulator.outcome import Outcome
@@ -34,13 +34,12 @@ def settle(sim: Simulator) -> None:
     pose = np.array(sim.scenario.platform.start)
     _start_states(sim, pose)
     computers = sim.computers
-    lengths = computers.lengths(pose)
     computers.start_arm(sim.time)
     averaged = min(cycles, int(ZEROING_SECONDS / (sim.clock.admittance * sim.clock.tick)) + 1)
     total = np.zeros(6)
     for cycle in range(cycles):
         computers.estimate_gravity(sim.time)
-        computers.send(sim.tick, sim.time, pose, lengths)
+        computers.send(sim.tick, sim.time, pose)
         sim.run_loop(sim.clock.admittance)
         if sim.outcome is not None:
             return
@@ -59,7 +58,7 @@ def settle(sim: Simulator) -> None:
 def _start_states(sim: Simulator, pose: FloatArray) -> None:
     """Positions, oil preload, integrators and filters of a rig that has long stood there."""
     geometry, layout, p, s = sim.plant.geometry, sim.layout, sim.parameters, sim.state
-    believed = sim.computers.lengths(pose)
+    believed = belief_of(sim.scenario).geometry.lengths(pose)
     place_rig(sim.data, layout, geometry, pose, np.array(sim.scenario.arm.start))
     force = static_leg_forces(sim.model, sim.data, layout, geometry, pose)
     slide = sim.data.qpos[layout.slide_qpos]
@@ -70,7 +69,7 @@ def _start_states(sim: Simulator, pose: FloatArray) -> None:
     start_legs(p[0]["legs"], s[0]["legs"], believed)
     wrench = GravityTruth(sim.model, sim.data, layout).gravity_in_sensor()
     _, slow = sim.noise.window(sim.tick - SLOW, 1)
-    start_at(p[0]["sensor"], s[0]["sensor"], wrench, slow[0, WANDER:])
+    start_at(p[0]["sensor"], s[0]["sensor"], wrench, slow[WANDER:, 0])
 
 
 def _zero(sim: Simulator, signal: FloatArray) -> None:

@@ -15,13 +15,15 @@ class GravityTruth:
 
     def __init__(self, model: mujoco.MjModel, data: mujoco.MjData, layout: Layout) -> None:
         self._weight = model.opt.gravity * float(model.body_subtreemass[layout.sensor_body])
-        self._com = data.subtree_com[layout.sensor_body]
-        self._origin = data.site_xpos[layout.sensor_site]
-        self._axes = data.site_xmat[layout.sensor_site]
+        self._live = (
+            data.subtree_com[layout.sensor_body],
+            data.site_xpos[layout.sensor_site],
+            data.site_xmat[layout.sensor_site],
+        )
 
     def gravity_in_sensor(self) -> FloatArray:
         """Weight of everything above the sensor and its moment, sensor axes [N, N m] (6,)."""
-        return gravity_wrench(self._weight, self._com, self._origin, self._axes)
+        return gravity_wrench(self._weight, *self._live)
 
 
 @compiled
