@@ -6,7 +6,7 @@ PYTHON ?= $(shell for p in python3.12 python3.11 python3 python; do \
 BIN := .venv/bin
 PIP := $(BIN)/python -m pip install --quiet --disable-pip-version-check
 
-.PHONY: demo test check fast types lint layers bench figures clean
+.PHONY: demo test check fast types lint layers bench figures picture clean
 
 demo: .venv/.run
 	$(BIN)/ves-twin run beam_horizontal_truth --out runs/demo
@@ -31,6 +31,9 @@ layers: .venv/.dev
 bench: .venv/.dev
 	$(BIN)/python benchmarks/loop_speed.py
 	$(BIN)/python benchmarks/memory.py
+
+picture: .venv/.dev
+	$(BIN)/python benchmarks/picture.py docs/run.png
 
 figures: .venv/.dev
 	$(BIN)/python -m pytest -n 0 --figures docs/figures.md \

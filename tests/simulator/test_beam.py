@@ -47,12 +47,8 @@ LIMITS = {
 
 @pytest.mark.parametrize("axis", list(LIMITS))
 def test_most_of_the_error_is_the_legs_bandwidth_and_noise(beam_minute, figure, axis):
-    errors = emulation_error(
-        beam_minute["truth.pose"],
-        beam_minute["reference.pose"],
-        beam_minute["reference.pose_leg_lag"],
-    )
-    error = errors[axis]
+    names = ("truth.pose", "reference.pose", "reference.pose_leg_lag")
+    error = emulation_error([tuple(beam_minute[name] for name in names)])[axis]
     unit = "mrad" if axis.startswith("r") else "mm"
     figure(f"beam: rms emulation error {axis}", error.rms * 1e3, LIMITS[axis][0], unit)
     figure(

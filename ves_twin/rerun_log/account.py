@@ -60,7 +60,7 @@ def _error_table(recording: Recording) -> str:
     pose = SIGNALS["truth.pose"]
     rows = []
     for (axis, error), unit in zip(
-        emulation_error(truth, ideal, lag).items(), pose.units, strict=True
+        emulation_error([(truth, ideal, lag)]).items(), pose.units, strict=True
     ):
         factor, label = shown("truth.pose", unit)
         values = (error.rms, error.peak, error.rms_leg_lag, error.rms_rest)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 
 import numpy as np
@@ -30,36 +31,41 @@ class AxisError:
     rms_rest: float
 
 
-def emulation_error(
-    truth: FloatArray, reference: FloatArray, with_leg_lag: FloatArray
-) -> dict[str, AxisError]:
+Rows = tuple[FloatArray, FloatArray, FloatArray]
+"""Some rows of `truth.pose`, `reference.pose` and `reference.pose_leg_lag`, (n, 6) each."""
+
+
+def emulation_error(parts: Iterable[Rows]) -> dict[str, AxisError]:
     """Error per axis of `truth.pose` against `reference.pose`.
 
     Args:
-        truth: true platform pose [m, rad] (n, 6).
-        reference: pose of the zero-g reference (n, 6).
-        with_leg_lag: pose of the reference whose platform follows through the legs (n, 6).
+        parts: the rows of a run, in as many parts as one likes, so that a long run need not be
+            in memory [m, rad].
 
     Returns:
-        Axis name (x, y, z, rx, ry, rz) -> error.
+        Axis name (x, y, z, rx, ry, rz) -> error; empty if there is no row, or a reference that
+        is not finite.
     """
-    error = truth - reference
-    legs = with_leg_lag - reference
-    size = np.repeat(
-        [np.max(np.linalg.norm(part, axis=1)) for part in (reference[:, :3], reference[:, 3:])], 3
-    )
-    result = {}
-    for i, axis in enumerate(SIGNALS["truth.pose"].axes):
-        peak = float(np.max(np.abs(error[:, i])))
-        result[axis] = AxisError(
-            rms=_rms(error[:, i]),
-            peak=peak,
-            relative=peak / float(size[i]) if size[i] > 0 else None,
-            rms_leg_lag=_rms(legs[:, i]),
-            rms_rest=_rms(error[:, i] - legs[:, i]),
+    count, size = 0, np.zeros(2)
+    squares, peak = np.zeros((3, 6)), np.zeros(6)
+    for truth, reference, with_leg_lag in parts:
+        error, legs = truth - reference, with_leg_lag - reference
+        count += len(error)
+        for row, values in zip(squares, (error, legs, error - legs), strict=True):
+            row += np.sum(values**2, axis=0)
+        peak = np.maximum(peak, np.max(np.abs(error), axis=0, initial=0.0))
+        norms = [np.linalg.norm(reference[:, k : k + 3], axis=1) for k in (0, 3)]
+        size = np.maximum(size, [np.max(norm, initial=0.0) for norm in norms])
+    if count == 0 or not np.all(np.isfinite(squares)):
+        return {}
+    rms, rms_legs, rms_rest = np.sqrt(squares / count)
+    return {
+        axis: AxisError(
+            rms=float(rms[i]),
+            peak=float(peak[i]),
+            relative=float(peak[i] / size[i // 3]) if size[i // 3] > 0 else None,
+            rms_leg_lag=float(rms_legs[i]),
+            rms_rest=float(rms_rest[i]),
         )
-    return result
-
-
-def _rms(values: FloatArray) -> float:
-    return float(np.sqrt(np.mean(values**2)))
+        for i, axis in enumerate(SIGNALS["truth.pose"].axes)
+    }

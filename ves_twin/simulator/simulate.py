@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import platform as host
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import asdict, dataclass
 from importlib.metadata import version
 from pathlib import Path
@@ -19,7 +19,7 @@ from ves_twin.recording.recording import Recording, RecordingInfo
 from ves_twin.recording.stream import RecordingStream
 from ves_twin.scenario.schema import Scenario
 from ves_twin.signals import SIGNALS
-from ves_twin.simulator.emulation_error import AxisError, emulation_error
+from ves_twin.simulator.emulation_error import AxisError, Rows, emulation_error
 from ves_twin.simulator.outcome import Outcome
 from ves_twin.simulator.recorder import IDEAL, LEG_LAG, MemorySink, NoSink
 from ves_twin.simulator.simulator import Simulator
@@ -183,17 +183,7 @@ def _run(sim: Simulator, progress: Progress | None) -> None:
 
 def _summary(sim: Simulator, recording: Path, prepare: float, run: float) -> Summary:
     assert sim.outcome is not None  # noqa: S101  (the run has ended)
-    errors = {}
-    if IDEAL in sim.recorder.names:
-        columns = {n: SIGNALS[n].columns for n in ("truth.pose", IDEAL, LEG_LAG)}
-        table = pq.read_table(recording, columns=[c for group in columns.values() for c in group])
-        if len(table):
-            truth, ideal, lag = (
-                np.column_stack([table.column(c).to_numpy() for c in group])
-                for group in columns.values()
-            )
-            if np.all(np.isfinite(ideal)) and np.all(np.isfinite(lag)):
-                errors = emulation_error(truth, ideal, lag)
+    errors = emulation_error(_pose_rows(recording)) if IDEAL in sim.recorder.names else {}
     return Summary(
         scenario=sim.scenario.name,
         question=sim.scenario.question,
@@ -213,3 +203,15 @@ def _summary(sim: Simulator, recording: Path, prepare: float, run: float) -> Sum
             admittance_rate=sim.clock.rate,
         ),
     )
+
+
+def _pose_rows(recording: Path) -> Iterator[Rows]:
+    """Truth and references of a Parquet file, a row group at a time."""
+    groups = [SIGNALS[name].columns for name in ("truth.pose", IDEAL, LEG_LAG)]
+    file = pq.ParquetFile(recording)
+    for batch in file.iter_batches(columns=[column for group in groups for column in group]):
+        truth, ideal, lag = (
+            np.column_stack([batch.column(column).to_numpy() for column in group])
+            for group in groups
+        )
+        yield truth, ideal, lag
