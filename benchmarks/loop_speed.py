@@ -36,7 +36,7 @@ def ratios(log: str, references: bool, rounds: int, folder: Path) -> tuple[list[
         sim.recorder.drop_references()
     stream = RecordingStream(folder, sim.recorder.names, recording_info(sim))
     sim.recorder.sink = stream
-    steps = sim.clock.ticks(PIECE)
+    steps = sim.rig.clock.ticks(PIECE)
     sim.advance(PIECE * PIECES)
     found, all_loops = [], 0.0
     for _ in range(rounds):

@@ -11,7 +11,7 @@ from ves_twin.control.emulated import EmulatedSystem
 from ves_twin.errors import FileAccessError, UnknownNameError, VesTwinError
 from ves_twin.plant.plant import Plant
 from ves_twin.resources import resource_folder
-from ves_twin.scenario.load import load_scenario, parse_setting, scenario_questions
+from ves_twin.scenario.load import parse_setting, scenario_questions
 from ves_twin.scenario.schema import Scenario
 
 FILES = sorted(resource_folder("scenarios").glob("*.toml"))
@@ -132,12 +132,12 @@ def test_a_scenario_cannot_be_changed_after_loading():
     ids=str,
 )
 def test_an_unknown_key_is_answered_with_the_nearest(changes, words):
-    assert isinstance(refused(lambda: load_scenario(SINE, changes), *words), UnknownNameError)
+    assert isinstance(refused(lambda: Scenario.load(SINE, changes), *words), UnknownNameError)
 
 
 def test_a_misspelt_required_key_is_answered_with_the_nearest():
     moves = [{"strat": 0.0, "duration": 2.0, "to": [0, 0, 0]}]
-    refused(lambda: load_scenario(SINE, {"arm.moves": moves}), "strat", "'arm.moves.0.start'")
+    refused(lambda: Scenario.load(SINE, {"arm.moves": moves}), "strat", "'arm.moves.0.start'")
 
 
 @pytest.mark.parametrize(
@@ -151,7 +151,7 @@ def test_a_misspelt_required_key_is_answered_with_the_nearest():
     ],
 )
 def test_an_unknown_choice_is_answered_with_what_exists(key, value, words):
-    refused(lambda: load_scenario(SINE, {key: value}), key, *words)
+    refused(lambda: Scenario.load(SINE, {key: value}), key, *words)
 
 
 @pytest.mark.parametrize(
@@ -198,7 +198,7 @@ def test_an_unknown_choice_is_answered_with_what_exists(key, value, words):
     ids=str,
 )
 def test_a_wrong_value_is_refused_with_its_key(key, value, word):
-    refused(lambda: load_scenario(SINE, {key: value}), "position_sine.toml", key, word)
+    refused(lambda: Scenario.load(SINE, {key: value}), "position_sine.toml", key, word)
 
 
 def test_moves_may_touch_but_not_overlap():
@@ -206,9 +206,9 @@ def test_moves_may_touch_but_not_overlap():
     assert len(Scenario.load(SINE, {"arm.moves": touching}).arm.moves) == 2
     for start in (1.9, 0.0):
         late = [*MOVES, {"start": start, "duration": 1.0, "to": [1, 0, 0]}]
-        refused(lambda late=late: load_scenario(SINE, {"arm.moves": late}), f"{start} s", "0.0 s")
+        refused(lambda late=late: Scenario.load(SINE, {"arm.moves": late}), f"{start} s", "0.0 s")
     backward = [{"start": 5.0, "duration": 1.0, "to": [1, 0, 0]}, *MOVES]
-    refused(lambda: load_scenario(SINE, {"arm.moves": backward}), "arm")
+    refused(lambda: Scenario.load(SINE, {"arm.moves": backward}), "arm")
 
 
 @pytest.mark.parametrize(
@@ -216,7 +216,7 @@ def test_moves_may_touch_but_not_overlap():
 )
 def test_a_wrong_move_is_refused(move):
     key = f"arm.moves.0.{next(iter(move))}"
-    refused(lambda: load_scenario(SINE, {"arm.moves": [{**MOVES[0], **move}]}), key)
+    refused(lambda: Scenario.load(SINE, {"arm.moves": [{**MOVES[0], **move}]}), key)
 
 
 @pytest.mark.parametrize(
@@ -228,7 +228,7 @@ def test_a_wrong_move_is_refused(move):
     ],
 )
 def test_a_mode_has_what_it_needs_and_nothing_else(name, changes, word):
-    refused(lambda: load_scenario(name, changes), "platform", word)
+    refused(lambda: Scenario.load(name, changes), "platform", word)
 
 
 def test_only_a_micro_gravity_run_has_a_reference():
@@ -251,25 +251,25 @@ def test_only_a_micro_gravity_run_has_a_reference():
     ids=["no question", "empty", "no run", "no platform", "not TOML", "twice", "too deep"],
 )
 def test_a_wrong_file_is_refused(write, text, words):
-    refused(lambda: load_scenario(write(text), {}), "my_run.toml", *words)
+    refused(lambda: Scenario.load(write(text), {}), "my_run.toml", *words)
 
 
 def test_changing_a_parameter_of_a_file_whose_parameters_are_no_table_is_refused(write):
     path = write("# q?\nparameters = 3\n")
-    refused(lambda: load_scenario(path, {"parameters.gravity": 9.8}), "parameters")
+    refused(lambda: Scenario.load(path, {"parameters.gravity": 9.8}), "parameters")
 
 
 def test_a_file_that_is_not_utf_8_is_refused(tmp_path):
     path = tmp_path / "my_run.toml"
     path.write_bytes(b"# caf\xe9?\n")
-    refused(lambda: load_scenario(str(path), {}), "TOML")
+    refused(lambda: Scenario.load(str(path), {}), "TOML")
 
 
 def test_a_missing_scenario_is_refused(tmp_path):
     with pytest.raises(UnknownNameError, match="did you mean 'position_sine'"):
-        load_scenario("postion_sine", {})
+        Scenario.load("postion_sine", {})
     with pytest.raises(FileAccessError):
-        load_scenario(str(tmp_path / "no.toml"), {})
+        Scenario.load(str(tmp_path / "no.toml"), {})
 
 
 @pytest.mark.parametrize(

@@ -15,7 +15,7 @@ Q = np.array([0.3, 0.4, -0.5])
 
 def servo_block() -> np.ndarray:
     scenario = vt.Scenario.load("beam_horizontal_truth", {"run.duration": 0.1, "run.settle": 0.1})
-    return vt.Simulator(None, scenario).parameters["servo"]
+    return vt.Simulator(None, scenario).rig.parameters["servo"]
 
 
 def released(system: EmulatedSystem, start: np.ndarray, cycles: int) -> np.ndarray:

@@ -54,7 +54,7 @@ def test_snapshot_taken_between_two_interrupts_repeats_too():
     scenario = vt.Scenario.load("beam_horizontal_truth", {"run.duration": 1.0})
     sim = vt.Simulator(None, scenario, seed=1)
     sim.advance(0.5004)
-    assert sim.tick % sim.clock.admittance != 0
+    assert sim.rig.tick % sim.rig.clock.admittance != 0
     snapshot = sim.snapshot()
     sim.advance(0.3)
     first = sim.data.qpos.copy()
@@ -178,8 +178,8 @@ def test_readings_cannot_be_written_by_a_controller():
 
 def test_real_admittance_rate_is_the_nearest_whole_period():
     sim = vt.Simulator(None, vt.Scenario.load("beam_horizontal_truth", SHORT))
-    assert sim.clock.admittance == 37
-    assert sim.clock.rate == pytest.approx(79.26, abs=0.01)
+    assert sim.rig.clock.admittance == 37
+    assert sim.rig.clock.rate == pytest.approx(79.26, abs=0.01)
 
 
 def test_events_tell_what_was_planned_in_the_order_of_time():

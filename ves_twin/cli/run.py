@@ -81,10 +81,11 @@ def load(arguments: argparse.Namespace) -> tuple[Scenario, Plant | None]:
     """
     from ves_twin.errors import InvalidInputError
     from ves_twin.plant.plant import Plant
-    from ves_twin.scenario.load import load_scenario, parse_setting
+    from ves_twin.scenario.load import parse_setting
+    from ves_twin.scenario.schema import Scenario
 
     changes = dict(parse_setting(text) for text in arguments.settings)
-    scenario = load_scenario(arguments.scenario, changes)
+    scenario = Scenario.load(arguments.scenario, changes)
     if arguments.seed is not None and arguments.seed < 0:
         raise InvalidInputError("--seed", arguments.seed, "a whole number of at least 0")
     if arguments.plant is None:

@@ -1,4 +1,4 @@
-"""load_scenario: read, override and validate a scenario file."""
+"""scenario_content: read and override a scenario file, and say what is wrong with it."""
 
 from __future__ import annotations
 
@@ -11,37 +11,33 @@ from typing import Any, get_args
 
 from pydantic import BaseModel, ValidationError
 
-from ves_twin.errors import InvalidInputError, UnknownNameError
+from ves_twin.errors import InvalidInputError, UnknownNameError, VesTwinError
 from ves_twin.resources import find_resource, resource_folder
-from ves_twin.scenario.schema import Scenario
 from ves_twin.toml_file import read_toml
 
 
-def load_scenario(name_or_path: str, changes: Mapping[str, object]) -> Scenario:
-    """A scenario by name or from a file, with some keys changed.
+def scenario_content(
+    name_or_path: str, changes: Mapping[str, object]
+) -> tuple[dict[str, Any], str]:
+    """Content of a scenario by name or from a file, with some keys changed, not yet validated.
 
     Args:
         name_or_path: "beam_horizontal_truth", or a path to a TOML file.
         changes: dotted keys to values, for instance {"legs.gain": 16.0}.
 
+    Returns:
+        The content with name and question, and the file's name for messages.
+
     Raises:
         FileAccessError: missing or unreadable file.
-        UnknownNameError: unknown scenario or key; says the nearest one.
-        InvalidInputError: wrong type, unit, shape or range; says the key.
+        UnknownNameError: unknown scenario; says the nearest one.
+        InvalidInputError: not TOML, or no question.
     """
     path = find_resource("scenario", "scenarios", name_or_path)
     content, question = _read(path)
     for key, value in changes.items():
         content = _with_key(content, key, value)
-    return parse_scenario({"name": path.stem, "question": question, **content}, path.name)
-
-
-def parse_scenario(content: dict[str, Any], where: str) -> Scenario:
-    """Validate the content of a scenario; errors name file, key, what came, what was expected."""
-    try:
-        return Scenario.model_validate(content)
-    except ValidationError as error:
-        raise _first_error(error, where) from None
+    return {"name": path.stem, "question": question, **content}, path.name
 
 
 def scenario_questions() -> dict[str, str]:
@@ -93,18 +89,30 @@ def _with_key(content: Mapping[str, Any], key: str, value: object) -> dict[str, 
     return result
 
 
-def _first_error(error: ValidationError, where: str) -> Exception:
-    """One line for the first thing that is wrong."""
+def refusal(error: ValidationError, where: str, model: type[BaseModel]) -> VesTwinError:
+    """What to raise for a content that a model refused: one line for the first thing wrong.
+
+    Args:
+        error: what the validation found.
+        where: name of the file.
+        model: what the content was validated against.
+
+    Returns:
+        UnknownNameError for an unknown key, with the nearest one; InvalidInputError otherwise,
+        with the key, what came and what was expected.
+    """
     found = error.errors(include_url=False)
     first = next((e for e in found if e["type"] == "extra_forbidden"), found[0])
     location = [str(part) for part in first["loc"]]
     key = ".".join(location) or "scenario"
     if first["type"] == "extra_forbidden":
-        near = difflib.get_close_matches(location[-1], _known_keys(location[:-1]), n=1, cutoff=0.5)
+        near = difflib.get_close_matches(
+            location[-1], _known_keys(model, location[:-1]), n=1, cutoff=0.5
+        )
         known = ".".join([*location[:-1], near[0]]) if near else None
         if known:
             return UnknownNameError(f"key in {where}", key, [known])
-        return UnknownNameError(f"key in {where}", key, _known_keys(location[:-1]))
+        return UnknownNameError(f"key in {where}", key, keys)
     if first["type"] == "missing":
         return InvalidInputError(f"{where}: {key}", None, "a value; it has no default")
     message = first["msg"].removeprefix("Value error, ").removeprefix("value: ")
@@ -121,8 +129,7 @@ class InvalidScenarioError(InvalidInputError):
         Exception.__init__(self, message)
 
 
-def _known_keys(parents: list[str]) -> list[str]:
-    model: type[BaseModel] = Scenario
+def _known_keys(model: type[BaseModel], parents: list[str]) -> list[str]:
     for parent in parents:
         if parent.isdigit():
             continue

@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import Annotated, Any, Literal, Self
 
-from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, model_validator
+from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, ValidationError, model_validator
 
 from ves_twin.control.leg_loop import FilterPlace
 from ves_twin.control.registry import GRAVITY_COMPENSATIONS, PLATFORM_CONTROLLERS
 from ves_twin.errors import InvalidInputError, UnknownNameError
+from ves_twin.scenario.load import refusal, scenario_content
 from ves_twin.units import to_si
 
 LOG_CLOCKS = ("admittance", "leg", "tick")
@@ -191,8 +193,20 @@ class Scenario(Part):
         return self.platform.mode == "micro_gravity"
 
     @staticmethod
-    def load(name_or_path: str, changes: dict[str, object] | None = None) -> Scenario:
-        """A scenario by name or from a file; see `ves_twin.scenario.load.load_scenario`."""
-        from ves_twin.scenario.load import load_scenario
+    def load(name_or_path: str, changes: Mapping[str, object] | None = None) -> Scenario:
+        """A scenario by name or from a file, with some keys changed.
 
-        return load_scenario(name_or_path, changes or {})
+        Args:
+            name_or_path: "beam_horizontal_truth", or a path to a TOML file.
+            changes: dotted keys to values, for instance {"legs.gain": 16.0}.
+
+        Raises:
+            FileAccessError: missing or unreadable file.
+            UnknownNameError: unknown scenario or key; says the nearest one.
+            InvalidInputError: wrong type, unit, shape or range; says the key.
+        """
+        content, where = scenario_content(name_or_path, changes or {})
+        try:
+            return Scenario.model_validate(content)
+        except ValidationError as error:
+            raise refusal(error, where, Scenario) from None

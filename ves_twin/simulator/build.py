@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 
 from ves_twin.control.belief import Belief
@@ -18,10 +16,14 @@ from ves_twin.scenario.schema import Platform, Scenario
 from ves_twin.simulator.computers import Computers
 from ves_twin.simulator.recorder import IDEAL, LEG_LAG
 from ves_twin.simulator.reference import ZeroGravityReference
+from ves_twin.simulator.rig import Rig
 from ves_twin.simulator.truth_port import GravityTruth
+from ves_twin.types import Block
 
-if TYPE_CHECKING:
-    from ves_twin.simulator.simulator import Simulator
+
+def plant_of(scenario: Scenario) -> Plant:
+    """The scenario's own world: its plant with its parameters."""
+    return Plant.load(scenario.plant).with_values(scenario.parameters)
 
 
 def belief_of(scenario: Scenario) -> Belief:
@@ -37,19 +39,18 @@ def belief_of(scenario: Scenario) -> Belief:
     )
 
 
-def build_computers(sim: Simulator, belief: Belief) -> Computers:
-    """Controllers of a scenario, connected to the simulator's board.
+def build_computers(scenario: Scenario, belief: Belief, rig: Rig) -> Computers:
+    """Controllers of a scenario, connected to the rig's board.
 
     Raises:
         UnreachableError: the start pose is outside the legs' travel.
     """
-    scenario, clock = sim.scenario, sim.clock
     start = np.array(scenario.platform.start)
     check_reach(belief.geometry, start, belief.leg_travel, "platform.start")
     gravity = GRAVITY_COMPENSATIONS[scenario.gravity.method](
-        GravityTruth(sim.model, sim.data, sim.layout)
+        GravityTruth(rig.model, rig.data, rig.layout)
     )
-    period = clock.admittance * clock.tick
+    period = rig.clock.admittance * rig.clock.tick
     task = ControlTask(
         belief=belief,
         period=period,
@@ -66,23 +67,24 @@ def build_computers(sim: Simulator, belief: Belief) -> Computers:
         gravity_age=scenario.gravity.age,
         arm=arm_motion(scenario),
         period=period,
-        board=sim.board,
-        state=sim.state,
+        board=rig.board,
+        state=rig.state,
     )
 
 
-def build_references(sim: Simulator) -> dict[str, ZeroGravityReference]:
+def build_references(
+    scenario: Scenario, plant: Plant, servo: Block
+) -> dict[str, ZeroGravityReference]:
     """The zero-g references of a micro-gravity run: the ideal one, and one with the legs' lag."""
-    scenario = sim.scenario
     emulated = emulated_of(scenario)
     if emulated is None or not scenario.has_reference:
         return {}
-    legs = (scenario.legs.gain, sim.plant.parameters.number("hydraulics.valve_lag"))
+    legs = (scenario.legs.gain, plant.parameters.number("hydraulics.valve_lag"))
     return {
         name: ZeroGravityReference(
-            plant=sim.plant,
+            plant=plant,
             emulated=emulated,
-            servo=sim.parameters["servo"],
+            servo=servo,
             start=np.array(scenario.platform.start),
             home=np.array(scenario.platform.home),
             arm_start=np.array(scenario.arm.start),

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from ves_twin.control.emulated import Coupling
+from ves_twin.control.emulated import Coupling, EmulatedSystem
 from ves_twin.plant.parameters import ParameterTable
 from ves_twin.scenario.schema import Scenario
 
@@ -56,8 +56,20 @@ class Clock:
         return round(seconds / self.tick)
 
 
-def cycle_time(coupling: Coupling | None, parameters: ParameterTable) -> float:
-    """Computing time of one admittance cycle [s]; zero in position mode."""
-    if coupling is None:
-        return 0.0
-    return float(parameters.array("clock.cycle_time")[_CYCLE_TIME[coupling]])
+def overrun(
+    emulated: EmulatedSystem | None, clock: Clock, parameters: ParameterTable
+) -> str | None:
+    """Why the interrupt would come before the cycle has ended, or None if it does not.
+
+    Source: thesis 2.4.2 (an overrun halts the experiment); computing times assumed.
+    """
+    if emulated is None:
+        return None
+    needed = float(parameters.array("clock.cycle_time")[_CYCLE_TIME[emulated.coupling]])
+    period = clock.admittance * clock.tick
+    if needed <= period:
+        return None
+    return (
+        f"a {emulated.coupling} cycle takes {needed * 1e3:.1f} ms, the interrupt comes every"
+        f" {period * 1e3:.1f} ms"
+    )

@@ -50,7 +50,7 @@ class Computers:
         self.gravity = gravity
         self._arm = arm
         self._period = period
-        g = belief.geometry
+        g = self._geometry = belief.geometry
         self._reach = (g.base, g.top, g.home, g.lengths(np.zeros(6)), belief.leg_travel)
         self._shared: deque[FloatArray] = deque(maxlen=gravity_age + 1)
         self._state, self._board = state, board.block
@@ -80,6 +80,10 @@ class Computers:
         """
         self.estimate_gravity(time)
         return self.send(tick, time, self._decide(time))
+
+    def lengths(self, pose: FloatArray) -> FloatArray:
+        """Leg lengths [m] (6,) that the computers take a pose (6,) to have."""
+        return self._geometry.lengths(pose)
 
     def estimate_gravity(self, time: float) -> None:
         """A new estimate goes into shared memory; the one of `age` cycles ago comes out."""

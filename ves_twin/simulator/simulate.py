@@ -136,7 +136,7 @@ def make_folder(folder: Path) -> None:
 
 def recording_info(sim: Simulator) -> RecordingInfo:
     """Where the recording of a simulator comes from, up to now."""
-    clock = sim.clock
+    clock = sim.rig.clock
     held = {}
     if clock.log < clock.admittance:
         slow = ("leg.command", "platform.command", "gravity.estimate")
@@ -200,7 +200,7 @@ def _summary(sim: Simulator, recording: Path, prepare: float, run: float) -> Sum
             run=run,
             simulated=sim.time,
             real_time_factor=sim.time / run if run > 0 else 0.0,
-            admittance_rate=sim.clock.rate,
+            admittance_rate=sim.rig.clock.rate,
         ),
     )
 

@@ -2,50 +2,42 @@
 
 from __future__ import annotations
 
-import copy
 from dataclasses import dataclass
 
 import mujoco
 import numpy as np
 
-from ves_twin.plant.assembly import assemble, compile_model
-from ves_twin.plant.layout import Layout
 from ves_twin.plant.plant import Plant
 from ves_twin.recording.recording import Event
 from ves_twin.scenario.schema import Scenario
-from ves_twin.simulator.blocks import STATE, parameter_block
-from ves_twin.simulator.board import Board
 from ves_twin.simulator.build import (
     agenda_of,
     belief_of,
     build_computers,
     build_references,
+    emulated_of,
+    plant_of,
 )
-from ves_twin.simulator.clock import Clock
+from ves_twin.simulator.clock import Clock, overrun
 from ves_twin.simulator.codes import RUNNING
 from ves_twin.simulator.computers import ComputersSnapshot
-from ves_twin.simulator.engine import address_of, handles
-from ves_twin.simulator.loop import run_ticks
 from ves_twin.simulator.noise import NoiseStreams
 from ves_twin.simulator.outcome import OUTCOME_OF_CODE, Outcome
 from ves_twin.simulator.recorder import MemorySink, Recorder, RecorderSnapshot, Sink
-from ves_twin.simulator.settle import settle
-from ves_twin.types import Block
+from ves_twin.simulator.rig import Rig, RigSnapshot
+from ves_twin.simulator.settle import settle, settling_events
 
 
 @dataclass(frozen=True)
 class Snapshot:
     """Everything that a run depends on, at one instant."""
 
-    tick: int
+    rig: RigSnapshot
+    computers: ComputersSnapshot
+    recorder: RecorderSnapshot
     outcome: Outcome | None
     events: tuple[Event, ...]
     agenda: tuple[Event, ...]
-    data: mujoco.MjData
-    state: Block
-    board: Block
-    computers: ComputersSnapshot
-    recorder: RecorderSnapshot
 
 
 class Simulator:
@@ -55,11 +47,9 @@ class Simulator:
         plant: the world.
         scenario: what is done with it.
         seed: seed of the noise.
-        clock: periods of the loops.
-        model: the compiled MuJoCo model.
-        data: its live state.
-        layout: where the rig's quantities lie in it.
-        board: every signal at this instant.
+        rig: hardware and fast loops, with the live MuJoCo state.
+        computers: the admittance cycle.
+        recorder: completes and passes on the rows.
         outcome: None while running.
         events: what happened so far.
 
@@ -83,39 +73,38 @@ class Simulator:
         self.scenario = scenario
         self.plant = plant or plant_of(scenario)
         self.seed = scenario.run.seed if seed is None else seed
-        self.clock = Clock.of(scenario, self.plant.parameters)
-        self.model = compile_model(assemble(self.plant, self.clock.tick / self.clock.substeps))
-        self.data = mujoco.MjData(self.model)
-        self.layout = Layout.of(self.model)
-        self.board = Board()
         self.outcome: Outcome | None = None
         self.events: list[Event] = []
+        self._agenda = agenda_of(scenario)
+        clock = Clock.of(scenario, self.plant.parameters)
+        self._end = clock.ticks(scenario.run.duration)
         belief = belief_of(scenario)
-        self.parameters = parameter_block(
-            self.plant, self.layout, self.clock, scenario.legs, belief
-        )
-        self.state: Block = np.zeros(1, STATE)
-        self.noise = NoiseStreams(self.seed, scenario.run.noise)
-        self.computers = build_computers(self, belief)
+        noise = NoiseStreams(self.seed, scenario.run.noise)
+        self.rig = Rig(self.plant, clock, scenario.legs, belief, noise)
+        self.computers = build_computers(scenario, belief, self.rig)
         self.recorder = Recorder(
-            self.clock,
+            clock,
             belief.geometry,
             np.array(scenario.platform.start),
-            build_references(self),
+            build_references(scenario, self.plant, self.rig.parameters["servo"]),
             MemorySink() if sink is None else sink,
         )
-        self._step = address_of("mj_step")
-        self._handles = handles(self.model, self.data)
-        self._arrays = (self.data.qpos, self.data.qvel, self.data.ctrl, self.data.sensordata)
-        self._end = self.clock.ticks(scenario.run.duration)
-        self._agenda = agenda_of(scenario)
-        self.tick = 0
-        settle(self)
+        self._settle()
+
+    @property
+    def model(self) -> mujoco.MjModel:
+        """The compiled MuJoCo model."""
+        return self.rig.model
+
+    @property
+    def data(self) -> mujoco.MjData:
+        """Its live state."""
+        return self.rig.data
 
     @property
     def time(self) -> float:
         """Time since the start of the run [s]."""
-        return self.tick * self.clock.tick
+        return self.rig.time
 
     @property
     def done(self) -> bool:
@@ -124,75 +113,61 @@ class Simulator:
 
     def advance(self, seconds: float) -> None:
         """Run on for a time [s], to the nearest tick, or until the run ends."""
-        self.run_to(min(self.tick + self.clock.ticks(seconds), self._end))
+        self.run_to(min(self.rig.tick + self.rig.clock.ticks(seconds), self._end))
         self._note_agenda()
-        if self.tick >= self._end and self.outcome is None:
+        if self.rig.tick >= self._end and self.outcome is None:
             self.end(Outcome.COMPLETED, f"reached {self.time:.3f} s")
 
     def run_to(self, target: int) -> None:
         """Run up to a tick, with a cycle of the computers at each admittance interrupt."""
-        period = self.clock.admittance
-        while self.tick < target and self.outcome is None:
-            phase = self.tick % period
+        rig, period = self.rig, self.rig.clock.admittance
+        while rig.tick < target and self.outcome is None:
+            phase = rig.tick % period
             if phase == 0 and not self._interrupt():
                 return
-            self.run_loop(min(period - phase, target - self.tick))
-
-    def run_loop(self, count: int) -> None:
-        """Run the compiled loop for some ticks without an interrupt."""
-        code, done, self.recorder.rows = run_ticks(
-            self.tick,
-            count,
-            self._step,
-            *self._handles,
-            *self._arrays,
-            self.parameters,
-            self.state,
-            self.board.block,
-            self.board.row,
-            *self.noise.window(self.tick, count),
-            self.recorder.log,
-            self.recorder.rows,
-        )
-        self.tick += done
-        if code != RUNNING:
-            self.end(OUTCOME_OF_CODE[code], f"the rig left its limits at {self.time:.3f} s")
-
-    def note(self, kind: str, message: str) -> None:
-        """Add an event at the present time."""
-        self.events.append(Event(self.time, kind, message))
+            count = min(period - phase, target - rig.tick)
+            code, self.recorder.rows = rig.run(count, self.recorder.log, self.recorder.rows)
+            if code != RUNNING:
+                self._left_limits(code)
 
     def end(self, outcome: Outcome, why: str) -> None:
         """End the run with a named outcome; what was recorded is kept."""
         self.outcome = outcome
         self._note_agenda()
-        self.note(outcome.value, why)
+        self.events.append(Event(self.time, outcome.value, why))
         self.recorder.flush()
 
     def snapshot(self) -> Snapshot:
         """A copy of everything that the rest of the run depends on."""
         return Snapshot(
-            tick=self.tick,
+            rig=self.rig.snapshot(),
+            computers=self.computers.snapshot(),
+            recorder=self.recorder.snapshot(),
             outcome=self.outcome,
             events=tuple(self.events),
             agenda=tuple(self._agenda),
-            data=copy.copy(self.data),
-            state=self.state.copy(),
-            board=self.board.block.copy(),
-            computers=self.computers.snapshot(),
-            recorder=self.recorder.snapshot(),
         )
 
     def restore(self, snapshot: Snapshot) -> None:
         """Go back to a snapshot of this simulator; the run then repeats to the last bit."""
-        mujoco.mj_copyData(self.data, self.model, snapshot.data)
-        self.state[:] = snapshot.state
-        self.board.block[:] = snapshot.board
+        self.rig.restore(snapshot.rig)
         self.computers.restore(snapshot.computers)
         self.recorder.restore(snapshot.recorder)
-        self.tick, self.outcome = snapshot.tick, snapshot.outcome
-        self.events = list(snapshot.events)
-        self._agenda = list(snapshot.agenda)
+        self.outcome = snapshot.outcome
+        self.events, self._agenda = list(snapshot.events), list(snapshot.agenda)
+
+    def _settle(self) -> None:
+        code = settle(self.rig, self.computers, self.scenario, self.recorder.log)
+        if code != RUNNING:
+            self._left_limits(code)
+            return
+        self.events += settling_events(self.rig, self.scenario)
+        late = overrun(emulated_of(self.scenario), self.rig.clock, self.plant.parameters)
+        if late:
+            self.end(Outcome.OVERRUN, late)
+
+    def _left_limits(self, code: int) -> None:
+        self.end(OUTCOME_OF_CODE[code], f"the rig left its limits at {self.time:.3f} s")
 
     def _note_agenda(self) -> None:
         """What was planned for the time since the last look becomes an event."""
@@ -201,16 +176,12 @@ class Simulator:
 
     def _interrupt(self) -> bool:
         """The clock interrupt of the computers; False if it ends the run."""
-        outside = self.computers.cycle(self.tick, self.time)
+        rig = self.rig
+        outside = self.computers.cycle(rig.tick, rig.time)
         if outside:
             self.end(
                 Outcome.LEG_LIMIT, f"the command of leg {outside} left the safety margin; not sent"
             )
             return False
-        self.recorder.begin_cycle(self.time, self.state["servo"]["points"][0])
+        self.recorder.begin_cycle(rig.time, rig.state["servo"]["points"][0])
         return True
-
-
-def plant_of(scenario: Scenario) -> Plant:
-    """The scenario's own world: its plant with its parameters."""
-    return Plant.load(scenario.plant).with_values(scenario.parameters)

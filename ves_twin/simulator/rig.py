@@ -1,0 +1,119 @@
+"""Rig: a compiled plant with its loop: hardware, leg loops, joint servo, force sensor, noise."""
+
+from __future__ import annotations
+
+import copy
+from dataclasses import dataclass
+
+import mujoco
+import numpy as np
+
+from ves_twin.control.belief import Belief
+from ves_twin.plant.assembly import assemble, compile_model
+from ves_twin.plant.layout import Layout
+from ves_twin.plant.plant import Plant
+from ves_twin.scenario.schema import Legs
+from ves_twin.simulator.blocks import STATE, parameter_block
+from ves_twin.simulator.board import Board
+from ves_twin.simulator.clock import Clock
+from ves_twin.simulator.engine import address_of, handles
+from ves_twin.simulator.loop import run_ticks
+from ves_twin.simulator.noise import NoiseStreams
+from ves_twin.types import Block, FloatArray
+
+
+@dataclass(frozen=True)
+class RigSnapshot:
+    """Mechanics, compiled state and signals at a tick; noise needs nothing but the tick."""
+
+    tick: int
+    data: mujoco.MjData
+    state: Block
+    board: Block
+
+
+class Rig:
+    """Everything below the admittance cycle.
+
+    Attributes:
+        plant: the world.
+        clock: periods of the loops.
+        model: the compiled MuJoCo model.
+        data: its live state.
+        layout: where the rig's quantities lie in it.
+        parameters: PARAMETERS (1,) of the compiled loop.
+        state: STATE (1,) of the compiled loop.
+        board: every signal at this instant.
+        noise: numbers of the noise by tick.
+        tick: tick that comes next, negative while settling.
+
+    Args:
+        plant: the world.
+        clock: periods of the loops.
+        legs: gains and filter place of the leg loops.
+        belief: what the leg loops take the rig to be.
+        noise: numbers of the noise by tick.
+    """
+
+    def __init__(
+        self, plant: Plant, clock: Clock, legs: Legs, belief: Belief, noise: NoiseStreams
+    ) -> None:
+        self.plant = plant
+        self.clock = clock
+        self.model = compile_model(assemble(plant, clock.tick / clock.substeps))
+        self.data = mujoco.MjData(self.model)
+        self.layout = Layout.of(self.model)
+        self.parameters = parameter_block(plant, self.layout, clock, legs, belief)
+        self.state: Block = np.zeros(1, STATE)
+        self.board = Board()
+        self.noise = noise
+        self.tick = 0
+        self._step = address_of("mj_step")
+        self._handles = handles(self.model, self.data)
+        self._arrays = (self.data.qpos, self.data.qvel, self.data.ctrl, self.data.sensordata)
+
+    @property
+    def time(self) -> float:
+        """Time of the tick that comes next [s]."""
+        return self.tick * self.clock.tick
+
+    def run(self, count: int, log: FloatArray, logged: int) -> tuple[int, int]:
+        """Run the compiled loop for some ticks, not beyond the next interrupt.
+
+        Args:
+            count: how many ticks.
+            log: buffer that takes the rows of the log clock from t = 0 on.
+            logged: rows in the buffer already.
+
+        Returns:
+            Code of `ves_twin.simulator.codes`, and rows in the buffer.
+        """
+        code, done, logged = run_ticks(
+            self.tick,
+            count,
+            self._step,
+            *self._handles,
+            *self._arrays,
+            self.parameters,
+            self.state,
+            self.board.block,
+            self.board.row,
+            *self.noise.window(self.tick, count),
+            log,
+            logged,
+        )
+        self.tick += done
+        return code, logged
+
+    def snapshot(self) -> RigSnapshot:
+        """A copy of everything that the next tick depends on."""
+        return RigSnapshot(
+            self.tick, copy.copy(self.data), self.state.copy(), self.board.block.copy()
+        )
+
+    def restore(self, snapshot: RigSnapshot) -> None:
+        """Go back to a snapshot of this rig."""
+        mujoco.mj_copyData(self.data, self.model, snapshot.data)
+        self.state[:] = snapshot.state
+        self.board.block[:] = snapshot.board
+        self.tick = snapshot.tick
