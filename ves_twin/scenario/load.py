@@ -106,13 +106,10 @@ def refusal(error: ValidationError, where: str, model: type[BaseModel]) -> VesTw
     location = [str(part) for part in first["loc"]]
     key = ".".join(location) or "scenario"
     if first["type"] == "extra_forbidden":
-        near = difflib.get_close_matches(
-            location[-1], _known_keys(model, location[:-1]), n=1, cutoff=0.5
-        )
-        known = ".".join([*location[:-1], near[0]]) if near else None
-        if known:
-            return UnknownNameError(f"key in {where}", key, [known])
-        return UnknownNameError(f"key in {where}", key, keys)
+        keys = _known_keys(model, location[:-1])
+        near = difflib.get_close_matches(location[-1], keys, n=1, cutoff=0.5)
+        known = [".".join([*location[:-1], near[0]])] if near else keys
+        return UnknownNameError(f"key in {where}", key, known)
     if first["type"] == "missing":
         return InvalidInputError(f"{where}: {key}", None, "a value; it has no default")
     message = first["msg"].removeprefix("Value error, ").removeprefix("value: ")
