@@ -76,6 +76,7 @@ def plant_content(name: str) -> dict[str, object]:
         "plant": plant.name,
         "hash": plant.hash,
         "fidelity": plant.fidelity.value,
+        "hydraulics": plant.hydraulics.value,
         "numbers by grade": grades,
         f"differences from {NOMINAL}": _differences(plant),
     }

@@ -8,7 +8,9 @@ import mujoco
 import numpy as np
 
 from ves_twin.plant.assembly import JOINTS, LEGS, assemble, compile_model
+from ves_twin.plant.hydraulics import Hydraulics, chamber_stiffness, fill_chambers
 from ves_twin.plant.layout import Layout
+from ves_twin.plant.physics import chambers
 from ves_twin.plant.plant import Plant
 from ves_twin.plant.statics import place_rig, static_leg_forces
 from ves_twin.types import FloatArray
@@ -76,11 +78,12 @@ def _resting(
     plant: Plant, tick: float, pose: FloatArray, q: FloatArray
 ) -> tuple[mujoco.MjModel, mujoco.MjData]:
     spec = assemble(plant, tick)
-    number, array = plant.parameters.number, plant.parameters.array
-    for i in range(1, LEGS + 1):
-        slide = spec.joint(f"leg{i}/slide")
-        slide.stiffness = np.array([number("hydraulics.oil_stiffness"), 0.0, 0.0])
-        slide.damping = np.array([number("hydraulics.oil_damping"), 0.0, 0.0])
+    array = plant.parameters.array
+    oil_stiffness, oil_damping = _oil(plant, pose)
+    for i in range(LEGS):
+        slide = spec.joint(f"leg{i + 1}/slide")
+        slide.stiffness = np.array([oil_stiffness[i], 0.0, 0.0])
+        slide.damping = np.array([oil_damping, 0.0, 0.0])
     stiffness, damping = array("servo.stiffness"), array("servo.damping")
     for j, name in enumerate(JOINTS):
         joint = spec.joint(f"arm/{name}")
@@ -91,12 +94,27 @@ def _resting(
     layout = Layout.of(model)
     place_rig(data, layout, plant.geometry, pose, q)
     force = static_leg_forces(model, data, layout, plant.geometry, pose)
-    preload = force / number("hydraulics.oil_stiffness")
-    model.qpos_spring[layout.slide_qpos] = data.qpos[layout.slide_qpos] + preload
+    model.qpos_spring[layout.slide_qpos] = data.qpos[layout.slide_qpos] + force / oil_stiffness
     sag = data.qfrc_bias[layout.arm_dof] / stiffness
     model.qpos_spring[layout.arm_qpos] = q + sag
     mujoco.mj_step(model, data, round(SETTLE_SECONDS / tick))
     return model, data
+
+
+def _oil(plant: Plant, pose: FloatArray) -> tuple[FloatArray, float]:
+    """Stiffness of each oil column (6,) [N/m] and damping [N s/m] with the valves closed.
+
+    In the pressure form the stiffness follows the rod travel, and the valves' null leakage, which
+    damps in series with the oil, has no place in a joint: its damping ratios are too small.
+    """
+    number = plant.parameters.number
+    if plant.hydraulics is Hydraulics.LINEAR:
+        return np.full(LEGS, number("hydraulics.oil_stiffness")), number("hydraulics.oil_damping")
+    block = np.zeros(1, chambers.PARAMETERS)
+    fill_chambers(block[0], plant.parameters)
+    geometry = plant.geometry
+    travel = geometry.lengths(pose) - geometry.lengths(np.zeros(6))
+    return chamber_stiffness(block[0], travel), number("chamber.viscous")
 
 
 def _bending_dofs(model: mujoco.MjModel) -> list[int]:

@@ -17,6 +17,9 @@ from ves_twin.units import check_unit, to_si
 SCHEMA = 1
 """Version of the plant file format."""
 
+HEAD_KEYS = frozenset({"schema", "name", "base", "hydraulic_model", "parameters"})
+"""Keys of a plant file beside its parameters."""
+
 _KEYS = {"value", "unit", "sd", "low", "high", "grade", "source"}
 
 
@@ -155,7 +158,7 @@ def _collect(
     for key, child in node.items():
         name = f"{prefix}{key}"
         if not isinstance(child, Mapping):
-            if prefix or key not in {"schema", "name", "base", "parameters"}:
+            if prefix or key not in HEAD_KEYS:
                 raise InvalidInputError(f"{path}: {name}", child, "a table with value and unit")
         elif "value" in child:
             entries[name] = _parameter(name, child)

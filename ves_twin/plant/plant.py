@@ -11,7 +11,13 @@ from pathlib import Path
 from ves_twin.errors import InvalidInputError, UnknownNameError
 from ves_twin.kinematics.puma560 import Puma560
 from ves_twin.kinematics.stewart import StewartGeometry
-from ves_twin.plant.parameters import ParameterTable, parse_parameters, read_plant_file
+from ves_twin.plant.hydraulics import Hydraulics
+from ves_twin.plant.parameters import (
+    HEAD_KEYS,
+    ParameterTable,
+    parse_parameters,
+    read_plant_file,
+)
 from ves_twin.resources import find_resource, resource_folder
 
 MJCF_FILES = ("frame.xml", "leg.xml", "platform.xml", "sensor.xml", "puma560.xml")
@@ -32,11 +38,13 @@ class Plant:
         name: name of the plant, for instance "ves2".
         parameters: every number with unit, sd, grade and source.
         fidelity: how much is modelled.
+        hydraulics: how the cylinders are modelled.
     """
 
     name: str
     parameters: ParameterTable
     fidelity: Fidelity = Fidelity.FULL
+    hydraulics: Hydraulics = Hydraulics.LINEAR
 
     @staticmethod
     def load(name_or_path: str) -> Plant:
@@ -57,13 +65,17 @@ class Plant:
         if not isinstance(changes, Mapping):
             raise InvalidInputError(f"{path}: parameters", changes, "a table of changed values")
         for key in content:
-            if "base" in content and key not in {"schema", "name", "base", "parameters"}:
-                raise UnknownNameError("key", key, {"schema", "name", "base", "parameters"})
+            if "base" in content and key not in HEAD_KEYS:
+                raise UnknownNameError("key", key, HEAD_KEYS)
         name = str(content.get("name", path.stem))
         if "base" in content:
-            base = _load_base(str(content["base"]), path)
-            return replace(base, name=name).with_values(changes)
-        return Plant(name, parse_parameters(content, path)).with_values(changes)
+            plant = replace(_load_base(str(content["base"]), path), name=name)
+        else:
+            plant = Plant(name, parse_parameters(content, path))
+        form = str(content.get("hydraulic_model", plant.hydraulics))
+        if form not in set(Hydraulics):
+            raise UnknownNameError("hydraulic_model", form, set(Hydraulics))
+        return replace(plant, hydraulics=Hydraulics(form)).with_values(changes)
 
     def with_values(self, values: Mapping[str, object]) -> Plant:
         """The same plant with other parameter values.
@@ -96,7 +108,7 @@ class Plant:
     @property
     def hash(self) -> str:
         """Short hash over every number and MJCF part: equal hash, equal physics."""
-        digest = hashlib.sha256(self.fidelity.encode())
+        digest = hashlib.sha256(f"{self.fidelity} {self.hydraulics}".encode())
         for name in sorted(self.parameters):
             digest.update(name.encode() + self.parameters.array(name).tobytes())
         for file in MJCF_FILES:

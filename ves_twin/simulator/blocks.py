@@ -8,9 +8,10 @@ import numpy as np
 
 from ves_twin.control import arm_servo, leg_loop
 from ves_twin.control.belief import Belief
+from ves_twin.plant.hydraulics import fill_chambers
 from ves_twin.plant.layout import Layout
 from ves_twin.plant.parameters import ParameterTable
-from ves_twin.plant.physics import cylinder, force_sensor, transducer, valve
+from ves_twin.plant.physics import chambers, cylinder, force_sensor, transducer, valve
 from ves_twin.plant.plant import Plant
 from ves_twin.scenario.schema import Legs
 from ves_twin.simulator.clock import Clock
@@ -63,10 +64,12 @@ PARAMETERS = np.dtype(
         ("limits", LIMITS),
         ("noise", NOISE),
         ("pressure", np.float64),
+        ("hydraulics", np.int64),
         ("transducer", transducer.PARAMETERS),
         ("legs", leg_loop.PARAMETERS),
         ("valve", valve.PARAMETERS),
         ("cylinder", cylinder.PARAMETERS),
+        ("chambers", chambers.PARAMETERS),
         ("sensor", force_sensor.PARAMETERS),
         ("servo", arm_servo.PARAMETERS),
     ]
@@ -95,11 +98,14 @@ STATE = np.dtype(
         ("legs", leg_loop.STATE),
         ("valve", valve.STATE),
         ("cylinder", cylinder.STATE),
+        ("chambers", chambers.STATE),
+        ("rod_force", np.float64, 6),
         ("sensor", force_sensor.STATE),
         ("servo", arm_servo.STATE),
     ]
 )
-"""cycle_start: tick of the last admittance cycle; current: held amplifier outputs, -1 to 1."""
+"""cycle_start: tick of the last admittance cycle; current: held amplifier outputs, -1 to 1;
+rod_force: force of each cylinder [N]."""
 
 
 def parameter_block(
@@ -135,6 +141,8 @@ def _fill_small_devices(p: np.void, table: ParameterTable, plant: Plant) -> None
     p["transducer"]["noise"] = table.number("transducer.noise")
     p["transducer"]["resolution"] = table.number("transducer.resolution")
     p["valve"]["lag"] = table.number("hydraulics.valve_lag")
+    p["hydraulics"] = plant.hydraulics.code
+    fill_chambers(p["chambers"], table)
     p["cylinder"]["full_speed"] = table.number("hydraulics.full_speed")
     p["cylinder"]["stiffness"] = table.number("hydraulics.oil_stiffness")
     p["cylinder"]["damping"] = table.number("hydraulics.oil_damping")

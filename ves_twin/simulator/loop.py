@@ -8,6 +8,8 @@ from ves_twin.compiled import compiled
 from ves_twin.control.arm_servo import servo_torque, spline
 from ves_twin.control.leg_loop import control_legs
 from ves_twin.kinematics.rotations import angles_from_matrix, matrix_from_quaternion
+from ves_twin.plant.hydraulics import PRESSURE_FORM
+from ves_twin.plant.physics.chambers import push_rods_by_pressure
 from ves_twin.plant.physics.cylinder import push_rods
 from ves_twin.plant.physics.force_sensor import sample_wrench, wander_on
 from ves_twin.plant.physics.transducer import read_lengths
@@ -62,7 +64,7 @@ def _read_truth(p: Record, s: Record, board: Record, qpos: FloatArray) -> None:
         board.truth_pose[3 + i] = angles[i]
     for i in range(6):
         board.truth_wrench[i] = s.sensor.true[i]
-        board.truth_leg_force[i] = s.cylinder.force[i]
+        board.truth_leg_force[i] = s.rod_force[i]
     for i in range(12):
         board.truth_leg_bending[i] = qpos[p.layout.bending_qpos[i]]
 
@@ -76,9 +78,13 @@ def _push_legs(
         work.slide[i] = qpos[p.layout.slide_qpos[i]]
         work.speed[i] = qvel[p.layout.slide_dof[i]]
     move_spool(p.valve, s.valve, s.current, step)
-    push_rods(p.cylinder, s.cylinder, s.valve.mean, work.slide, work.speed, step)
+    spool, force = s.valve.mean, s.rod_force
+    if p.hydraulics == PRESSURE_FORM:
+        push_rods_by_pressure(p.chambers, s.chambers, force, spool, work.slide, work.speed, step)
+    else:
+        push_rods(p.cylinder, s.cylinder, force, spool, work.slide, work.speed, step)
     for i in range(6):
-        ctrl[p.layout.leg_ctrl[i]] = s.cylinder.force[i]
+        ctrl[p.layout.leg_ctrl[i]] = force[i]
 
 
 @compiled

@@ -7,6 +7,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from ves_twin.control.leg_loop import start_legs
+from ves_twin.plant.hydraulics import loaded_pressures
 from ves_twin.plant.physics.force_sensor import start_at
 from ves_twin.plant.statics import place_rig, static_leg_forces
 from ves_twin.recording.recording import Event
@@ -77,7 +78,8 @@ def _start_states(rig: Rig, pose: FloatArray, q: FloatArray, believed: FloatArra
     force = static_leg_forces(rig.model, rig.data, layout, geometry, pose)
     slide = rig.data.qpos[layout.slide_qpos]
     s["cylinder"]["column"] = slide + force / p["cylinder"]["stiffness"]
-    s["cylinder"]["force"] = force
+    s["chambers"]["pressure"][0] = loaded_pressures(p[0]["chambers"], force)
+    s["rod_force"] = force
     s["servo"]["integral"] = rig.data.qfrc_bias[layout.arm_dof]
     rig.board["leg.length"][:] = believed
     start_legs(p[0]["legs"], s[0]["legs"], believed)

@@ -12,13 +12,19 @@ PARAMETERS = np.dtype(
 )
 """full_speed: rod speed at full opening [m/s]; stiffness [N/m] and damping [N s/m] of the oil."""
 
-STATE = np.dtype([("column", np.float64, 6), ("force", np.float64, 6)])
-"""column: rod position at which the oil carries no load [m]; force on the rod [N]."""
+STATE = np.dtype([("column", np.float64, 6)])
+"""column: rod position at which the oil carries no load [m]."""
 
 
 @compiled
 def push_rods(
-    p: Record, s: Record, spool: FloatArray, slide: FloatArray, speed: FloatArray, step: float
+    p: Record,
+    s: Record,
+    force: FloatArray,
+    spool: FloatArray,
+    slide: FloatArray,
+    speed: FloatArray,
+    step: float,
 ) -> None:
     """Rod forces F = k (x - q) - c q', then the oil column moves by full_speed * spool * h.
 
@@ -28,11 +34,12 @@ def push_rods(
     Args:
         p: PARAMETERS.
         s: STATE.
+        force: result [N] (6,).
         spool: mean opening over the step, -1 to 1 (6,).
         slide: rod travel from home q [m] (6,).
         speed: rod speed q' [m/s] (6,).
         step: physics step h [s].
     """
     for i in range(6):
-        s.force[i] = p.stiffness * (s.column[i] - slide[i]) - p.damping * speed[i]
+        force[i] = p.stiffness * (s.column[i] - slide[i]) - p.damping * speed[i]
         s.column[i] += p.full_speed * spool[i] * step
