@@ -112,6 +112,14 @@ def test_folder_that_cannot_be_made_gets_one_line(capsys, tmp_path):
     assert "cannot write" in capsys.readouterr().err
 
 
+def test_live_view_without_a_display_gets_one_line(capsys, monkeypatch):
+    monkeypatch.setattr("sys.platform", "linux")
+    monkeypatch.delenv("DISPLAY", raising=False)
+    monkeypatch.delenv("WAYLAND_DISPLAY", raising=False)
+    assert main(["view", "position_sine", "--live"]) == 2
+    assert "needs a display" in capsys.readouterr().err
+
+
 def test_info_tells_what_a_plant_changes(capsys, tmp_path):
     path = tmp_path / "rig.toml"
     path.write_text('schema = 1\nbase = "ves2"\n[parameters]\n"leg.rod_mass" = "2700 g"\n')

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import argparse
+import os
 import sys
 import tempfile
 import time
 from pathlib import Path
 
 from ves_twin.cli.run import add_run_options, load, run_scenario
+from ves_twin.errors import VesTwinError
 
 SUMMARY = "look at a recording or a scenario: rerun, or MuJoCo's viewer with --live"
 
@@ -44,6 +46,8 @@ def execute(arguments: argparse.Namespace) -> int:
 
 def _live(arguments: argparse.Namespace) -> int:
     """Step in real time; closing the window ends it."""
+    if sys.platform == "linux" and not {"DISPLAY", "WAYLAND_DISPLAY"} & set(os.environ):
+        raise VesTwinError("--live needs a display, and there is none; --web serves to a browser")
     import mujoco.viewer
 
     from ves_twin.simulator.recorder import NoSink
@@ -52,7 +56,10 @@ def _live(arguments: argparse.Namespace) -> int:
     scenario, plant = load(arguments)
     sim = Simulator(plant, scenario, arguments.seed, sink=NoSink())
     frame = 1.0 / 60.0
-    with mujoco.viewer.launch_passive(sim.model, sim.data) as window:
+    panels = {"show_left_ui": False, "show_right_ui": False}
+    with mujoco.viewer.launch_passive(sim.model, sim.data, **panels) as window:
+        window.cam.lookat[:], window.cam.distance = (0.0, 0.0, 1.0), 4.2
+        window.cam.azimuth, window.cam.elevation = 128.0, -14.0
         while window.is_running() and not sim.done:
             begin = time.perf_counter()
             sim.advance(frame)
