@@ -21,8 +21,8 @@ from ves_twin.types import FloatArray
 ZEROING_SECONDS = 1.0
 """The sensor is averaged this long before the run, while the rig stands."""
 
-STILL = 1e-3
-"""Largest speed of the platform that counts as standing [m/s, rad/s]: ten times what the
+STILL = 1e-4
+"""Largest speed of the platform that counts as standing [m/s, rad/s]: seven times what the
 transducers' noise alone makes it move."""
 
 
