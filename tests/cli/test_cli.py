@@ -83,6 +83,12 @@ BAD = [
     (["run", "position_sine", "--seed", "-1"], "at least 0"),
     (["run", "position_sine", "--seed", "one"], "one"),
     (["run", "position_sine", "--sede", "1"], "did you mean '--seed'"),
+    (["run", "position_sine", "--set", "arm.start=[1e300,0,0]"], "two turns"),
+    (["run", "position_sine", "--set", "platform.rate=0.001"], "greater than or equal to 1"),
+    (["run", "position_sine", "--set", "parameters.sensor.corner=1e9"], "at most 1000"),
+    (["run", "position_sine", "--set", "parameters.platform.base_radius=0"], "at least 0.1"),
+    (["run", "position_sine", "--set", "parameters.chamber.bore=0.01"], "wider than the rod"),
+    (["run", "position_sine", "--seed", "99999999999999999999"], "below 2^63"),
     (["view", "no/such/run.parquet"], "does not exist"),
     (["info", "--plant", "no.toml"], "does not exist"),
 ]
@@ -162,3 +168,32 @@ def test_help_needs_no_simulator():
         "sys.exit(any(m in sys.modules for m in ('mujoco', 'numba', 'rerun', 'pydantic')))"
     )
     assert subprocess.run([sys.executable, "-c", code], check=False).returncode == 0
+
+
+@pytest.mark.parametrize(
+    ("stiffness", "says"), [("1e18", "pole"), ("-1e12", "runs away|finite|pole")]
+)
+def test_emulated_system_that_cannot_be_followed_gets_one_line(capsys, tmp_path, stiffness, says):
+    path = tmp_path / "base.toml"
+    path.write_text(
+        f"schema = 1\ncoupling = 'beam'\nmass = [1, 1, 1, 1, 1, 1]\ndamping = [0, 0, 0, 0, 0, 0]\n"
+        f"stiffness = [{stiffness}, 0, 0, 0, 0, 0]\n"
+    )
+    command = ["run", "beam_horizontal_truth", *QUICK, "--set", f"platform.emulated={path}"]
+    assert main([*command, "--out", str(tmp_path / "out")]) == 2
+    err = capsys.readouterr().err
+    assert err.count("\n") == 1
+    assert any(word in err for word in says.split("|"))
+
+
+def test_file_that_is_no_rerun_file_is_not_served(capsys, tmp_path):
+    (tmp_path / "run.rrd").write_text("x")
+    assert main(["view", str(tmp_path / "run.rrd"), "--web"]) == 2
+    assert "a rerun file" in capsys.readouterr().err
+
+
+def test_plant_that_lacks_numbers_says_which(capsys, tmp_path):
+    path = tmp_path / "rig.toml"
+    path.write_text("schema = 1\n")
+    assert main(["info", "--plant", str(path)]) == 2
+    assert "gravity and" in capsys.readouterr().err

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from ves_twin.errors import InvalidInputError, UnknownNameError, VersionError, VesTwinError
-from ves_twin.plant.parameters import Grade, read_plant_file
+from ves_twin.plant.parameters import Grade, parse_parameters, read_plant_file
 from ves_twin.plant.plant import Plant, mjcf_part
 
 NAMES = sorted(Plant.load("ves2").parameters)
@@ -25,7 +25,7 @@ def load(tmp_path):
         body = "".join(f"{key} = {value}\n" for key, value in entry.items() if value is not None)
         path = tmp_path / "rig.toml"
         path.write_text(f"schema = 1\n[gravity]\n{body}")
-        return Plant.load(str(path)).parameters["gravity"]
+        return parse_parameters(read_plant_file(path), path)["gravity"]
 
     return build
 

@@ -178,7 +178,7 @@ def test_an_unknown_choice_is_answered_with_what_exists(key, value, words):
         ("platform.start", [0, 0, 0, "3 m", 0, 0], "[4]"),
         ("platform.start", ["3 deg", 0, 0, 0, 0, 0], "[1]"),
         ("platform.start", [0, 0, 0, 0, 0, float("nan")], "finite"),
-        ("platform.rate", 0.0, "greater than 0"),
+        ("platform.rate", 0.0, "greater than or equal to 1"),
         ("platform.rate", 1001.0, "1000"),
         ("platform.rate", "80 m", "in Hz"),
         ("platform.motion.frequency", [1.0, 2.0], "6"),

@@ -11,8 +11,6 @@ if TYPE_CHECKING:
 
 SUMMARY = "versions, models and controllers; with --plant what differs from nominal"
 
-NOMINAL = "ves2"
-
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Options of the command."""
@@ -65,7 +63,7 @@ def general_content() -> dict[str, object]:
 
 def plant_content(name: str) -> dict[str, object]:
     """One plant: identity, grades of its numbers, and every difference from nominal."""
-    from ves_twin.plant.plant import Plant
+    from ves_twin.plant.plant import NOMINAL, Plant
 
     plant = Plant.load(name)
     grades: dict[str, str] = {}
@@ -83,7 +81,7 @@ def plant_content(name: str) -> dict[str, object]:
 
 
 def _differences(plant: Plant) -> dict[str, object]:
-    from ves_twin.plant.plant import Plant
+    from ves_twin.plant.plant import NOMINAL, Plant
 
     nominal = Plant.load(NOMINAL).parameters
     return {

@@ -86,8 +86,8 @@ def load(arguments: argparse.Namespace) -> tuple[Scenario, Plant | None]:
 
     changes = dict(parse_setting(text) for text in arguments.settings)
     scenario = Scenario.load(arguments.scenario, changes)
-    if arguments.seed is not None and arguments.seed < 0:
-        raise InvalidInputError("--seed", arguments.seed, "a whole number of at least 0")
+    if arguments.seed is not None and not 0 <= arguments.seed < 2**63:
+        raise InvalidInputError("--seed", arguments.seed, "at least 0 and below 2^63")
     if arguments.plant is None:
         return scenario, None
     return scenario, Plant.load(arguments.plant).with_values(scenario.parameters)

@@ -10,7 +10,7 @@ import time
 from pathlib import Path
 
 from ves_twin.cli.run import add_run_options, load, run_scenario
-from ves_twin.errors import VesTwinError
+from ves_twin.errors import InvalidInputError, VesTwinError
 
 SUMMARY = "look at a recording or a scenario: rerun, or MuJoCo's viewer with --live"
 
@@ -35,6 +35,7 @@ def execute(arguments: argparse.Namespace) -> int:
         _, folder = run_scenario(arguments)
         return open_viewer(folder / "run.rrd", arguments.web)
     if path.suffix == ".rrd":
+        check_rrd(path)
         return open_viewer(path, arguments.web)
     from ves_twin.recording.files import load_recording
     from ves_twin.rerun_log.write import write_rrd
@@ -42,6 +43,12 @@ def execute(arguments: argparse.Namespace) -> int:
     with tempfile.TemporaryDirectory(prefix="ves_twin-") as scratch:
         rrd = write_rrd(load_recording(path), Path(scratch) / "run.rrd")
         return open_viewer(rrd, arguments.web)
+
+
+def check_rrd(path: Path) -> None:
+    """Raise InvalidInputError unless a file starts as a rerun file does."""
+    if path.is_file() and path.read_bytes()[:3] != b"RRF":
+        raise InvalidInputError(str(path), "another kind of file", "a rerun file")
 
 
 def _live(arguments: argparse.Namespace) -> int:

@@ -68,6 +68,9 @@ class EmulatedSystem:
         Returns:
             Phi (12, 12) and Gamma (12, 6).
 
+        Raises:
+            InvalidInputError: the system runs away within one period.
+
         Source: thesis eqs 2.4 to 2.6, errata E-2.
         """
         from scipy.linalg import expm  # slow to import
@@ -78,7 +81,12 @@ class EmulatedSystem:
         block[6:12, :6] = -inverse @ self.stiffness
         block[6:12, 6:12] = -inverse @ self.damping
         block[6:12, 12:] = inverse
-        exponential = expm(block * period)
+        with np.errstate(all="ignore"):
+            exponential = expm(block * period)
+        if not np.all(np.isfinite(exponential)):
+            raise InvalidInputError(
+                f"emulated system {self.name}", "matrices", "a system whose step response is finite"
+            )
         phi = np.ascontiguousarray(exponential[:12, :12])
         return phi, np.ascontiguousarray(exponential[:12, 12:])
 

@@ -7,6 +7,7 @@ from enum import StrEnum
 import numpy as np
 
 from ves_twin.compiled import compiled
+from ves_twin.errors import InvalidInputError
 from ves_twin.types import FloatArray, Record
 
 PARAMETERS = np.dtype(
@@ -55,6 +56,9 @@ def chebyshev_section(rate: float) -> tuple[FloatArray, FloatArray]:
     Args:
         rate: sampling rate of the leg loop [Hz].
 
+    Raises:
+        InvalidInputError: a rate below twice the edge.
+
     Returns:
         Numerator and denominator, (3,) each; at 587 Hz the digits of Table 5-1.
 
@@ -62,6 +66,8 @@ def chebyshev_section(rate: float) -> tuple[FloatArray, FloatArray]:
     """
     from scipy.signal import cheby2  # slow to import
 
+    if rate <= 18.0:
+        raise InvalidInputError("rate of the leg loop", rate, "more than 18 Hz, twice the edge")
     numerator, denominator = cheby2(2, 4.0, 9.0, fs=rate)
     return np.asarray(numerator), np.asarray(denominator)
 

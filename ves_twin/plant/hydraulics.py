@@ -9,6 +9,7 @@ from enum import StrEnum
 
 import numpy as np
 
+from ves_twin.errors import InvalidInputError
 from ves_twin.plant.parameters import ParameterTable
 from ves_twin.types import FloatArray
 
@@ -42,10 +43,17 @@ def fill_chambers(p: np.void, table: ParameterTable) -> None:
     Args:
         p: one record of `chambers.PARAMETERS`.
         table: numbers of the plant.
+
+    Raises:
+        InvalidInputError: a rod as thick as the bore.
     """
     number = table.number
     piston = np.pi / 4.0 * number("chamber.bore") ** 2
     annulus = piston - np.pi * number("leg.rod_radius") ** 2
+    if not 0.0 < annulus < piston:
+        raise InvalidInputError(
+            "chamber.bore", number("chamber.bore"), "a bore wider than the rod (leg.rod_radius)"
+        )
     ratio, supply = piston / annulus, number("supply.pressure")
     roots = np.sqrt(supply * ratio / (1.0 + ratio)), np.sqrt(supply / (1.0 + ratio))
     gain = number("hydraulics.full_speed") * piston / (0.5 * sum(roots))

@@ -20,6 +20,9 @@ from ves_twin.plant.parameters import (
 )
 from ves_twin.resources import find_resource, resource_folder
 
+NOMINAL = "ves2"
+"""The plant that has every number."""
+
 MJCF_FILES = ("frame.xml", "leg.xml", "platform.xml", "sensor.xml", "puma560.xml")
 """The parts of the rig, each a file that opens on its own in any MuJoCo viewer."""
 
@@ -71,7 +74,7 @@ class Plant:
         if "base" in content:
             plant = replace(_load_base(str(content["base"]), path), name=name)
         else:
-            plant = Plant(name, parse_parameters(content, path))
+            plant = Plant(name, _complete(parse_parameters(content, path), path))
         form = str(content.get("hydraulic_model", plant.hydraulics))
         if form not in set(Hydraulics):
             raise UnknownNameError("hydraulic_model", form, set(Hydraulics))
@@ -114,6 +117,18 @@ class Plant:
         for file in MJCF_FILES:
             digest.update((resource_folder("models") / file).read_bytes())
         return digest.hexdigest()[:16]
+
+
+def _complete(table: ParameterTable, path: Path) -> ParameterTable:
+    """The table, if it has every number that the nominal plant has."""
+    nominal = find_resource("plant", "models", NOMINAL)
+    if path != nominal:
+        needed = parse_parameters(read_plant_file(nominal), nominal)
+        missing = [name for name in needed if name not in table]
+        if missing:
+            what = f"{path}: {missing[0]} and {len(missing) - 1} more numbers"
+            raise InvalidInputError(what, None, f'a value, or base = "{NOMINAL}" to start from')
+    return table
 
 
 def _load_base(name: str, path: Path) -> Plant:

@@ -64,7 +64,12 @@ def static_leg_forces(
     bias = data.qfrc_bias[at : at + 6].copy()
     rotation = matrix_from_angles(np.asarray(pose[3:], dtype=float))
     bias[3:] = rotation @ bias[3:]  # a free joint's moment is in body axes
-    return np.asarray(np.linalg.solve(geometry.jacobian(pose).T, bias))
+    try:
+        return np.asarray(np.linalg.solve(geometry.jacobian(pose).T, bias))
+    except np.linalg.LinAlgError:
+        raise UnreachableError(
+            f"the legs cannot hold the platform at {np.round(pose, 4).tolist()}: singular geometry"
+        ) from None
 
 
 def check_reach(geometry: StewartGeometry, pose: FloatArray, travel: float, what: str) -> None:

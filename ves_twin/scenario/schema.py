@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from typing import Annotated, Any, Literal, Self
 
@@ -12,6 +13,9 @@ from ves_twin.control.registry import GRAVITY_COMPENSATIONS, PLATFORM_CONTROLLER
 from ves_twin.errors import InvalidInputError, UnknownNameError
 from ves_twin.scenario.load import refusal, scenario_content
 from ves_twin.units import to_si
+
+TURNS = 4.0 * math.pi
+"""Largest joint angle that makes sense [rad]."""
 
 LOG_CLOCKS = ("admittance", "leg", "tick")
 
@@ -31,7 +35,10 @@ def _pose(value: object) -> tuple[float, ...]:
 
 
 def _joints(value: object) -> tuple[float, ...]:
-    return _row(value, ("rad", "rad", "rad"))
+    angles = _row(value, ("rad", "rad", "rad"))
+    if any(abs(angle) > TURNS for angle in angles):
+        raise ValueError(f"got {value!r}, expected angles within two turns")
+    return angles
 
 
 def _row(value: object, units: tuple[str, ...]) -> tuple[float, ...]:
@@ -78,14 +85,14 @@ class Run(Part):
     switched on, so that the start transient tells nothing.
     """
 
-    duration: Annotated[Seconds, Field(gt=0)]
-    settle: Annotated[Seconds, Field(gt=0)] = 2.0
+    duration: Annotated[Seconds, Field(gt=0, le=1e7)]
+    settle: Annotated[Seconds, Field(gt=0, le=1e4)] = 2.0
     log: Annotated[Literal["admittance", "leg", "tick"], _named("log clock", LOG_CLOCKS)] = (
         "admittance"
     )
     substeps: Annotated[int, Field(ge=1, le=64)] = 1
     noise: bool = True
-    seed: Annotated[int, Field(ge=0)] = 0
+    seed: Annotated[int, Field(ge=0, lt=2**63)] = 0
 
 
 class SineMotion(Part):
@@ -104,7 +111,7 @@ class Platform(Part):
     """Operating mode and admittance clock; `start` is where the platform is released."""
 
     mode: Annotated[str, _named("mode", PLATFORM_CONTROLLERS)]
-    rate: Annotated[Hertz, Field(gt=0, le=1000)] = 80.0
+    rate: Annotated[Hertz, Field(ge=1, le=1000)] = 80.0
     home: Pose = ZERO_POSE
     start: Pose = ZERO_POSE
     emulated: str | None = None

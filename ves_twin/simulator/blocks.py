@@ -8,6 +8,7 @@ import numpy as np
 
 from ves_twin.control import arm_servo, leg_loop
 from ves_twin.control.belief import Belief
+from ves_twin.errors import InvalidInputError
 from ves_twin.plant.hydraulics import fill_chambers
 from ves_twin.plant.layout import Layout
 from ves_twin.plant.parameters import ParameterTable
@@ -160,7 +161,12 @@ def _fill_legs(p: np.void, legs: Legs, clock: Clock, belief: Belief) -> None:
 def _fill_sensor(p: np.void, table: ParameterTable, tick: float) -> None:
     from scipy.signal import butter, lfilter  # slow to import
 
-    numerator, denominator = butter(2, table.number("sensor.corner"), fs=1.0 / tick)
+    corner = table.number("sensor.corner")
+    if corner >= 0.5 / tick:
+        raise InvalidInputError(
+            "sensor.corner", corner, f"less than half a tick's rate, {0.5 / tick:.1f} Hz"
+        )
+    numerator, denominator = butter(2, corner, fs=1.0 / tick)
     impulse = lfilter(numerator, denominator, np.eye(1, int(1.0 / tick))[0])
     p["gain"] = np.eye(6)
     p["calibration"] = np.eye(6)

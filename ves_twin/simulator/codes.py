@@ -8,6 +8,9 @@ from __future__ import annotations
 RUNNING, NOT_FINITE, LEG_AT_LIMIT, WRENCH_OUT_OF_RANGE = 0, 1, 2, 3
 """How a stretch of the compiled loop ended."""
 
+HUGE = 1e3
+"""Position [m, rad] beyond which a state counts as not finite."""
+
 LENGTH, WHITE, FAST_CHANNELS = 0, 6, 12
 """First noise channel of each group with a number every tick, and how many there are."""
 

@@ -15,6 +15,7 @@ from ves_twin.plant.physics.force_sensor import sample_wrench, wander_on
 from ves_twin.plant.physics.transducer import read_lengths
 from ves_twin.plant.physics.valve import move_spool
 from ves_twin.simulator.codes import (
+    HUGE,
     LEG_AT_LIMIT,
     LENGTH,
     NOT_FINITE,
@@ -127,12 +128,12 @@ def _move_rig(
 def _verdict(p: Record, qpos: FloatArray, inside: bool) -> int:
     for i in range(6):
         travel = qpos[p.layout.slide_qpos[i]]
-        if not np.isfinite(travel):
+        if not abs(travel) < HUGE:
             return NOT_FINITE
         if abs(travel) > p.limits.stroke:
             return LEG_AT_LIMIT
     for j in range(3):
-        if not np.isfinite(qpos[p.layout.arm_qpos[j]]):
+        if not abs(qpos[p.layout.arm_qpos[j]]) < HUGE:
             return NOT_FINITE
     return RUNNING if inside else WRENCH_OUT_OF_RANGE
 

@@ -20,6 +20,7 @@ from scipy.linalg import block_diag
 from ves_twin.compiled import compiled
 from ves_twin.control.arm_servo import servo_torque, spline
 from ves_twin.control.emulated import EmulatedSystem
+from ves_twin.errors import InvalidInputError
 from ves_twin.kinematics.rotations import rate_matrix
 from ves_twin.plant.assembly import assemble_free_arm, compile_model
 from ves_twin.plant.plant import Plant
@@ -34,6 +35,9 @@ LONGEST_STEP = 3.2e-3
 
 STABLE_STEP = 2.0
 """Longest RK4 step times the fastest pole; 2.78 is the limit of stability for real poles."""
+
+FASTEST_POLE = 1e5
+"""Fastest pole [1/s] that is integrated; a beam of the thesis is near 600."""
 
 PLATFORM_IS_BASE, PLATFORM_LAGS = 0, 1
 
@@ -79,7 +83,14 @@ class ZeroGravityReference:
         self._state = np.zeros(SIZE)
         self._state[:6] = self._state[12:18] = start - home
         self._state[24:27] = arm_start
-        self._longest_step = min(LONGEST_STEP, STABLE_STEP / self._fastest_pole())
+        fastest = self._fastest_pole()
+        if not fastest < FASTEST_POLE:
+            raise InvalidInputError(
+                f"emulated system {emulated.name}",
+                f"a pole at {fastest:.3g} /s",
+                f"poles below {FASTEST_POLE:g} /s, which the zero-g reference can follow",
+            )
+        self._longest_step = min(LONGEST_STEP, STABLE_STEP / fastest)
 
     @property
     def pose(self) -> FloatArray:
