@@ -52,7 +52,10 @@ def to_si(value: object, unit: str, what: str) -> float:
     """
     if isinstance(value, bool) or not isinstance(value, (int, float, str)):
         raise InvalidInputError(what, value, f'a number in {unit}, or a text such as "1 {unit}"')
-    number = _parse(value, unit, what) if isinstance(value, str) else float(value)
+    try:
+        number = _parse(value, unit, what) if isinstance(value, str) else float(value)
+    except OverflowError:
+        number = math.inf
     if not math.isfinite(number):
         raise InvalidInputError(what, value, f"a finite number in {unit}")
     return number
@@ -60,6 +63,10 @@ def to_si(value: object, unit: str, what: str) -> float:
 
 _QUANTITY = re.compile(r"\s*([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*([^\d\s].*)?")
 """A number, then the rest as its unit: a text such as "12,5 mm" must not pass as 125 mm."""
+
+_NAME = r"[A-Za-zµμ°%]+(?:(?:\^|\*\*)-?[1-4])?"
+_UNIT = re.compile(rf"{_NAME}(?:\s*[*/·]\s*{_NAME}|\s+{_NAME}){{0,6}}")
+"""Names with small exponents: the unit library would evaluate an expression."""
 
 _ANGLE = re.compile(r"rad|deg|°|turn|rev|cycle|circle|rpm|rps|arcmin|arcsec", re.IGNORECASE)
 
@@ -72,6 +79,8 @@ def _parse(text: str, unit: str, what: str) -> float:
     number, given = float(match[1]), (match[2] or "").strip()
     if not given:
         return number
+    if not _UNIT.fullmatch(given):
+        raise wrong
     # angles have no dimension, so 1 Hz would pass as 1 rad/s
     if bool(_ANGLE.search(given)) != bool(_ANGLE.search(unit)):
         raise wrong

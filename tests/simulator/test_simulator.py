@@ -189,3 +189,42 @@ def test_events_tell_what_was_planned_in_the_order_of_time():
     times = [event.time for event in run.info.events]
     assert times == sorted(times)
     assert times[3:5] == [0.5, 2.5]
+
+
+@pytest.mark.parametrize("log", ["admittance", "leg", "tick"])
+def test_recording_does_not_depend_on_when_rows_are_flushed(log, monkeypatch):
+    scenario = vt.Scenario.load("beam_horizontal_truth", {"run.duration": 1.0, "run.log": log})
+    runs = []
+    for pause in (0.0, 1e9):  # flush at every cycle, and only when the buffer is full
+        monkeypatch.setattr("ves_twin.simulator.recorder.FLUSH_SECONDS", pause)
+        runs.append(vt.simulate(scenario))
+    for name in runs[0].signals:
+        assert np.array_equal(runs[0][name], runs[1][name]), name
+
+
+def test_flushing_in_the_middle_of_a_cycle_loses_and_repeats_nothing():
+    scenario = vt.Scenario.load("beam_horizontal_truth", {"run.duration": 0.5, "run.log": "leg"})
+    whole, pieces = vt.Simulator(None, scenario), vt.Simulator(None, scenario)
+    whole.advance(1.0)
+    while not pieces.done:
+        pieces.advance(0.017)
+        pieces.recorder.flush()
+    time_whole, signals_whole = whole.recorder.sink.collect()
+    time_pieces, signals_pieces = pieces.recorder.sink.collect()
+    assert np.array_equal(time_whole, time_pieces)
+    for name, values in signals_whole.items():
+        assert np.array_equal(values, signals_pieces[name]), name
+
+
+def test_plant_given_beside_a_scenario_takes_the_scenario_s_parameters():
+    scenario = vt.Scenario.load("position_sine", {**SHORT, "parameters.leg.rod_mass": 9.0})
+    sim = vt.Simulator(vt.Plant.load("ves2"), scenario)
+    assert sim.plant.parameters.number("leg.rod_mass") == 9.0
+
+
+def test_cycle_longer_than_a_block_of_noise_is_refused():
+    from ves_twin.errors import InvalidInputError
+
+    scenario = vt.Scenario.load("position_sine", {**SHORT, "parameters.clock.tick": 1e-6})
+    with pytest.raises(InvalidInputError, match=r"platform\.rate"):
+        vt.Simulator(None, scenario)

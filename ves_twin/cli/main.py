@@ -71,12 +71,15 @@ def main(arguments: Sequence[str] | None = None) -> int:
     except VesTwinError as error:
         print(f"ves-twin: {one_line(error)}", file=sys.stderr)
         return BAD_INPUT
+    except (OSError, UnicodeError, RecursionError) as error:
+        if isinstance(error, BrokenPipeError):
+            os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+            return DONE
+        print(f"ves-twin: {one_line(error)}", file=sys.stderr)
+        return BAD_INPUT
     except KeyboardInterrupt:
         print("ves-twin: interrupted", file=sys.stderr)
         return INTERRUPTED
-    except BrokenPipeError:
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-        return DONE
 
 
 if __name__ == "__main__":

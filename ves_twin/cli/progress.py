@@ -25,10 +25,12 @@ class RunProgress:
             bar_format="{desc} {percentage:3.0f}% |{bar}| {n:.1f}/{total:.1f} s [{elapsed}]",
         )
         self._stopped = False
+        self._running = False
         self._before: Any = None
 
     def __call__(self, reached: float) -> None:
         """Move the bar to the time reached [s]; stop if Ctrl-C was pressed."""
+        self._running = True
         self._bar.update(reached - self._bar.n)
         if self._stopped:
             raise KeyboardInterrupt
@@ -49,6 +51,6 @@ class RunProgress:
         self._bar.close()
 
     def _stop(self, number: int, frame: FrameType | None) -> None:
-        if self._stopped:  # the second Ctrl-C does not wait
+        if self._stopped or not self._running:  # nothing to keep, or asked twice
             raise KeyboardInterrupt
         self._stopped = True

@@ -32,7 +32,10 @@ def execute(arguments: argparse.Namespace) -> int:
     path = Path(arguments.scenario)
     is_recording = path.is_dir() or path.suffix in {".parquet", ".arrows", ".rrd"}
     if not is_recording:
-        _, folder = run_scenario(arguments)
+        arguments.no_rrd = False
+        summary, folder = run_scenario(arguments)
+        if not (folder / "run.rrd").is_file():
+            raise VesTwinError(f"nothing to look at: {summary.outcome.value}, {summary.advice}")
         return open_viewer(folder / "run.rrd", arguments.web)
     if path.suffix == ".rrd":
         check_rrd(path)

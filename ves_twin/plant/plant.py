@@ -120,7 +120,7 @@ class Plant:
 
 
 def _complete(table: ParameterTable, path: Path) -> ParameterTable:
-    """The table, if it has every number that the nominal plant has."""
+    """The table, if it has the numbers of the nominal plant in their units and shapes."""
     nominal = find_resource("plant", "models", NOMINAL)
     if path != nominal:
         needed = parse_parameters(read_plant_file(nominal), nominal)
@@ -128,6 +128,12 @@ def _complete(table: ParameterTable, path: Path) -> ParameterTable:
         if missing:
             what = f"{path}: {missing[0]} and {len(missing) - 1} more numbers"
             raise InvalidInputError(what, None, f'a value, or base = "{NOMINAL}" to start from')
+        for name, parameter in table.items():
+            expected = needed[name]
+            if (parameter.unit, parameter.value.shape) != (expected.unit, expected.value.shape):
+                came = f"{parameter.value.shape} {parameter.unit}"
+                shape = f"{expected.value.shape} {expected.unit}"
+                raise InvalidInputError(f"{path}: {name}", came, shape)
     return table
 
 

@@ -26,7 +26,7 @@ def load_recording(path: str | Path) -> Recording:
     """
     file = Path(path)
     if file.is_dir():
-        names = [file / name for name in (FILE_NAME, STREAM_NAME)]
+        names = [file / name for name in (STREAM_NAME, FILE_NAME)]  # a stream is the newer run
         found = [name for name in names if name.is_file()]
         if not found:
             raise FileAccessError(f"folder {file} holds neither {FILE_NAME} nor {STREAM_NAME}")

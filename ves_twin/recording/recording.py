@@ -64,6 +64,10 @@ class RecordingInfo:
         events = values.pop("events", ()) or ()
         if not isinstance(events, list | tuple):
             raise InvalidInputError("events of a recording", events, "a list")
+        kinds = {"settings": str, "versions": Mapping, "held": Mapping, "period": float | int}
+        for key, kind in kinds.items():
+            if key in values and not isinstance(values[key], kind):
+                raise InvalidInputError(f"{key} of a recording", values[key], "another type")
         return RecordingInfo(**values, events=tuple(Event(**e) for e in events))  # type: ignore[arg-type]
 
 
@@ -85,8 +89,10 @@ class Recording:
     info: RecordingInfo
 
     def __post_init__(self) -> None:
-        if np.any(np.diff(self.time) <= 0):
-            raise InvalidInputError("recording time", "a step back", "strictly increasing times")
+        if not np.all(np.isfinite(self.time)) or np.any(np.diff(self.time) <= 0):
+            raise InvalidInputError(
+                "recording time", "a step back or a gap", "strictly increasing times"
+            )
         for name, values in self.signals.items():
             if values.ndim != 2 or values.shape[0] != len(self.time):
                 raise InvalidInputError(

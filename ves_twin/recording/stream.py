@@ -33,7 +33,7 @@ class RecordingStream:
         self._path = folder / STREAM_NAME
         try:
             if self._path.exists():  # rows of a run that was killed are not ours to drop
-                self._path.rename(folder / f"previous-{STREAM_NAME}")
+                self._path.rename(_free(folder, f"previous-{STREAM_NAME}"))
             self._file = self._path.open("wb")
         except OSError as error:
             raise FileAccessError(f"cannot write {self._path}: {error.strerror}") from None
@@ -91,6 +91,15 @@ class RecordingStream:
         self.close()
 
 
+def _free(folder: Path, name: str) -> Path:
+    """The name, or the first of name-2, name-3, ... that is free."""
+    path, number = folder / name, 1
+    while path.exists():
+        number += 1
+        path = folder / f"{Path(name).stem}-{number}{Path(name).suffix}"
+    return path
+
+
 def stream_batches(path: Path) -> Iterator[pa.RecordBatch]:
     """The whole batches of a stream file; a batch that was cut ends the iteration.
 
@@ -116,13 +125,16 @@ ROW_GROUP = 20_000
 
 
 def _grouped(batches: Iterator[pa.RecordBatch], schema: pa.Schema) -> Iterator[pa.Table]:
+    """Tables of exactly ROW_GROUP rows, whatever batches the rows came in."""
     held: list[pa.RecordBatch] = []
     rows = 0
     for batch in batches:
         held.append(batch)
         rows += batch.num_rows
-        if rows >= ROW_GROUP:
-            yield pa.Table.from_batches(held).replace_schema_metadata(schema.metadata)
-            held, rows = [], 0
-    if held:
+        while rows >= ROW_GROUP:
+            table = pa.Table.from_batches(held).replace_schema_metadata(schema.metadata)
+            yield table.slice(0, ROW_GROUP)
+            held = table.slice(ROW_GROUP).to_batches()
+            rows -= ROW_GROUP
+    if rows:
         yield pa.Table.from_batches(held).replace_schema_metadata(schema.metadata)

@@ -8,7 +8,7 @@ from collections.abc import Iterable, Mapping
 import numpy as np
 import pyarrow as pa
 
-from ves_twin.errors import InvalidInputError
+from ves_twin.errors import InvalidInputError, one_line
 from ves_twin.recording.recording import Recording, RecordingInfo
 from ves_twin.signals import SIGNALS
 from ves_twin.types import FloatArray
@@ -63,16 +63,33 @@ def recording_of(table: pa.Table, where: object) -> Recording:
         raise InvalidInputError(str(where), "a table", "a recording written by ves-twin")
     try:
         info = RecordingInfo.from_dict(json.loads(metadata[KEY]))
-    except (ValueError, TypeError) as error:
+    except (ValueError, TypeError, AttributeError) as error:
         raise InvalidInputError(
             f"metadata of {where}", str(error), "a ves-twin recording"
         ) from None
+    try:
+        return Recording(_column(table, "t"), _signals(table), info)
+    except (KeyError, TypeError, ValueError, pa.ArrowException) as error:
+        raise InvalidInputError(str(where), one_line(error), "a ves-twin recording") from None
+
+
+def _signals(table: pa.Table) -> dict[str, FloatArray]:
     groups: dict[str, list[str]] = {}
-    for column in table.column_names[1:]:
-        signal = (table.schema.field(column).metadata or {}).get(b"signal", b"").decode()
-        groups.setdefault(signal or column, []).append(column)
-    signals = {
-        name: np.column_stack([table.column(c).to_numpy() for c in columns])
+    for column in table.column_names:
+        if column != "t":
+            metadata = table.schema.field(column).metadata or {}
+            groups.setdefault(metadata.get(b"signal", b"").decode(), []).append(column)
+    for name, columns in groups.items():
+        if name not in SIGNALS or tuple(columns) != SIGNALS[name].columns:
+            raise ValueError(f"columns {', '.join(columns[:3])} are no signal of the rig")
+    return {
+        name: np.column_stack([_column(table, c) for c in columns])
         for name, columns in groups.items()
     }
-    return Recording(table.column("t").to_numpy(), signals, info)
+
+
+def _column(table: pa.Table, name: str) -> FloatArray:
+    column = table.column(name)
+    if not pa.types.is_floating(column.type):
+        raise ValueError(f"column {name} holds {column.type}, not numbers")
+    return np.asarray(column.to_numpy(), dtype=float)

@@ -10,7 +10,7 @@ import mujoco
 
 from ves_twin.errors import VesTwinError
 from ves_twin.kinematics.stewart import StewartGeometry
-from ves_twin.plant.assembly import assemble
+from ves_twin.plant.assembly import assemble, compile_model
 from ves_twin.plant.layout import Layout
 from ves_twin.plant.plant import Plant
 from ves_twin.recording.recording import RecordingInfo
@@ -40,7 +40,7 @@ class DrawnRig:
     def of(info: RecordingInfo) -> DrawnRig:
         """The rig that a recording names; the default one, with a note, if it is not found."""
         plant, note = _plant_of(info)
-        model = assemble(plant, DRAWING_STEP).compile()
+        model = compile_model(assemble(plant, DRAWING_STEP))
         return DrawnRig(model, Layout.of(model), plant.geometry, note)
 
     @property

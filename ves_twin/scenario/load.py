@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import copy
 import difflib
+import re
 import tomllib
 from collections.abc import Mapping
 from pathlib import Path
@@ -37,7 +38,8 @@ def scenario_content(
     content, question = _read(path)
     for key, value in changes.items():
         content = _with_key(content, key, value)
-    return {"name": path.stem, "question": question, **content}, path.name
+    name = re.sub(r"[^A-Za-z0-9_.-]", "_", path.stem)[:64]
+    return {"name": name, "question": question, **content}, path.name
 
 
 def scenario_questions() -> dict[str, str]:
@@ -57,7 +59,7 @@ def parse_setting(text: str) -> tuple[str, object]:
         raise InvalidInputError("--set", text, "KEY=VALUE, for instance legs.gain=16")
     try:
         return key.strip(), tomllib.loads(f"value = {value}")["value"]
-    except tomllib.TOMLDecodeError:
+    except (ValueError, RecursionError):  # not TOML, or a number or nesting beyond reason
         return key.strip(), value.strip()
 
 

@@ -183,8 +183,8 @@ class Scenario(Part):
     difference is what the emulation gets wrong.
     """
 
-    name: str
-    question: str
+    name: Annotated[str, Field(pattern=r"^[A-Za-z0-9_.-]{1,64}$")]
+    question: Annotated[str, Field(min_length=1)]
     plant: str = "ves2"
     belief: str = "ves2"
     parameters: dict[str, Any] = Field(default_factory=dict)

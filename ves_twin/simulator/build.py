@@ -21,11 +21,6 @@ from ves_twin.simulator.truth_port import GravityTruth
 from ves_twin.types import Block
 
 
-def plant_of(scenario: Scenario) -> Plant:
-    """The scenario's own world: its plant with its parameters."""
-    return Plant.load(scenario.plant).with_values(scenario.parameters)
-
-
 def belief_of(scenario: Scenario) -> Belief:
     """What the controllers take the rig to be, from the scenario's belief file."""
     plant = Plant.load(scenario.belief)

@@ -5,8 +5,12 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from ves_twin.control.emulated import Coupling, EmulatedSystem
+from ves_twin.errors import InvalidInputError
 from ves_twin.plant.parameters import ParameterTable
 from ves_twin.scenario.schema import Scenario
+
+LONGEST_CYCLE = 4096
+"""Ticks of the longest admittance cycle: one block of noise."""
 
 _CYCLE_TIME = {Coupling.DECOUPLED: 0, Coupling.BEAM: 1, Coupling.COUPLED: 2}
 
@@ -37,6 +41,11 @@ class Clock:
         tick = parameters.number("clock.tick")
         leg = round(parameters.number("clock.leg_ticks"))
         admittance = max(1, round(1.0 / (scenario.platform.rate * tick)))
+        if admittance > LONGEST_CYCLE:
+            slowest = 1.0 / (LONGEST_CYCLE * tick)
+            raise InvalidInputError(
+                "platform.rate", scenario.platform.rate, f"at least {slowest:.3g} Hz at this tick"
+            )
         return Clock(
             tick=tick,
             substeps=scenario.run.substeps,

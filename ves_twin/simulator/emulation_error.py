@@ -35,12 +35,13 @@ Rows = tuple[FloatArray, FloatArray, FloatArray]
 """Some rows of `truth.pose`, `reference.pose` and `reference.pose_leg_lag`, (n, 6) each."""
 
 
-def emulation_error(parts: Iterable[Rows]) -> dict[str, AxisError]:
+def emulation_error(parts: Iterable[Rows], home: FloatArray | None = None) -> dict[str, AxisError]:
     """Error per axis of `truth.pose` against `reference.pose`.
 
     Args:
         parts: the rows of a run, in as many parts as one likes, so that a long run need not be
             in memory [m, rad].
+        home: platform pose at which the emulated base is at zero (6,); motion is from there.
 
     Returns:
         Axis name (x, y, z, rx, ry, rz) -> error; empty if there is no row, or a reference that
@@ -54,7 +55,8 @@ def emulation_error(parts: Iterable[Rows]) -> dict[str, AxisError]:
         for row, values in zip(squares, (error, legs, error - legs), strict=True):
             row += np.sum(values**2, axis=0)
         peak = np.maximum(peak, np.max(np.abs(error), axis=0, initial=0.0))
-        norms = [np.linalg.norm(reference[:, k : k + 3], axis=1) for k in (0, 3)]
+        motion = reference if home is None else reference - home
+        norms = [np.linalg.norm(motion[:, k : k + 3], axis=1) for k in (0, 3)]
         size = np.maximum(size, [np.max(norm, initial=0.0) for norm in norms])
     if count == 0 or not np.all(np.isfinite(squares)):
         return {}

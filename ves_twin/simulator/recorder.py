@@ -14,7 +14,7 @@ from ves_twin.signals import SIGNALS
 from ves_twin.simulator.board import SLICES, WIDTH
 from ves_twin.simulator.clock import Clock
 from ves_twin.simulator.reference import ZeroGravityReference
-from ves_twin.types import FloatArray
+from ves_twin.types import FloatArray, IntArray
 
 BUFFER_SECONDS = 4.0
 """Simulated time that the buffer holds."""
@@ -77,7 +77,8 @@ class RecorderSnapshot:
     at: _Buffers
     log: FloatArray
     points: FloatArray
-    starts: FloatArray
+    ticks: IntArray
+    first_rows: IntArray
     references: Mapping[str, FloatArray]
     kept: int
 
@@ -109,7 +110,8 @@ class Recorder:
         capacity = int(BUFFER_SECONDS / self._cycle) + 1
         self.log = np.zeros((capacity * (clock.admittance // clock.log + 2), WIDTH + 1))
         self._points = np.zeros((capacity, 4, 3))
-        self._starts = np.zeros(capacity)
+        self._ticks = np.zeros(capacity, np.int64)
+        self._first_rows = np.zeros(capacity, np.int64)
         jacobian = pose_jacobian(guess, geometry.base, geometry.top, geometry.home)
         self._at = _Buffers(0, 0, guess.copy(), np.asarray(np.linalg.inv(jacobian)))
         self._flushed = monotonic()
@@ -124,24 +126,43 @@ class Recorder:
     def rows(self, rows: int) -> None:
         self._at.rows = rows
 
-    def begin_cycle(self, time: float, points: FloatArray) -> None:
-        """Note the arm's commands of the cycle that starts at a time [s]; flush when it is time."""
-        if self._at.cycles == len(self._starts) or monotonic() - self._flushed > FLUSH_SECONDS:
-            self.flush()
-        self._starts[self._at.cycles] = time
-        self._points[self._at.cycles] = points
+    def begin_cycle(self, tick: int, points: FloatArray) -> None:
+        """Note tick and arm commands of the cycle that starts now; flush when it is time."""
+        if self._at.cycles == len(self._ticks) or monotonic() - self._flushed > FLUSH_SECONDS:
+            self._hand_over(self._at.rows, self._at.cycles)
+        cycle = self._at.cycles
+        self._ticks[cycle], self._first_rows[cycle] = tick, self._at.rows
+        self._points[cycle] = points
         self._at.cycles += 1
 
-    def flush(self) -> None:
-        """Complete the waiting rows and hand them to the sink."""
-        rows = self.log[: self._at.rows, 1:].copy()
-        time = self.log[: self._at.rows, 0].copy()
-        cycles = self._at.cycles
-        self._at.rows = self._at.cycles = 0  # first, so that an interrupt cannot write rows twice
+    def flush(self, unfinished: bool = False) -> None:
+        """Hand the waiting rows to the sink.
+
+        Args:
+            unfinished: also those of the cycle under way; only at the end of a run, since a
+                cycle is handed over once.
+        """
+        at = self._at
+        if unfinished or at.cycles == 0:
+            self._hand_over(at.rows, at.cycles)
+        else:
+            self._hand_over(int(self._first_rows[at.cycles - 1]), at.cycles - 1)
+
+    def _hand_over(self, count: int, cycles: int) -> None:
+        """Complete the first rows and hand them on; move what is left to the front."""
+        at = self._at
+        rows, time = self.log[:count, 1:].copy(), self.log[:count, 0].copy()
+        ticks, points = self._ticks[:cycles].copy(), self._points[:cycles].copy()
+        left, cycles_left = at.rows - count, at.cycles - cycles
+        self.log[:left] = self.log[count : at.rows].copy()
+        for buffer in (self._ticks, self._points, self._first_rows):
+            buffer[:cycles_left] = buffer[cycles : at.cycles].copy()
+        self._first_rows[:cycles_left] -= count
+        at.rows, at.cycles = left, cycles_left  # first, so that an interrupt writes no row twice
         self._flushed = monotonic()
         self._add_platform_pose(rows)
         for name, reference in self._references.items():
-            self._add_reference(rows, time, name, reference, cycles)
+            self._add_reference(rows, time, name, reference, ticks, points)
         if len(time):
             self.sink.write(time, {name: rows[:, SLICES[name]] for name in self.names})
 
@@ -156,7 +177,8 @@ class Recorder:
             at=self._at.copy(),
             log=self.log[: self._at.rows].copy(),
             points=self._points.copy(),
-            starts=self._starts.copy(),
+            ticks=self._ticks.copy(),
+            first_rows=self._first_rows.copy(),
             references={name: r.snapshot() for name, r in self._references.items()},
             kept=len(self.sink.parts) if isinstance(self.sink, MemorySink) else 0,
         )
@@ -165,7 +187,8 @@ class Recorder:
         """Go back to a snapshot; rows that a file already has stay there."""
         self._at = snapshot.at.copy()
         self.log[: self._at.rows] = snapshot.log
-        self._points[:], self._starts[:] = snapshot.points, snapshot.starts
+        self._points[:] = snapshot.points
+        self._ticks[:], self._first_rows[:] = snapshot.ticks, snapshot.first_rows
         for name, state in snapshot.references.items():
             self._references[name].restore(state)
         if isinstance(self.sink, MemorySink):
@@ -184,18 +207,20 @@ class Recorder:
         time: FloatArray,
         name: str,
         reference: ZeroGravityReference,
-        count: int,
+        ticks: IntArray,
+        points: FloatArray,
     ) -> None:
-        poses = np.empty((count + 1, 6))
-        rates = np.empty((count + 1, 6))
+        count = len(ticks)
+        poses, rates = np.empty((count + 1, 6)), np.empty((count + 1, 6))
         for i in range(count):
             poses[i], rates[i] = reference.pose, reference.pose_rate
-            reference.advance(self._points[i], self._cycle)
+            reference.advance(points[i], self._cycle)
         poses[count], rates[count] = reference.pose, reference.pose_rate
         if self._clock.log == self._clock.admittance:
             rows[:, SLICES[name]] = poses[: len(rows)]
         elif len(rows):
             from scipy.interpolate import CubicHermiteSpline  # slow to import
 
-            starts = np.append(self._starts[:count], self._starts[count - 1] + self._cycle)
-            rows[:, SLICES[name]] = CubicHermiteSpline(starts, poses, rates)(time)
+            # from whole ticks, so that a knot has the same bits wherever a flush falls
+            knots = np.append(ticks, ticks[-1] + self._clock.admittance) * self._clock.tick
+            rows[:, SLICES[name]] = CubicHermiteSpline(knots, poses, rates)(time)

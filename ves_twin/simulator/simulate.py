@@ -34,7 +34,7 @@ Progress = Callable[[float], None]
 
 @dataclass(frozen=True)
 class Timing:
-    """How fast a run was: `build` and `settle` before t = 0, then `run`, wall-clock seconds."""
+    """How fast a run was: `prepare` before t = 0, then `run`, wall-clock seconds."""
 
     prepare: float
     run: float
@@ -107,8 +107,10 @@ def record(
         VesTwinError: the scenario cannot be built, or a controller failed.
     """
     begin = perf_counter()
-    make_folder(folder)
     sim = Simulator(plant, scenario, seed, sink=NoSink())
+    make_folder(folder)
+    for name in (SUMMARY_NAME, "run.rrd"):  # of an earlier run, which this one replaces
+        (folder / name).unlink(missing_ok=True)
     ready = perf_counter()
     with RecordingStream(folder, sim.recorder.names, recording_info(sim)) as stream:
         sim.recorder.sink = stream
@@ -178,12 +180,15 @@ def _run(sim: Simulator, progress: Progress | None) -> None:
             if progress is not None:
                 progress(sim.time)
     except KeyboardInterrupt:
+        if sim.outcome is not None:
+            return
         sim.end(Outcome.INTERRUPTED, f"stopped from the keyboard at {sim.time:.3f} s")
 
 
 def _summary(sim: Simulator, recording: Path, prepare: float, run: float) -> Summary:
     assert sim.outcome is not None  # noqa: S101  (the run has ended)
-    errors = emulation_error(_pose_rows(recording)) if IDEAL in sim.recorder.names else {}
+    home = np.array(sim.scenario.platform.home)
+    errors = emulation_error(_pose_rows(recording), home) if IDEAL in sim.recorder.names else {}
     return Summary(
         scenario=sim.scenario.name,
         question=sim.scenario.question,
@@ -192,7 +197,7 @@ def _summary(sim: Simulator, recording: Path, prepare: float, run: float) -> Sum
         seed=sim.seed,
         plant=sim.plant.name,
         plant_hash=sim.plant.hash,
-        duration=sim.time,
+        duration=max(sim.time, 0.0),
         emulation_error=errors,
         events=[asdict(event) for event in sim.events],
         timing=Timing(

@@ -16,7 +16,6 @@ from ves_twin.simulator.build import (
     build_computers,
     build_references,
     emulated_of,
-    plant_of,
 )
 from ves_twin.simulator.clock import Clock, overrun
 from ves_twin.simulator.codes import RUNNING
@@ -54,7 +53,7 @@ class Simulator:
         events: what happened so far.
 
     Args:
-        plant: the world; the scenario's own plant and parameters if left out.
+        plant: the world, with the scenario's parameters; the scenario's own if left out.
         scenario: what is done with it.
         seed: seed of the noise; the scenario's own if left out.
         sink: where rows go; kept in memory if left out.
@@ -71,7 +70,7 @@ class Simulator:
         sink: Sink | None = None,
     ) -> None:
         self.scenario = scenario
-        self.plant = plant or plant_of(scenario)
+        self.plant = (plant or Plant.load(scenario.plant)).with_values(scenario.parameters)
         self.seed = scenario.run.seed if seed is None else seed
         self.outcome: Outcome | None = None
         self.events: list[Event] = []
@@ -134,8 +133,8 @@ class Simulator:
         """End the run with a named outcome; what was recorded is kept."""
         self.outcome = outcome
         self._note_agenda()
-        self.events.append(Event(self.time, outcome.value, why))
-        self.recorder.flush()
+        self.events.append(Event(max(self.time, 0.0), outcome.value, why))
+        self.recorder.flush(unfinished=True)
 
     def snapshot(self) -> Snapshot:
         """A copy of everything that the rest of the run depends on."""
@@ -167,7 +166,8 @@ class Simulator:
             self.end(Outcome.OVERRUN, late)
 
     def _left_limits(self, code: int) -> None:
-        self.end(OUTCOME_OF_CODE[code], f"the rig left its limits at {self.time:.3f} s")
+        when = f"at {self.time:.3f} s" if self.rig.tick > 0 else "while settling"
+        self.end(OUTCOME_OF_CODE[code], f"the rig left its limits {when}")
 
     def _note_agenda(self) -> None:
         """What was planned for the time since the last look becomes an event."""
@@ -183,5 +183,5 @@ class Simulator:
                 Outcome.LEG_LIMIT, f"the command of leg {outside} left the safety margin; not sent"
             )
             return False
-        self.recorder.begin_cycle(rig.time, rig.state["servo"]["points"][0])
+        self.recorder.begin_cycle(rig.tick, rig.state["servo"]["points"][0])
         return True
