@@ -220,7 +220,7 @@ def test_rows_that_are_not_finite_are_not_drawn(beam, tmp_path):
 
 
 def test_a_plant_that_is_gone_is_replaced_and_said_so(beam, tmp_path):
-    info = replace(beam.info, settings='{"plant": "no_such_plant"}')
+    info = replace(beam.info, plant_base="no_such_plant")
     path = write_rrd(replace(beam, info=info), tmp_path / "a.rrd")
     (text,) = _texts(path, "account", "TextDocument:text")
     assert "The drawing shows ves2: unknown plant 'no_such_plant'" in text

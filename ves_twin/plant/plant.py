@@ -109,6 +109,18 @@ class Plant:
         return Puma560(**{k: self.parameters.number(f"arm.{k}") for k in _ARM_LENGTHS})
 
     @property
+    def base(self) -> str:
+        """The shipped plant of the same form of hydraulics, from which `changes` count."""
+        return NOMINAL if self.hydraulics is Hydraulics.LINEAR else f"{NOMINAL}_pressure"
+
+    def changes(self) -> dict[str, object]:
+        """Values that differ from `base`: dotted name -> plain value."""
+        base = Plant.load(self.base).parameters
+        return {
+            name: here.tolist() for name, (here, _) in self.parameters.differences(base).items()
+        }
+
+    @property
     def hash(self) -> str:
         """Short hash over every number and MJCF part: equal hash, equal physics."""
         digest = hashlib.sha256(f"{self.fidelity} {self.hydraulics}".encode())

@@ -30,6 +30,8 @@ class RecordingInfo:
         settings: the validated scenario as JSON, so that the run can be repeated.
         plant: name of the plant.
         plant_hash: hash of its physics.
+        plant_base: plant that `parameters` differ from, so that the rig can be built again.
+        parameters: values that differ from it, by dotted name.
         seed: seed of the noise.
         versions: package -> version.
         log: clock of the rows: admittance, leg or tick.
@@ -44,6 +46,8 @@ class RecordingInfo:
     settings: str = "{}"
     plant: str = ""
     plant_hash: str = ""
+    plant_base: str = ""
+    parameters: Mapping[str, object] = field(default_factory=dict)
     seed: int = 0
     versions: Mapping[str, str] = field(default_factory=dict)
     log: str = ""
@@ -64,7 +68,13 @@ class RecordingInfo:
         events = values.pop("events", ()) or ()
         if not isinstance(events, list | tuple):
             raise InvalidInputError("events of a recording", events, "a list")
-        kinds = {"settings": str, "versions": Mapping, "held": Mapping, "period": float | int}
+        kinds = {
+            "settings": str,
+            "versions": Mapping,
+            "parameters": Mapping,
+            "held": Mapping,
+            "period": float | int,
+        }
         for key, kind in kinds.items():
             if key in values and not isinstance(values[key], kind):
                 raise InvalidInputError(f"{key} of a recording", values[key], "another type")

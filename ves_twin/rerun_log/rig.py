@@ -59,11 +59,9 @@ def settings_of(info: RecordingInfo) -> Mapping[str, object]:
 
 
 def _plant_of(info: RecordingInfo) -> tuple[Plant, str]:
-    settings = settings_of(info)
-    name = str(settings.get("plant") or info.plant or DEFAULT_PLANT)
-    changes = settings.get("parameters")
     try:
-        plant = Plant.load(name).with_values(changes if isinstance(changes, dict) else {})
+        plant = Plant.load(info.plant_base or info.plant or DEFAULT_PLANT)
+        plant = plant.with_values(info.parameters)
     except VesTwinError as error:
         return Plant.load(DEFAULT_PLANT), f"The drawing shows {DEFAULT_PLANT}: {error}"
     if info.plant_hash and plant.hash != info.plant_hash:

@@ -151,6 +151,8 @@ def recording_info(sim: Simulator) -> RecordingInfo:
         settings=sim.scenario.model_dump_json(),
         plant=sim.plant.name,
         plant_hash=sim.plant.hash,
+        plant_base=sim.plant.base,
+        parameters=sim.plant.changes(),
         seed=sim.seed,
         versions=versions(),
         log=sim.scenario.run.log,
