@@ -106,6 +106,11 @@ def _parse(content: dict[str, object], path: Path) -> EmulatedSystem:
         raise InvalidInputError(
             f"{path.name}: mass", content["mass"], "a symmetric, positive definite matrix"
         )
+    diagonal = all(np.array_equal(m, np.diag(np.diag(m))) for m in (mass, damping, stiffness))
+    if coupling == Coupling.DECOUPLED and not diagonal:
+        raise InvalidInputError(
+            f"{path.name}: coupling", coupling, "'beam' or 'coupled', for full matrices"
+        )
     return EmulatedSystem(
         name=str(content.get("name", path.stem)),
         coupling=Coupling(coupling),

@@ -49,7 +49,7 @@ class _Stateless(GravityCompensation):
 
 @final
 class NoCompensation(_Stateless):
-    """Nothing is subtracted: the payload's weight pushes the emulated base."""
+    """Nothing is subtracted: what weight the zeroing has not tared pushes the emulated base."""
 
     subtracts = False
 

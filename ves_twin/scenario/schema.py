@@ -168,7 +168,7 @@ class Arm(Part):
     @model_validator(mode="after")
     def _moves_follow_each_other(self) -> Self:
         for one, two in zip(self.moves, self.moves[1:], strict=False):
-            if two.start < one.start + one.duration:
+            if two.start < one.start + one.duration - 1e-9:  # round-off of a sum of times
                 raise ValueError(
                     f"arm.moves: the move at {two.start} s starts before the one at"
                     f" {one.start} s has ended"

@@ -171,7 +171,7 @@ class Simulator:
 
     def _note_agenda(self) -> None:
         """What was planned for the time since the last look becomes an event."""
-        while self._agenda and self._agenda[0].time < self.time:
+        while self._agenda and self._agenda[0].time <= self.time:
             self.events.append(self._agenda.pop(0))
 
     def _interrupt(self) -> bool:
