@@ -10,7 +10,7 @@ import pytest
 
 from ves_twin.cli.main import COMMANDS, main
 from ves_twin.recording.files import load_recording
-from ves_twin.scenario.load import scenario_questions
+from ves_twin.scenario.load import procedure_questions, scenario_questions
 
 QUICK = ["--set", "run.duration=0.3", "--set", "run.settle=0.3", "--no-rrd"]
 
@@ -18,14 +18,16 @@ QUICK = ["--set", "run.duration=0.3", "--set", "run.settle=0.3", "--no-rrd"]
 def test_scenarios_lists_every_question(capsys):
     assert main(["scenarios"]) == 0
     out = capsys.readouterr().out
-    for name, question in scenario_questions().items():
+    for name, question in (scenario_questions() | procedure_questions()).items():
         assert name in out
         assert question in out
 
 
 def test_json_output_is_one_object_and_nothing_else(capsys, tmp_path):
     assert main(["scenarios", "--json"]) == 0
-    assert set(json.loads(capsys.readouterr().out)) == set(scenario_questions())
+    assert set(json.loads(capsys.readouterr().out)) == set(
+        scenario_questions() | procedure_questions()
+    )
     assert main(["info", "--json"]) == 0
     assert json.loads(capsys.readouterr().out)["versions"]["mujoco"].startswith("3.17")
     assert main(["run", "position_sine", *QUICK, "--json", "--out", str(tmp_path)]) == 0

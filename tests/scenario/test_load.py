@@ -14,7 +14,7 @@ from ves_twin.resources import resource_folder
 from ves_twin.scenario.load import parse_setting, scenario_questions
 from ves_twin.scenario.schema import Scenario
 
-FILES = sorted(resource_folder("scenarios").glob("*.toml"))
+FILES = [resource_folder("scenarios") / f"{name}.toml" for name in scenario_questions()]
 MOVES = [{"start": 0.0, "duration": 2.0, "to": [0, 0, 0]}]
 SINE = "position_sine"
 BEAM = "beam_horizontal_truth"

@@ -15,14 +15,15 @@ from ves_twin.compiled import cache_folder
 class RunProgress:
     """Called with the time reached; the first Ctrl-C ends the run between two slices."""
 
-    def __init__(self, name: str, duration: float) -> None:
+    def __init__(self, name: str, duration: float, unit: str = "s") -> None:
         self._bar = tqdm(
             total=duration,
             desc=name,
-            unit="s",
             file=sys.stderr,
             disable=None,  # silent where stderr is no terminal
-            bar_format="{desc} {percentage:3.0f}% |{bar}| {n:.1f}/{total:.1f} s [{elapsed}]",
+            bar_format="{desc} {percentage:3.0f}% |{bar}|"
+            + (" {n:.1f}/{total:.1f} s" if unit == "s" else "")
+            + " [{elapsed}]",
         )
         self._stopped = False
         self._running = False
@@ -34,6 +35,11 @@ class RunProgress:
         self._bar.update(reached - self._bar.n)
         if self._stopped:
             raise KeyboardInterrupt
+
+    def share(self, done: float, what: str) -> None:
+        """Move the bar to a share done, 0 to 1, of a total of 1; `what` stands before the bar."""
+        self._bar.set_description_str(what)
+        self(done)
 
     def __enter__(self) -> RunProgress:
         if not any(cache_folder().iterdir()):

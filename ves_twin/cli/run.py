@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from ves_twin.plant.plant import Plant
     from ves_twin.scenario.schema import Scenario
+    from ves_twin.simulator.outcome import Outcome
     from ves_twin.simulator.simulate import Summary
 
 SUMMARY = "run a scenario and write its recording"
@@ -38,7 +39,12 @@ def add_run_options(parser: argparse.ArgumentParser) -> None:
 
 
 def execute(arguments: argparse.Namespace) -> int:
-    """Run the scenario; the exit code tells how it ended."""
+    """Run the scenario or procedure; the exit code tells how it ended."""
+    from ves_twin.cli.run_procedure import run_procedure
+
+    ended = run_procedure(arguments)
+    if ended is not None:
+        return ended
     summary, folder = run_scenario(arguments)
     if arguments.json:
         print(summary.to_json())
@@ -46,14 +52,12 @@ def execute(arguments: argparse.Namespace) -> int:
         from ves_twin.cli.summary_text import summary_text
 
         print(summary_text(summary, folder))
-    return exit_code(summary)
+    return exit_code(summary.outcome)
 
 
-def exit_code(summary: Summary) -> int:
+def exit_code(outcome: Outcome) -> int:
     """0 completed, 130 interrupted, 3 any other end."""
-    from ves_twin.simulator.outcome import Outcome
-
-    return {Outcome.COMPLETED: 0, Outcome.INTERRUPTED: 130}.get(summary.outcome, 3)
+    return {"completed": 0, "interrupted": 130}.get(outcome.value, 3)
 
 
 def run_scenario(arguments: argparse.Namespace) -> tuple[Summary, Path]:

@@ -15,9 +15,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def execute(arguments: argparse.Namespace) -> int:
     """Print the list."""
-    from ves_twin.scenario.load import scenario_questions
+    from ves_twin.scenario.load import procedure_questions, scenario_questions
 
-    questions = scenario_questions()
+    questions = scenario_questions() | procedure_questions()
     if arguments.json:
         print(json.dumps(questions, indent=2))
         return 0

@@ -44,8 +44,21 @@ def scenario_content(
 
 def scenario_questions() -> dict[str, str]:
     """Every scenario that is shipped: name -> the question it answers."""
+    return {name: question for name, (content, question) in _shipped() if not _is_many(content)}
+
+
+def procedure_questions() -> dict[str, str]:
+    """Every procedure that is shipped (many runs, one result): name -> its question."""
+    return {name: question for name, (content, question) in _shipped() if _is_many(content)}
+
+
+def _is_many(content: Mapping[str, object]) -> bool:
+    return "procedure" in content
+
+
+def _shipped() -> list[tuple[str, tuple[dict[str, Any], str]]]:
     paths = sorted(resource_folder("scenarios").glob("*.toml"))
-    return {path.stem: _read(path)[1] for path in paths}
+    return [(path.stem, _read(path)) for path in paths]
 
 
 def parse_setting(text: str) -> tuple[str, object]:

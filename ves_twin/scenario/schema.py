@@ -2,80 +2,28 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping
 from typing import Annotated, Any, Literal, Self
 
-from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, ValidationError, model_validator
+from pydantic import Field, ValidationError, model_validator
 
 from ves_twin.control.leg_loop import FilterPlace
 from ves_twin.control.registry import GRAVITY_COMPENSATIONS, PLATFORM_CONTROLLERS
-from ves_twin.errors import InvalidInputError, UnknownNameError
+from ves_twin.scenario.fields import (
+    ZERO_JOINTS,
+    ZERO_POSE,
+    Hertz,
+    Joints,
+    Part,
+    PerSecond,
+    Pose,
+    Seconds,
+    named,
+    si,
+)
 from ves_twin.scenario.load import refusal, scenario_content
-from ves_twin.units import to_si
-
-TURNS = 4.0 * math.pi
-"""Largest joint angle that makes sense [rad]."""
 
 LOG_CLOCKS = ("admittance", "leg", "tick")
-
-
-def _si(unit: str) -> BeforeValidator:
-    def convert(value: object) -> float:
-        try:
-            return to_si(value, unit, "value")
-        except InvalidInputError as error:
-            raise ValueError(str(error)) from None
-
-    return BeforeValidator(convert)
-
-
-def _pose(value: object) -> tuple[float, ...]:
-    return _row(value, ("m", "m", "m", "rad", "rad", "rad"))
-
-
-def _joints(value: object) -> tuple[float, ...]:
-    angles = _row(value, ("rad", "rad", "rad"))
-    if any(abs(angle) > TURNS for angle in angles):
-        raise ValueError(f"got {value!r}, expected angles within two turns")
-    return angles
-
-
-def _row(value: object, units: tuple[str, ...]) -> tuple[float, ...]:
-    if not isinstance(value, list | tuple) or len(value) != len(units):
-        raise ValueError(f"got {value!r}, expected {len(units)} numbers in {', '.join(units)}")
-    try:
-        return tuple(
-            to_si(v, unit, f"[{i}]")
-            for i, (v, unit) in enumerate(zip(value, units, strict=True), 1)
-        )
-    except InvalidInputError as error:
-        raise ValueError(str(error)) from None
-
-
-def _named(kind: str, known: Any) -> BeforeValidator:
-    def check(value: object) -> object:
-        if not isinstance(value, str) or value not in known:
-            raise ValueError(str(UnknownNameError(kind, str(value), known)))
-        return value
-
-    return BeforeValidator(check)
-
-
-Seconds = Annotated[float, _si("s")]
-Hertz = Annotated[float, _si("Hz")]
-PerSecond = Annotated[float, _si("1/s")]
-Metres = Annotated[float, _si("m")]
-Pose = Annotated[tuple[float, ...], BeforeValidator(_pose)]
-Joints = Annotated[tuple[float, ...], BeforeValidator(_joints)]
-ZERO_POSE = (0.0,) * 6
-ZERO_JOINTS = (0.0,) * 3
-
-
-class Part(BaseModel):
-    """A table of the file: frozen, unknown keys refused."""
-
-    model_config = ConfigDict(frozen=True, extra="forbid", allow_inf_nan=False)
 
 
 class Run(Part):
@@ -87,7 +35,7 @@ class Run(Part):
 
     duration: Annotated[Seconds, Field(gt=0, le=1e7)]
     settle: Annotated[Seconds, Field(gt=0, le=1e4)] = 2.0
-    log: Annotated[Literal["admittance", "leg", "tick"], _named("log clock", LOG_CLOCKS)] = (
+    log: Annotated[Literal["admittance", "leg", "tick"], named("log clock", LOG_CLOCKS)] = (
         "admittance"
     )
     substeps: Annotated[int, Field(ge=1, le=64)] = 1
@@ -101,16 +49,16 @@ class SineMotion(Part):
     kind: Literal["sine"]
     amplitude: Pose
     frequency: Annotated[tuple[Hertz, ...], Field(min_length=6, max_length=6)]
-    phase: Annotated[
-        tuple[Annotated[float, _si("rad")], ...], Field(min_length=6, max_length=6)
-    ] = ZERO_POSE
+    phase: Annotated[tuple[Annotated[float, si("rad")], ...], Field(min_length=6, max_length=6)] = (
+        ZERO_POSE
+    )
     fade: Annotated[Seconds, Field(ge=0)] = 1.0
 
 
 class Platform(Part):
     """Operating mode and admittance clock; `start` is where the platform is released."""
 
-    mode: Annotated[str, _named("mode", PLATFORM_CONTROLLERS)]
+    mode: Annotated[str, named("mode", PLATFORM_CONTROLLERS)]
     rate: Annotated[Hertz, Field(ge=1, le=1000)] = 80.0
     home: Pose = ZERO_POSE
     start: Pose = ZERO_POSE
@@ -136,7 +84,7 @@ class Gravity(Part):
     a worse one: it runs ahead of the reading that it is taken off.
     """
 
-    method: Annotated[str, _named("gravity method", GRAVITY_COMPENSATIONS)] = "none"
+    method: Annotated[str, named("gravity method", GRAVITY_COMPENSATIONS)] = "none"
     age: Annotated[int, Field(ge=0, le=50)] = 1
     zero: bool = True
 
@@ -145,8 +93,8 @@ class Legs(Part):
     """Leg loop: gain K1 and rate gain K2 in physical units, and what the section filters."""
 
     gain: Annotated[PerSecond, Field(ge=0)] = 12.6
-    rate_gain: Annotated[float, _si("1"), Field(ge=0)] = 0.0
-    filter: Annotated[FilterPlace, _named("filter place", [p.value for p in FilterPlace])] = (
+    rate_gain: Annotated[float, si("1"), Field(ge=0)] = 0.0
+    filter: Annotated[FilterPlace, named("filter place", [p.value for p in FilterPlace])] = (
         FilterPlace.NONE
     )
 

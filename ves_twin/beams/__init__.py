@@ -1,0 +1,1 @@
+"""beams: stiffness, mass and damping of the flexible structures that the rig emulates."""

@@ -1,0 +1,59 @@
+"""run_procedure: carry out a procedure (many runs, one result), write and print its account."""
+
+from __future__ import annotations
+
+import argparse
+import json
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from ves_twin.procedures.procedure import Account, Procedure
+
+
+def run_procedure(arguments: argparse.Namespace) -> int | None:
+    """Carry out what the arguments name; None where they name an ordinary scenario.
+
+    Raises:
+        VesTwinError: options that cannot be carried out, or a folder that cannot be written.
+    """
+    from ves_twin.cli.progress import RunProgress
+    from ves_twin.cli.run import exit_code, output_folder
+    from ves_twin.errors import InvalidInputError
+    from ves_twin.plant.plant import Plant
+    from ves_twin.procedures.procedure import Conduct
+    from ves_twin.procedures.registry import load_procedure
+    from ves_twin.scenario.load import parse_setting
+    from ves_twin.simulator.simulate import SUMMARY_NAME, make_folder
+
+    changes = dict(parse_setting(text) for text in arguments.settings)
+    procedure = load_procedure(arguments.scenario, changes)
+    if procedure is None:
+        return None
+    if arguments.seed is not None and not 0 <= arguments.seed < 2**63:
+        raise InvalidInputError("--seed", arguments.seed, "at least 0 and below 2^63")
+    plant = Plant.load(arguments.plant) if arguments.plant else None
+    folder = output_folder(arguments.out, procedure.name)
+    make_folder(folder)
+    with RunProgress(procedure.name, 1.0, unit="share") as progress:
+        conduct = Conduct(folder, plant, arguments.seed, progress.share)
+        account = procedure.carry_out(conduct)
+    text = json.dumps(_summary(procedure, account), indent=2)
+    (folder / SUMMARY_NAME).write_text(text + "\n", encoding="utf-8")
+    if arguments.json:
+        print(text)
+    else:
+        files = ", ".join(sorted(p.name for p in folder.iterdir()))
+        head = f"{procedure.name}: {procedure.question}"
+        outcome = f"  outcome   {account.outcome.value}"
+        print("\n".join([head, outcome, "", *account.lines, "", f"  files     {folder}/: {files}"]))
+    return exit_code(account.outcome)
+
+
+def _summary(procedure: Procedure, account: Account) -> dict[str, object]:
+    head = {
+        "procedure": procedure.procedure,
+        "name": procedure.name,
+        "question": procedure.question,
+        "outcome": account.outcome.value,
+    }
+    return {**head, **account.values, "options": procedure.model_dump(mode="json")}

@@ -1,0 +1,1 @@
+"""procedures: experiments of many runs with one result."""

@@ -1,0 +1,41 @@
+"""load_procedure: a procedure by the name of its file, checked against its class."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+from pydantic import ValidationError
+
+from ves_twin.errors import UnknownNameError
+from ves_twin.procedures.procedure import Procedure
+from ves_twin.scenario.load import refusal, scenario_content
+
+PROCEDURES: dict[str, type[Procedure]] = {}
+"""Value of `procedure` in a file -> class."""
+
+
+def load_procedure(
+    name_or_path: str, changes: Mapping[str, object] | None = None
+) -> Procedure | None:
+    """A procedure by name or from a file; None where the file is an ordinary scenario.
+
+    Args:
+        name_or_path: a name of scenarios/, or a path to a TOML file.
+        changes: dotted keys to values.
+
+    Raises:
+        FileAccessError: missing or unreadable file.
+        UnknownNameError: unknown file, procedure or key; says the nearest one.
+        InvalidInputError: wrong type, unit, shape or range; says the key.
+    """
+    content, where = scenario_content(name_or_path, changes or {})
+    kind = content.get("procedure")
+    if kind is None:
+        return None
+    if not isinstance(kind, str) or kind not in PROCEDURES:
+        raise UnknownNameError(f"procedure in {where}", str(kind), PROCEDURES)
+    model = PROCEDURES[kind]
+    try:
+        return model.model_validate(content)
+    except ValidationError as error:
+        raise refusal(error, where, model) from None

@@ -1,0 +1,1 @@
+"""thesis: the claims of the thesis, their verdicts and its figures."""
