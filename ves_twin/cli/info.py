@@ -7,6 +7,7 @@ import json
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
+    from ves_twin.effects.effect import Effect
     from ves_twin.plant.plant import Plant
 
 SUMMARY = "versions, models and controllers; with --plant what differs from nominal"
@@ -39,6 +40,7 @@ def general_content() -> dict[str, object]:
     """Versions, plants, emulated systems, controllers, scenarios, signals."""
     from ves_twin.compiled import cache_folder
     from ves_twin.control.registry import GRAVITY_COMPENSATIONS, PLATFORM_CONTROLLERS
+    from ves_twin.effects.registry import EFFECTS
     from ves_twin.plant.plant import Plant
     from ves_twin.resources import resource_folder
     from ves_twin.scenario.load import scenario_questions
@@ -50,6 +52,7 @@ def general_content() -> dict[str, object]:
         "versions": versions(),
         "plants": {p.stem: Plant.load(p.stem).hash for p in sorted(models.glob("*.toml"))},
         "emulated systems": [p.stem for p in sorted((models / "emulated").glob("*.toml"))],
+        "effects": {kind: ", ".join(_sizes(effect)) for kind, effect in EFFECTS.items()},
         "platform controllers": list(PLATFORM_CONTROLLERS),
         "gravity compensations": list(GRAVITY_COMPENSATIONS),
         "scenarios": list(scenario_questions()),
@@ -59,6 +62,11 @@ def general_content() -> dict[str, object]:
         },
         "compiled code": str(cache_folder()),
     }
+
+
+def _sizes(effect: type[Effect]) -> list[str]:
+    places = effect.targets if len(effect.targets) < 4 else (effect.targets[0], "...")
+    return [f"{m.name} [{m.unit}]" for m in effect.magnitudes] + [f"on {' '.join(places)}"]
 
 
 def plant_content(name: str) -> dict[str, object]:
@@ -77,6 +85,12 @@ def plant_content(name: str) -> dict[str, object]:
         "hydraulics": plant.hydraulics.value,
         "numbers by grade": grades,
         f"differences from {NOMINAL}": _differences(plant),
+        "effects": {
+            f"{e.kind} on {e.target}": ", ".join(
+                f"{m.name} = {e.values[m.name]:g} {m.unit}" for m in e.magnitudes
+            )
+            for e in plant.effects
+        },
     }
 
 

@@ -32,7 +32,7 @@ def assemble(plant: Plant, timestep: float) -> mujoco.MjSpec:
     Returns:
         A specification that compiles; names are prefixed leg1/ ... leg6/, platform/, sensor/, arm/.
     """
-    parameters, geometry = plant.parameters, plant.geometry
+    parameters, geometry = plant.actual, plant.geometry
     spec = _part("frame.xml")
     spec.modelname = plant.name
     spec.option.timestep = timestep
@@ -47,11 +47,11 @@ def assemble(plant: Plant, timestep: float) -> mujoco.MjSpec:
     sensor = _part("sensor.xml")
     sensor.site("wrench").pos = parameters.array("sensor.position")
     spec.attach(sensor, prefix="sensor/", site=spec.site("platform/top"))
-    spec.attach(
-        arm_part(_part("puma560.xml"), parameters), prefix="arm/", site=spec.site("sensor/mount")
-    )
+    spec.attach(_arm(plant), prefix="arm/", site=spec.site("sensor/mount"))
     _close_legs(spec, timestep)
     _actuators_and_sensors(spec)
+    for effect in plant.effects:
+        effect.edit_rig(spec)
     return spec
 
 
@@ -94,13 +94,13 @@ def assemble_free_arm(plant: Plant) -> mujoco.MjSpec:
     ):
         base.add_joint(name=name, type=kind, axis=axis)
     mount = base.add_site(name="mount")
-    spec.attach(arm_part(_part("puma560.xml"), plant.parameters), prefix="arm/", site=mount)
+    spec.attach(_arm(plant), prefix="arm/", site=mount)
     return spec
 
 
 def assemble_fixed_arm(plant: Plant) -> mujoco.MjSpec:
     """The arm alone on a fixed base, gravity on, rotors in `armature`."""
-    spec = arm_part(_part("puma560.xml"), plant.parameters)
+    spec = _arm(plant)
     spec.option.gravity = [0.0, 0.0, -plant.parameters.number("gravity")]
     spec.option.disableflags |= int(mujoco.mjtDisableBit.mjDSBL_CONTACT)
     return spec
@@ -108,6 +108,13 @@ def assemble_fixed_arm(plant: Plant) -> mujoco.MjSpec:
 
 def _part(file: str) -> mujoco.MjSpec:
     return mujoco.MjSpec.from_file(str(mjcf_part(file)))
+
+
+def _arm(plant: Plant) -> mujoco.MjSpec:
+    arm = arm_part(_part("puma560.xml"), plant.actual)
+    for effect in plant.effects:
+        effect.edit_arm(arm)
+    return arm
 
 
 def _platform(spec: mujoco.MjSpec, parameters: ParameterTable, joints: FloatArray) -> mujoco.MjSpec:

@@ -17,7 +17,7 @@ from ves_twin.units import check_unit, to_si
 SCHEMA = 1
 """Version of the plant file format."""
 
-HEAD_KEYS = frozenset({"schema", "name", "base", "hydraulic_model", "parameters"})
+HEAD_KEYS = frozenset({"schema", "name", "base", "hydraulic_model", "parameters", "effects"})
 """Keys of a plant file beside its parameters."""
 
 _KEYS = {"value", "unit", "sd", "low", "high", "grade", "source"}
@@ -162,7 +162,7 @@ def _collect(
                 raise InvalidInputError(f"{path}: {name}", child, "a table with value and unit")
         elif "value" in child:
             entries[name] = _parameter(name, child)
-        elif key != "parameters" or prefix:
+        elif key not in {"parameters", "effects"} or prefix:
             _collect(f"{name}.", child, entries, path)
 
 

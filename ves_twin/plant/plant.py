@@ -8,6 +8,10 @@ from dataclasses import dataclass, replace
 from enum import StrEnum
 from pathlib import Path
 
+import numpy as np
+
+from ves_twin.effects.effect import Effect
+from ves_twin.effects.registry import parse_effects
 from ves_twin.errors import InvalidInputError, UnknownNameError
 from ves_twin.kinematics.puma560 import Puma560
 from ves_twin.kinematics.stewart import StewartGeometry
@@ -42,19 +46,21 @@ class Plant:
         parameters: every number with unit, sd, grade and source.
         fidelity: how much is modelled.
         hydraulics: how the cylinders are modelled.
+        effects: what deviates from the description; none is at zero.
     """
 
     name: str
     parameters: ParameterTable
     fidelity: Fidelity = Fidelity.FULL
     hydraulics: Hydraulics = Hydraulics.LINEAR
+    effects: tuple[Effect, ...] = ()
 
     @staticmethod
     def load(name_or_path: str) -> Plant:
         """A plant by name ("ves2") or from a file.
 
         A file is either complete, or it names a `base` plant and lists under `[parameters]`
-        what differs: `"leg.rod_mass" = 2.7`.
+        what differs: `"leg.rod_mass" = 2.7`. Effects stand under `[effects]`.
 
         Raises:
             FileAccessError: missing or unreadable file.
@@ -78,7 +84,11 @@ class Plant:
         form = str(content.get("hydraulic_model", plant.hydraulics))
         if form not in set(Hydraulics):
             raise UnknownNameError("hydraulic_model", form, set(Hydraulics))
-        return replace(plant, hydraulics=Hydraulics(form)).with_values(changes)
+        effects = content.get("effects", {})
+        if not isinstance(effects, Mapping):
+            raise InvalidInputError(f"{path}: effects", effects, "a table of effects")
+        plant = replace(plant, hydraulics=Hydraulics(form)).with_values(changes)
+        return plant.extended(*parse_effects(effects))
 
     def with_values(self, values: Mapping[str, object]) -> Plant:
         """The same plant with other parameter values.
@@ -89,6 +99,30 @@ class Plant:
         if not values:
             return self
         return replace(self, parameters=self.parameters.with_values(flat(values)))
+
+    def extended(self, *effects: Effect) -> Plant:
+        """The same plant with more effects; one of the same kind and target is replaced.
+
+        An effect of zero size is left out, so that it is no effect to the last bit.
+        """
+        merged = {(e.kind, e.target): e for e in (*self.effects, *effects)}
+        kept = tuple(merged[key] for key in sorted(merged) if not merged[key].neutral)
+        return replace(self, effects=kept)
+
+    @property
+    def actual(self) -> ParameterTable:
+        """The parameters as the effects leave them: what the rig is built from."""
+        if not self.effects:
+            return self.parameters
+        numbers = {name: self.parameters.array(name) for name in self.parameters}
+        for effect in self.effects:
+            effect.edit_numbers(numbers)
+        changed = {
+            name: value
+            for name, value in numbers.items()
+            if not np.array_equal(value, self.parameters[name].value)
+        }
+        return self.parameters.with_values(changed)
 
     @property
     def geometry(self) -> StewartGeometry:
@@ -126,6 +160,8 @@ class Plant:
         digest = hashlib.sha256(f"{self.fidelity} {self.hydraulics}".encode())
         for name in sorted(self.parameters):
             digest.update(name.encode() + self.parameters.array(name).tobytes())
+        for effect in self.effects:
+            digest.update(repr(effect).encode())
         for file in MJCF_FILES:
             digest.update((resource_folder("models") / file).read_bytes())
         return digest.hexdigest()[:16]

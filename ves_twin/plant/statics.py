@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import mujoco
 import numpy as np
 
@@ -19,16 +21,19 @@ def place_rig(
     geometry: StewartGeometry,
     pose: FloatArray,
     q: FloatArray,
+    top: FloatArray | None = None,
 ) -> None:
     """Write the configuration of a pose: platform, straight legs, arm; velocities zero.
 
     Args:
         data: state that is written.
         layout: indices.
-        geometry: joint positions.
+        geometry: joint positions that the legs were built for.
         pose: platform pose from home [m, rad] (6,).
         q: joint angles of the arm [rad] (3,).
+        top: platform joints as they are [m] (6, 3), where an effect has moved them.
     """
+    actual = geometry if top is None else replace(geometry, top=top)
     data.qvel[:] = 0.0
     at = layout.platform_qpos
     data.qpos[at : at + 3] = geometry.home + pose[:3]
@@ -36,16 +41,30 @@ def place_rig(
     data.qpos[layout.arm_qpos] = q
     data.qpos[layout.bending_qpos] = 0.0
     home = geometry.lengths(np.zeros(6))
-    data.qpos[layout.slide_qpos] = geometry.lengths(pose) - home
-    data.qpos[layout.universal_qpos] = universal_angles(geometry, pose).ravel()
+    data.qpos[layout.slide_qpos] = actual.lengths(pose) - home
+    data.qpos[layout.universal_qpos] = universal_angles(geometry, pose, actual.top).ravel()
 
 
-def universal_angles(geometry: StewartGeometry, pose: FloatArray) -> FloatArray:
-    """Angles of the universal joints (6, 2) [rad] that point each leg at its platform joint."""
+def joints_on_platform(model: mujoco.MjModel) -> FloatArray:
+    """Platform joints of a compiled rig in the top frame [m] (6, 3), effects included."""
+    return np.array([model.site(f"platform/joint{i}").pos for i in range(1, 7)])
+
+
+def universal_angles(
+    geometry: StewartGeometry, pose: FloatArray, top: FloatArray | None = None
+) -> FloatArray:
+    """Angles of the universal joints (6, 2) [rad] that point each leg at its platform joint.
+
+    Args:
+        geometry: joint positions that the legs were built for.
+        pose: platform pose from home [m, rad] (6,).
+        top: platform joints as they are [m] (6, 3).
+    """
+    ends = geometry.top if top is None else top
     rotation = matrix_from_angles(np.asarray(pose[3:], dtype=float))
     angles = np.empty((6, 2))
     for i in range(6):
-        leg = geometry.home + pose[:3] + rotation @ geometry.top[i] - geometry.base[i]
+        leg = geometry.home + pose[:3] + rotation @ ends[i] - geometry.base[i]
         x, y, z = leg_frame(geometry, i).T @ leg / np.linalg.norm(leg)
         angles[i] = np.arctan2(-y, z), np.arcsin(x)
     return angles

@@ -32,6 +32,7 @@ class RecordingInfo:
         plant_hash: hash of its physics.
         plant_base: plant that `parameters` differ from, so that the rig can be built again.
         parameters: values that differ from it, by dotted name.
+        effects: what deviated from the description: kind, target, sizes.
         seed: seed of the noise.
         versions: package -> version.
         log: clock of the rows: admittance, leg or tick.
@@ -48,6 +49,7 @@ class RecordingInfo:
     plant_hash: str = ""
     plant_base: str = ""
     parameters: Mapping[str, object] = field(default_factory=dict)
+    effects: Mapping[str, object] = field(default_factory=dict)
     seed: int = 0
     versions: Mapping[str, str] = field(default_factory=dict)
     log: str = ""

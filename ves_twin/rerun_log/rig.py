@@ -8,6 +8,7 @@ from dataclasses import dataclass
 
 import mujoco
 
+from ves_twin.effects.registry import parse_effects
 from ves_twin.errors import VesTwinError
 from ves_twin.kinematics.stewart import StewartGeometry
 from ves_twin.plant.assembly import assemble, compile_model
@@ -61,7 +62,7 @@ def settings_of(info: RecordingInfo) -> Mapping[str, object]:
 def _plant_of(info: RecordingInfo) -> tuple[Plant, str]:
     try:
         plant = Plant.load(info.plant_base or info.plant or DEFAULT_PLANT)
-        plant = plant.with_values(info.parameters)
+        plant = plant.with_values(info.parameters).extended(*parse_effects(info.effects))
     except VesTwinError as error:
         return Plant.load(DEFAULT_PLANT), f"The drawing shows {DEFAULT_PLANT}: {error}"
     if info.plant_hash and plant.hash != info.plant_hash:

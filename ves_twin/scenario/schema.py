@@ -127,8 +127,8 @@ class Arm(Part):
 class Scenario(Part):
     """One experiment: world, belief, controllers, what is asked, and the question it answers.
 
-    `plant` and `parameters` are the world; `belief` is what the controllers take it to be. Their
-    difference is what the emulation gets wrong.
+    `plant`, `parameters` and `effects` are the world; `belief` is what the controllers take it
+    to be. Their difference is what the emulation gets wrong.
     """
 
     name: Annotated[str, Field(pattern=r"^[A-Za-z0-9_.-]{1,64}$")]
@@ -136,6 +136,7 @@ class Scenario(Part):
     plant: str = "ves2"
     belief: str = "ves2"
     parameters: dict[str, Any] = Field(default_factory=dict)
+    effects: dict[str, Any] = Field(default_factory=dict)
     run: Run
     platform: Platform
     gravity: Gravity = Gravity()

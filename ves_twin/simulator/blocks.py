@@ -42,6 +42,9 @@ NOISE = np.dtype(
 )
 """Counts of the encoders [rad]; noise sd of drive currents [N m] and manifold gauge [Pa]."""
 
+DRIVE = np.dtype([("torque_gain", np.float64, 3), ("encoder_offset", np.float64, 3)])
+"""torque_gain: torque applied per torque recorded; encoder_offset: reading less the angle [rad]."""
+
 _INDICES = [(f.name, np.int64, 1) for f in dataclasses.fields(Layout)]
 _WIDTHS = {
     "slide_qpos": 6,
@@ -64,6 +67,7 @@ PARAMETERS = np.dtype(
         ("home", HOME),
         ("limits", LIMITS),
         ("noise", NOISE),
+        ("drive", DRIVE),
         ("pressure", np.float64),
         ("hydraulics", np.int64),
         ("transducer", transducer.PARAMETERS),
@@ -113,7 +117,7 @@ def parameter_block(
     plant: Plant, layout: Layout, clock: Clock, legs: Legs, belief: Belief
 ) -> Block:
     """Parameters of the loop: the plant's for the hardware, the belief's for the computers."""
-    table = plant.parameters
+    table = plant.actual
     block = np.zeros(1, PARAMETERS)
     p = block[0]
     for name in CLOCKS.names or ():
@@ -130,6 +134,8 @@ def parameter_block(
         servo[name] = table.array(f"servo.{name}")
     servo["limit"] = table.array("arm.torque_limit")
     servo["cycle"] = clock.admittance * clock.tick
+    for effect in plant.effects:
+        effect.edit_loop(p)
     return block
 
 
@@ -138,6 +144,8 @@ def _fill_small_devices(p: np.void, table: ParameterTable, plant: Plant) -> None
     p["noise"]["torque"] = table.array("arm.torque_noise")
     p["noise"]["pressure"] = table.number("supply.noise")
     p["pressure"] = table.number("supply.pressure")
+    p["drive"]["torque_gain"] = 1.0
+    p["transducer"]["scale"] = 1.0
     p["transducer"]["home"] = plant.geometry.lengths(np.zeros(6))
     p["transducer"]["noise"] = table.number("transducer.noise")
     p["transducer"]["resolution"] = table.number("transducer.resolution")

@@ -40,7 +40,7 @@ def _drive_arm(
     u = (tick - s.cycle_start) / p.clock.admittance
     spline(s.servo.points, u, p.servo.cycle, work.q_set, work.rate_set)
     for j in range(3):
-        work.q[j] = qpos[p.layout.arm_qpos[j]]
+        work.q[j] = qpos[p.layout.arm_qpos[j]] + p.drive.encoder_offset[j]
         work.rate[j] = qvel[p.layout.arm_dof[j]]
     servo_torque(
         p.servo, s.servo.integral, work.q_set, work.rate_set, work.q, work.rate, work.torque
@@ -48,12 +48,12 @@ def _drive_arm(
     for j in range(3):
         error = work.q_set[j] - work.q[j]
         s.servo.integral[j] += p.servo.integral[j] * error * p.clock.tick
-        ctrl[p.layout.arm_ctrl[j]] = work.torque[j]
+        ctrl[p.layout.arm_ctrl[j]] = work.torque[j] * p.drive.torque_gain[j]
         count = p.noise.encoder_count[j]
         board.arm_command[j] = work.q_set[j]
         board.arm_q[j] = np.rint(work.q[j] / count) * count if count > 0.0 else work.q[j]
         board.arm_torque[j] = work.torque[j] + p.noise.torque[j] * slow[TORQUE + j]
-        board.truth_arm_q[j] = work.q[j]
+        board.truth_arm_q[j] = qpos[p.layout.arm_qpos[j]]
 
 
 @compiled

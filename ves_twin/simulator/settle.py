@@ -9,7 +9,7 @@ import numpy as np
 from ves_twin.control.leg_loop import start_legs
 from ves_twin.plant.hydraulics import loaded_pressures
 from ves_twin.plant.physics.force_sensor import start_at
-from ves_twin.plant.statics import place_rig, static_leg_forces
+from ves_twin.plant.statics import joints_on_platform, place_rig, static_leg_forces
 from ves_twin.recording.recording import Event
 from ves_twin.scenario.schema import Scenario
 from ves_twin.simulator.codes import RUNNING, SLOW, WANDER
@@ -74,7 +74,7 @@ def settling_events(rig: Rig, scenario: Scenario) -> Iterator[Event]:
 def _start_states(rig: Rig, pose: FloatArray, q: FloatArray, believed: FloatArray) -> None:
     """Positions, oil preload, integrators and filters of a rig that has long stood there."""
     geometry, layout, p, s = rig.plant.geometry, rig.layout, rig.parameters, rig.state
-    place_rig(rig.data, layout, geometry, pose, q)
+    place_rig(rig.data, layout, geometry, pose, q, joints_on_platform(rig.model))
     force = static_leg_forces(rig.model, rig.data, layout, geometry, pose)
     slide = rig.data.qpos[layout.slide_qpos]
     s["cylinder"]["column"] = slide + force / p["cylinder"]["stiffness"]

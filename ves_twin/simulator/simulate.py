@@ -13,6 +13,7 @@ from time import perf_counter
 import numpy as np
 import pyarrow.parquet as pq
 
+from ves_twin.effects.registry import effects_table
 from ves_twin.errors import FileAccessError
 from ves_twin.plant.plant import Plant
 from ves_twin.recording.recording import Recording, RecordingInfo
@@ -153,6 +154,7 @@ def recording_info(sim: Simulator) -> RecordingInfo:
         plant_hash=sim.plant.hash,
         plant_base=sim.plant.base,
         parameters=sim.plant.changes(),
+        effects=effects_table(sim.plant.effects),
         seed=sim.seed,
         versions=versions(),
         log=sim.scenario.run.log,

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import mujoco
 import numpy as np
 
+from ves_twin.effects.registry import parse_effects
 from ves_twin.plant.plant import Plant
 from ves_twin.recording.recording import Event
 from ves_twin.scenario.schema import Scenario
@@ -70,7 +71,8 @@ class Simulator:
         sink: Sink | None = None,
     ) -> None:
         self.scenario = scenario
-        self.plant = (plant or Plant.load(scenario.plant)).with_values(scenario.parameters)
+        world = (plant or Plant.load(scenario.plant)).with_values(scenario.parameters)
+        self.plant = world.extended(*parse_effects(scenario.effects))
         self.seed = scenario.run.seed if seed is None else seed
         self.outcome: Outcome | None = None
         self.events: list[Event] = []

@@ -1,0 +1,95 @@
+"""Effects of geometry and surroundings: anchor positions, tilt of the base, hoses."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, ClassVar, final
+
+from ves_twin.effects.effect import LEGS, RIG, Effect
+from ves_twin.effects.magnitude import Magnitude, Sign
+
+if TYPE_CHECKING:
+    import mujoco
+
+
+@final
+@dataclass(frozen=True)
+class AnchorPosition(Effect):
+    """The joint of a leg on the platform sits off its drawing position, in platform axes."""
+
+    x: float = 0.0
+    y: float = 0.0
+    z: float = 0.0
+
+    kind: ClassVar[str] = "anchor_position"
+    targets: ClassVar[tuple[str, ...]] = LEGS
+    magnitudes: ClassVar[tuple[Magnitude, ...]] = (
+        Magnitude("x", "m", 1e-4, 3e-4, 0.02),
+        Magnitude("y", "m", 1e-4, 3e-4, 0.02),
+        Magnitude("z", "m", 1e-4, 3e-4, 0.02),
+    )
+    channels: ClassVar[tuple[str, ...]] = ("sensor.wrench", "valve.command")
+    source: ClassVar[str] = "assumed; machining and assembly of a welded frame"
+
+    def edit_rig(self, rig: mujoco.MjSpec) -> None:
+        """Move the site that the leg closes on."""
+        site = rig.site(f"platform/joint{self.index + 1}")
+        site.pos = [p + d for p, d in zip(site.pos, (self.x, self.y, self.z), strict=True)]
+
+
+@final
+@dataclass(frozen=True)
+class BaseTilt(Effect):
+    """The floor frame is not level: gravity leans by small angles about X and Y of the base."""
+
+    roll: float = 0.0
+    pitch: float = 0.0
+
+    kind: ClassVar[str] = "base_tilt"
+    targets: ClassVar[tuple[str, ...]] = RIG
+    magnitudes: ClassVar[tuple[Magnitude, ...]] = (
+        Magnitude("roll", "rad", 3e-4, 1e-3, 0.05),
+        Magnitude("pitch", "rad", 3e-4, 1e-3, 0.05),
+    )
+    channels: ClassVar[tuple[str, ...]] = ("sensor.wrench",)
+    source: ClassVar[str] = "thesis 3.4.5: half a degree of orientation is not acceptable"
+
+    def edit_rig(self, rig: mujoco.MjSpec) -> None:
+        """Turn gravity into the axes of a base that is rolled, then pitched: g_b = R^T g."""
+        if self.neutral:
+            return
+        from math import cos, sin
+
+        g = -float(rig.option.gravity[2])
+        rig.option.gravity = [
+            g * sin(self.pitch),
+            -g * sin(self.roll) * cos(self.pitch),
+            -g * cos(self.roll) * cos(self.pitch),
+        ]
+
+
+@final
+@dataclass(frozen=True)
+class HoseStiffness(Effect):
+    """Hoses pull the platform back towards home: a spring on its position and its orientation.
+
+    MuJoCo's spring of a free joint has one number for both, in N/m and N m/rad.
+    """
+
+    stiffness: float = 0.0
+
+    kind: ClassVar[str] = "hose_stiffness"
+    targets: ClassVar[tuple[str, ...]] = RIG
+    magnitudes: ClassVar[tuple[Magnitude, ...]] = (
+        Magnitude("stiffness", "N/m", 50.0, 100.0, 2e4, Sign.POSITIVE),
+    )
+    channels: ClassVar[tuple[str, ...]] = ("leg.length", "valve.command")
+    source: ClassVar[str] = "assumed; six pairs of hydraulic hoses"
+
+    def edit_rig(self, rig: mujoco.MjSpec) -> None:
+        """Give the platform's free joint a spring."""
+        if self.neutral:
+            return
+        import numpy as np
+
+        rig.joint("platform/free").stiffness = np.array([self.stiffness, 0.0, 0.0])

@@ -1,0 +1,92 @@
+"""EFFECTS: every kind of effect by name, and effects from and to the tables of a file."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+
+from ves_twin.effects import arm, force_sensor, geometry, payload, transducer
+from ves_twin.effects.effect import Effect
+from ves_twin.errors import InvalidInputError, UnknownNameError
+
+_KINDS: tuple[type[Effect], ...] = (
+    transducer.LengthOffset,
+    transducer.LengthScale,
+    geometry.AnchorPosition,
+    geometry.BaseTilt,
+    geometry.HoseStiffness,
+    force_sensor.SensorGain,
+    force_sensor.SensorCrossTalk,
+    force_sensor.SensorDrift,
+    force_sensor.SensorMounting,
+    force_sensor.SensorLag,
+    payload.PayloadMass,
+    payload.LinkMass,
+    payload.LinkCentre,
+    arm.JointFriction,
+    arm.JointViscous,
+    arm.RotorInertia,
+    arm.CableSpring,
+    arm.TorqueConstant,
+    arm.EncoderOffset,
+)
+
+EFFECTS: dict[str, type[Effect]] = {kind.kind: kind for kind in _KINDS}
+"""Kind -> class."""
+
+
+def build_effect(kind: str, target: str, values: Mapping[str, object]) -> Effect:
+    """An effect by names.
+
+    Raises:
+        UnknownNameError: no such kind, target or magnitude; says the nearest one.
+        InvalidInputError: a magnitude out of bounds.
+    """
+    if kind not in EFFECTS:
+        raise UnknownNameError("effect", kind, EFFECTS)
+    known = [magnitude.name for magnitude in EFFECTS[kind].magnitudes]
+    for name in values:
+        if name not in known:
+            raise UnknownNameError(f"magnitude of {kind}", name, known)
+    return EFFECTS[kind](target, **values)
+
+
+def parse_effects(table: Mapping[str, object]) -> tuple[Effect, ...]:
+    """Effects of a file's table: kind, then target, then magnitudes.
+
+    Both `[effects.length_offset."leg.3"] offset = 0.001` and the dotted key
+    `effects.length_offset.leg.3.offset` are understood.
+
+    Raises:
+        UnknownNameError: no such kind, target or magnitude.
+        InvalidInputError: something that is not a table, or a magnitude out of bounds.
+    """
+    found: dict[tuple[str, str], dict[str, object]] = {}
+    for path, value in _leaves(table, ()):
+        kind, *target, name = ".".join(path).split(".")
+        if kind not in EFFECTS:
+            raise UnknownNameError("effect", kind, EFFECTS)
+        if not target:
+            raise InvalidInputError(f"effects.{kind}", value, "a target and its magnitudes")
+        found.setdefault((kind, ".".join(target)), {})[name] = value
+    return tuple(build_effect(kind, target, found[kind, target]) for kind, target in sorted(found))
+
+
+def effects_table(effects: Iterable[Effect]) -> dict[str, dict[str, dict[str, float]]]:
+    """The table that `parse_effects` reads."""
+    table: dict[str, dict[str, dict[str, float]]] = {}
+    for effect in effects:
+        table.setdefault(effect.kind, {})[effect.target] = effect.values
+    return table
+
+
+def _leaves(
+    node: Mapping[str, object], path: tuple[str, ...]
+) -> Iterable[tuple[tuple[str, ...], object]]:
+    for key, child in node.items():
+        here = (*path, str(key))
+        if isinstance(child, Mapping):
+            yield from _leaves(child, here)
+        else:
+            if len(here) < 2:
+                raise InvalidInputError(f"effects.{key}", child, "a table of targets")
+            yield here, child
