@@ -14,6 +14,7 @@ HOME = RNG.uniform(0.9, 1.1, 6)
 def read(slide, noise=0.0, resolution=0.0, normal=None):
     p = np.zeros(1, transducer.PARAMETERS)
     p["home"], p["noise"], p["resolution"] = HOME, noise, resolution
+    p["scale"] = 1.0
     length = np.empty(6)
     normal = np.zeros(6, np.float32) if normal is None else normal
     transducer.read_lengths(p[0], slide, normal, length)
