@@ -16,6 +16,7 @@ if TYPE_CHECKING:
     from ves_twin.recording.recording import Recording
     from ves_twin.scenario.schema import Scenario
     from ves_twin.simulator.outcome import Outcome
+    from ves_twin.simulator.replay import replay
     from ves_twin.simulator.simulate import record, simulate
     from ves_twin.simulator.simulator import Simulator
 
@@ -27,6 +28,7 @@ _HOMES = {
     "Simulator": "ves_twin.simulator.simulator",
     "load_recording": "ves_twin.recording.files",
     "record": "ves_twin.simulator.simulate",
+    "replay": "ves_twin.simulator.replay",
     "simulate": "ves_twin.simulator.simulate",
 }
 
@@ -38,6 +40,7 @@ __all__ = [
     "Simulator",
     "load_recording",
     "record",
+    "replay",
     "simulate",
 ]
 

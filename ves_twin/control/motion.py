@@ -65,8 +65,16 @@ class Move:
     to: FloatArray
 
 
+class JointMotion(abc.ABC):
+    """Joint angles over time."""
+
+    @abc.abstractmethod
+    def q(self, time: float) -> FloatArray:
+        """Joint angles [rad] (3,) at a time [s]; constant before zero."""
+
+
 @dataclass(frozen=True)
-class ArmMotion:
+class ArmMotion(JointMotion):
     """Joint moves one after the other; the profile of each is a quintic, at rest at both ends.
 
     Attributes:

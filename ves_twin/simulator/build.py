@@ -7,7 +7,9 @@ import numpy as np
 from ves_twin.control.belief import Belief
 from ves_twin.control.controller import ControlTask
 from ves_twin.control.emulated import EmulatedSystem
+from ves_twin.control.gravity import GravityCompensation
 from ves_twin.control.motion import ArmMotion, Move, PlatformMotion, Sine
+from ves_twin.control.played import Script
 from ves_twin.control.registry import GRAVITY_COMPENSATIONS, PLATFORM_CONTROLLERS
 from ves_twin.plant.plant import Plant
 from ves_twin.plant.statics import check_reach
@@ -34,17 +36,17 @@ def belief_of(scenario: Scenario) -> Belief:
     )
 
 
-def build_computers(scenario: Scenario, belief: Belief, rig: Rig) -> Computers:
-    """Controllers of a scenario, connected to the rig's board.
+def build_computers(
+    scenario: Scenario, belief: Belief, rig: Rig, script: Script | None = None
+) -> Computers:
+    """Controllers of a scenario, or a script that is played back, connected to the rig's board.
 
     Raises:
         UnreachableError: the start pose is outside the legs' travel.
     """
     start = np.array(scenario.platform.start)
     check_reach(belief.geometry, start, belief.leg_travel, "platform.start")
-    gravity = GRAVITY_COMPENSATIONS[scenario.gravity.method](
-        GravityTruth(rig.model, rig.data, rig.layout)
-    )
+    gravity = script.gravity if script else _gravity(scenario, rig)
     period = rig.clock.admittance * rig.clock.tick
     task = ControlTask(
         belief=belief,
@@ -52,7 +54,7 @@ def build_computers(scenario: Scenario, belief: Belief, rig: Rig) -> Computers:
         start=start,
         home=np.array(scenario.platform.home),
         emulated=emulated_of(scenario),
-        motion=_motion(scenario.platform),
+        motion=script.poses if script else _motion(scenario.platform),
         subtract_gravity=scenario.platform.mode == "micro_gravity" and gravity.subtracts,
     )
     return Computers(
@@ -60,11 +62,16 @@ def build_computers(scenario: Scenario, belief: Belief, rig: Rig) -> Computers:
         controller=PLATFORM_CONTROLLERS[scenario.platform.mode].build(task),
         gravity=gravity,
         gravity_age=scenario.gravity.age,
-        arm=arm_motion(scenario),
+        arm=script.joints if script else arm_motion(scenario),
         period=period,
         board=rig.board,
         state=rig.state,
     )
+
+
+def _gravity(scenario: Scenario, rig: Rig) -> GravityCompensation:
+    port = GravityTruth(rig.model, rig.data, rig.layout)
+    return GRAVITY_COMPENSATIONS[scenario.gravity.method](port)
 
 
 def build_references(

@@ -10,7 +10,7 @@ import numpy as np
 from ves_twin.control.belief import Belief
 from ves_twin.control.controller import PlatformController
 from ves_twin.control.gravity import GravityCompensation
-from ves_twin.control.motion import ArmMotion
+from ves_twin.control.motion import JointMotion
 from ves_twin.control.readings import Readings
 from ves_twin.control.safety import NOT_A_POSE
 from ves_twin.errors import ControllerError, VesTwinError, one_line
@@ -41,7 +41,7 @@ class Computers:
         controller: PlatformController,
         gravity: GravityCompensation,
         gravity_age: int,
-        arm: ArmMotion,
+        arm: JointMotion,
         period: float,
         board: Board,
         state: Block,

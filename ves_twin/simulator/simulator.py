@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import mujoco
 import numpy as np
 
+from ves_twin.control.played import Script
 from ves_twin.effects.registry import parse_effects
 from ves_twin.plant.plant import Plant
 from ves_twin.recording.recording import Event
@@ -58,6 +59,7 @@ class Simulator:
         scenario: what is done with it.
         seed: seed of the noise; the scenario's own if left out.
         sink: where rows go; kept in memory if left out.
+        script: set-points that are played back; the scenario's controllers decide if left out.
 
     Raises:
         VesTwinError: the scenario cannot be built: unknown name, pose out of reach.
@@ -69,6 +71,7 @@ class Simulator:
         scenario: Scenario,
         seed: int | None = None,
         sink: Sink | None = None,
+        script: Script | None = None,
     ) -> None:
         self.scenario = scenario
         world = (plant or Plant.load(scenario.plant)).with_values(scenario.parameters)
@@ -82,7 +85,7 @@ class Simulator:
         belief = belief_of(scenario)
         noise = NoiseStreams(self.seed, scenario.run.noise)
         self.rig = Rig(self.plant, clock, scenario.legs, belief, noise)
-        self.computers = build_computers(scenario, belief, self.rig)
+        self.computers = build_computers(scenario, belief, self.rig, script)
         self.recorder = Recorder(
             clock,
             belief.geometry,

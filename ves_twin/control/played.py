@@ -1,0 +1,92 @@
+"""Script: set-points and gravity estimates of an earlier run, played back cycle by cycle."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import final
+
+import numpy as np
+
+from ves_twin.control.gravity import GravityCompensation
+from ves_twin.control.motion import JointMotion, PlatformMotion
+from ves_twin.control.readings import Readings
+from ves_twin.types import FloatArray
+
+
+@final
+@dataclass(frozen=True)
+class PlayedPoses(PlatformMotion):
+    """The pose of each cycle [m, rad] (n, 6); the first before it, the last after it."""
+
+    poses: FloatArray
+    period: float
+
+    def pose(self, time: float) -> FloatArray:
+        """Pose commanded at the cycle nearest to a time [s]."""
+        return np.array(self.poses[_cycle(time, self.period, len(self.poses))])
+
+
+@final
+@dataclass(frozen=True)
+class PlayedJoints(JointMotion):
+    """The command point of the joint spline at each cycle [rad] (n, 3)."""
+
+    points: FloatArray
+    period: float
+
+    def q(self, time: float) -> FloatArray:
+        """Command point of the cycle nearest to a time [s]."""
+        return np.array(self.points[_cycle(time, self.period, len(self.points))])
+
+
+@final
+@dataclass(frozen=True)
+class PlayedWrench(GravityCompensation):
+    """The gravity estimate of each cycle, sensor axes [N, N m] (n, 6)."""
+
+    wrenches: FloatArray
+    period: float
+
+    def wrench(self, time: float, readings: Readings) -> FloatArray:
+        """Estimate of the cycle nearest to a time [s]."""
+        return np.array(self.wrenches[_cycle(time, self.period, len(self.wrenches))])
+
+    def snapshot(self) -> object:
+        """Nothing changes from cycle to cycle."""
+        return None
+
+    def restore(self, snapshot: object) -> None:
+        """Nothing to go back to."""
+
+
+@final
+@dataclass(frozen=True)
+class Script:
+    """What the computers play back instead of deciding."""
+
+    poses: PlayedPoses
+    joints: PlayedJoints
+    gravity: PlayedWrench
+
+
+def spline_points(commands: FloatArray) -> FloatArray:
+    """Points whose cubic B-spline passes through commands: the inverse of (1, 4, 1) / 6.
+
+    Args:
+        commands: values of the spline at the cycles (n, width).
+
+    Returns:
+        Control points (n, width); the spline has no curvature beyond its ends.
+    """
+    from scipy.linalg import solve_banded  # slow to import
+
+    n = len(commands)
+    bands = np.zeros((3, n))
+    bands[0, 1:], bands[1], bands[2, :-1] = 1.0, 4.0, 1.0
+    bands[1, 0] = bands[1, -1] = 6.0  # p[-1] = 2 p[0] - p[1]: no curvature at the ends
+    bands[0, 1] = bands[2, n - 2] = 0.0
+    return np.asarray(solve_banded((1, 1), bands, 6.0 * commands))
+
+
+def _cycle(time: float, period: float, count: int) -> int:
+    return min(max(round(time / period), 0), count - 1)

@@ -1,0 +1,179 @@
+"""replay: feed the set-points of a recording to a plant, and see what it would have measured."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+
+from ves_twin.control.played import PlayedJoints, PlayedPoses, PlayedWrench, Script, spline_points
+from ves_twin.errors import InvalidInputError, UnknownNameError, VesTwinError
+from ves_twin.kinematics.stewart import StewartGeometry, pose_jacobian, track_poses
+from ves_twin.plant.plant import Plant
+from ves_twin.recording.recording import Recording
+from ves_twin.scenario.schema import Scenario
+from ves_twin.signals import SIGNALS, Role
+from ves_twin.simulator.build import belief_of
+from ves_twin.simulator.recorder import MemorySink
+from ves_twin.simulator.simulate import recording_info
+from ves_twin.simulator.simulator import Simulator
+from ves_twin.types import FloatArray
+
+DRIVABLE = ("leg.command", "platform.command", "arm.command", "gravity.estimate")
+"""What can be fed in: set-points, and the estimate that the sensor is zeroed against."""
+
+MEASUREMENTS = (*(n for n, s in SIGNALS.items() if s.role is Role.MEASUREMENT), "valve.command")
+"""What comes back if nothing is asked for: what the rig answers to its set-points."""
+
+NEAR = 1e-3
+"""How far the first set-point may lie from the scenario's start [m, rad]: motion of one cycle."""
+
+COMPARABLE = tuple(n for n, s in SIGNALS.items() if s.role is not Role.REFERENCE)
+
+
+def replay(
+    recording: Recording,
+    plant: Plant,
+    drive: Sequence[str] = ("leg.command", "arm.command", "gravity.estimate"),
+    compare: Sequence[str] = MEASUREMENTS,
+    scenario: Scenario | None = None,
+) -> Recording:
+    """What a plant would have measured with the set-points of a recording, without noise.
+
+    The loop is cut above the legs: commanded lengths and joint angles go in, so that two plants
+    differ by their hardware and not by what an outer loop makes of it. Leg loops, joint servo
+    and sensor chain run as the scenario deploys them; the rig settles at the first set-point.
+
+    Args:
+        recording: the run, simulated or measured.
+        plant: the rig that is tried, with its effects.
+        drive: signals that are fed in; without the arm's command the arm stands.
+        compare: signals that come back.
+        scenario: rates, leg gains and start of the arm; the recording's own if left out.
+
+    Returns:
+        The signals of `compare` on the recording's rows.
+
+    Raises:
+        UnknownNameError: a signal that cannot be fed in or compared, or that is missing.
+        InvalidInputError: no set-points for the legs, or no scenario to go by.
+        VesTwinError: the run ended early; says how.
+    """
+    for name in drive:
+        if name not in DRIVABLE:
+            raise UnknownNameError("signal to feed in", name, DRIVABLE)
+    for name in compare:
+        if name not in COMPARABLE:
+            raise UnknownNameError("signal to compare", name, COMPARABLE)
+    played = replay_scenario(recording, scenario)
+    script = Rows(recording, played).script(drive, played)
+    played = _starting_at(played, script)
+    sim = Simulator(plant, played, 0, MemorySink(), script=script)
+    while not sim.done:
+        sim.advance(played.run.duration)
+    return _collected(sim, recording, compare)
+
+
+def replay_scenario(recording: Recording, scenario: Scenario | None = None) -> Scenario:
+    """A scenario as a position run as long as a recording, noise and effects left to the plant.
+
+    Raises:
+        InvalidInputError: neither a scenario nor one in the recording's metadata.
+    """
+    content: dict[str, Any] = (
+        json.loads(recording.info.settings)
+        if scenario is None
+        else scenario.model_dump(mode="json")
+    )
+    if not content:
+        raise InvalidInputError(
+            "recording", "no scenario in its metadata", "one, or a scenario to go by"
+        )
+    period = float(np.median(np.diff(recording.time))) if len(recording) > 1 else 1.0
+    content["run"] |= {"duration": float(recording.time[-1]) + 0.5 * period, "noise": False}
+    content["platform"] |= {"mode": "position", "emulated": None, "motion": None}
+    content["gravity"]["method"] = "none"
+    content |= {"parameters": {}, "effects": {}}
+    return Scenario.model_validate(content)
+
+
+class Rows:
+    """The rows of a recording at the admittance cycles of a scenario.
+
+    Args:
+        recording: signals held from row to row.
+        scenario: gives the rate and what the computers believe.
+    """
+
+    def __init__(self, recording: Recording, scenario: Scenario) -> None:
+        belief = belief_of(scenario)
+        self._recording = recording
+        self._geometry: StewartGeometry = belief.geometry
+        tick = Plant.load(scenario.belief).parameters.number("clock.tick")
+        self.period = max(1, round(1.0 / (scenario.platform.rate * tick))) * tick
+        count = round(float(recording.time[-1]) / self.period) + 1
+        due = np.arange(count) * self.period + 0.25 * tick  # round-off of the recorded times
+        self._at = np.maximum(np.searchsorted(recording.time, due, "right") - 1, 0)
+
+    def signal(self, name: str) -> FloatArray:
+        """A signal at the cycles (n, width)."""
+        return np.array(self._recording[name][self._at])
+
+    def script(self, drive: Sequence[str], scenario: Scenario) -> Script:
+        """What the computers play back.
+
+        Raises:
+            InvalidInputError: no set-points for the legs.
+        """
+        if "leg.command" in drive:
+            poses = self._poses(self.signal("leg.command"), np.array(scenario.platform.start))
+        elif "platform.command" in drive:
+            poses = self.signal("platform.command")
+        else:
+            raise InvalidInputError("drive", list(drive), "leg.command or platform.command")
+        points = np.array([scenario.arm.start], dtype=float)
+        if "arm.command" in drive:
+            points = spline_points(self.signal("arm.command"))
+        wrenches = np.zeros((1, 6))
+        if "gravity.estimate" in drive:
+            wrenches = self.signal("gravity.estimate")
+        return Script(
+            PlayedPoses(poses, self.period),
+            PlayedJoints(points, self.period),
+            PlayedWrench(wrenches, self.period),
+        )
+
+    def _poses(self, lengths: FloatArray, guess: FloatArray) -> FloatArray:
+        g = self._geometry
+        inverse = np.asarray(np.linalg.inv(pose_jacobian(guess, g.base, g.top, g.home)))
+        lengths = np.ascontiguousarray(lengths)
+        return np.asarray(track_poses(lengths, guess.copy(), inverse, g.base, g.top, g.home))
+
+
+def _starting_at(scenario: Scenario, script: Script) -> Scenario:
+    """The rig settles at the scenario's start, or at the first set-points if they lie elsewhere.
+
+    A window of a run begins elsewhere; a whole run's first command is a cycle after its start.
+    """
+    pose, joints = script.poses.pose(0.0), script.joints.q(0.0)
+    if np.abs(pose - scenario.platform.start).max() < NEAR:
+        pose = np.array(scenario.platform.start)
+    if np.abs(joints - scenario.arm.start).max() < NEAR:
+        joints = np.array(scenario.arm.start)
+    platform = scenario.platform.model_copy(update={"start": tuple(map(float, pose))})
+    arm = scenario.arm.model_copy(update={"start": tuple(map(float, joints)), "moves": ()})
+    return scenario.model_copy(update={"platform": platform, "arm": arm})
+
+
+def _collected(sim: Simulator, recording: Recording, compare: Sequence[str]) -> Recording:
+    sink = sim.recorder.sink
+    time, signals = sink.collect() if isinstance(sink, MemorySink) else (np.zeros(0), {})
+    if len(time) < len(recording):
+        why = sim.events[-1].message if sim.events else "no event"
+        raise VesTwinError(
+            f"the replay ended after {len(time)} of {len(recording)} rows ({sim.outcome}: {why})"
+        )
+    kept = {name: signals[name][: len(recording)] for name in compare}
+    return Recording(np.array(recording.time), kept, recording_info(sim))
