@@ -333,3 +333,25 @@ def test_names_do_not_depend_on_the_working_folder(monkeypatch, tmp_path):
 def test_a_scenario_is_a_value():
     assert Scenario.load(BEAM) == Scenario.load(BEAM)
     assert Scenario.load(BEAM) != Scenario.load(BEAM, {"run.seed": 1})
+
+
+@pytest.mark.parametrize(
+    ("changes", "words"),
+    [
+        ({"platform.motion.band": [2.0, 1.0]}, "expected a band that holds six lines"),
+        ({"platform.motion.band": [1.0, 1.2]}, "expected a band that holds six lines"),
+        ({"platform.motion.kind": "multisin"}, "multisin"),
+    ],
+)
+def test_a_wrong_multisine_is_one_clear_line(changes, words):
+    with pytest.raises(VesTwinError, match=words):
+        Scenario.load("identify_fast", changes)
+
+
+def test_overlapping_way_points_are_refused():
+    moves = [
+        {"start": 0.0, "duration": 2.0, "to": [0.0] * 6},
+        {"start": 1.0, "duration": 2.0, "to": [0.0] * 6},
+    ]
+    with pytest.raises(VesTwinError, match=r"starts before the one at 0\.0 s has ended"):
+        Scenario.load("identify_slow", {"platform.motion.moves": moves})

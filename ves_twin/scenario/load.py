@@ -118,10 +118,14 @@ def refusal(error: ValidationError, where: str, model: type[BaseModel]) -> VesTw
     """
     found = error.errors(include_url=False)
     first = next((e for e in found if e["type"] == "extra_forbidden"), found[0])
-    location = [str(part) for part in first["loc"]]
+    location, parents = _without_tags(model, [str(part) for part in first["loc"]])
     key = ".".join(location) or "scenario"
+    if first["type"] == "union_tag_invalid":
+        context = first["ctx"]
+        known = [tag.strip("' ") for tag in context["expected_tags"].split(",")]
+        return UnknownNameError(f"{where}: {key}.kind", context["tag"], known)
     if first["type"] == "extra_forbidden":
-        keys = _known_keys(model, location[:-1])
+        keys = list(parents[-1].model_fields)
         near = difflib.get_close_matches(location[-1], keys, n=1, cutoff=0.5)
         known = [".".join([*location[:-1], near[0]])] if near else keys
         return UnknownNameError(f"key in {where}", key, known)
@@ -141,17 +145,36 @@ class InvalidScenarioError(InvalidInputError):
         Exception.__init__(self, message)
 
 
-def _known_keys(model: type[BaseModel], parents: list[str]) -> list[str]:
-    for parent in parents:
-        if parent.isdigit():
-            continue
-        annotation = model.model_fields[parent].annotation if parent in model.model_fields else None
-        found = [a for a in (annotation, *_flatten(annotation)) if isinstance(a, type)]
-        parts = [a for a in found if issubclass(a, BaseModel)]
-        if not parts:
-            return []
-        model = parts[0]
-    return list(model.model_fields)
+def _without_tags(
+    model: type[BaseModel], location: list[str]
+) -> tuple[list[str], list[type[BaseModel]]]:
+    """A location as a file has it, without the kinds that choose among tables; and its tables."""
+    path: list[str] = []
+    models = [model]
+    choices: list[type[BaseModel]] = []
+    for part in location:
+        tagged = [m for m in choices if _tag(m) == part]
+        if tagged:
+            models.append(tagged[0])
+        else:
+            path.append(part)
+            if len(choices) == 1 and not part.isdigit():
+                models.append(choices[0])
+        field = None if part.isdigit() else models[-1].model_fields.get(part)
+        if field is not None:
+            choices = _models_in(field.annotation)
+    return path, models
+
+
+def _models_in(annotation: object) -> list[type[BaseModel]]:
+    found = [a for a in (annotation, *_flatten(annotation)) if isinstance(a, type)]
+    return [a for a in found if issubclass(a, BaseModel)]
+
+
+def _tag(model: type[BaseModel]) -> str | None:
+    kind = model.model_fields.get("kind")
+    values = get_args(kind.annotation) if kind is not None else ()
+    return str(values[0]) if values else None
 
 
 def _flatten(annotation: object) -> list[object]:

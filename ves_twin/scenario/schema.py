@@ -22,6 +22,7 @@ from ves_twin.scenario.fields import (
     si,
 )
 from ves_twin.scenario.load import refusal, scenario_content
+from ves_twin.scenario.motions import Motion
 
 LOG_CLOCKS = ("admittance", "leg", "tick")
 
@@ -43,18 +44,6 @@ class Run(Part):
     seed: Annotated[int, Field(ge=0, lt=2**63)] = 0
 
 
-class SineMotion(Part):
-    """Sines about the start pose, one an axis, faded in."""
-
-    kind: Literal["sine"]
-    amplitude: Pose
-    frequency: Annotated[tuple[Hertz, ...], Field(min_length=6, max_length=6)]
-    phase: Annotated[tuple[Annotated[float, si("rad")], ...], Field(min_length=6, max_length=6)] = (
-        ZERO_POSE
-    )
-    fade: Annotated[Seconds, Field(ge=0)] = 1.0
-
-
 class Platform(Part):
     """Operating mode and admittance clock; `start` is where the platform is released."""
 
@@ -63,7 +52,7 @@ class Platform(Part):
     home: Pose = ZERO_POSE
     start: Pose = ZERO_POSE
     emulated: str | None = None
-    motion: SineMotion | None = None
+    motion: Motion | None = Field(default=None, discriminator="kind")
 
     @model_validator(mode="after")
     def _mode_has_what_it_needs(self) -> Self:

@@ -8,7 +8,7 @@ from ves_twin.control.belief import Belief
 from ves_twin.control.controller import ControlTask
 from ves_twin.control.emulated import EmulatedSystem
 from ves_twin.control.gravity import GravityCompensation
-from ves_twin.control.motion import ArmMotion, Move, PlatformMotion, Sine
+from ves_twin.control.motion import ArmMotion, Move, PlatformMotion
 from ves_twin.control.played import Script
 from ves_twin.control.registry import GRAVITY_COMPENSATIONS, PLATFORM_CONTROLLERS
 from ves_twin.plant.plant import Plant
@@ -123,10 +123,4 @@ def agenda_of(scenario: Scenario) -> list[Event]:
 def _motion(platform: Platform) -> PlatformMotion | None:
     if platform.motion is None:
         return None
-    return Sine(
-        at=np.array(platform.start),
-        amplitude=np.array(platform.motion.amplitude),
-        frequency=np.array(platform.motion.frequency),
-        phase=np.array(platform.motion.phase),
-        fade=platform.motion.fade,
-    )
+    return platform.motion.build(np.array(platform.start))
