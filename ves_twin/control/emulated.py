@@ -8,13 +8,18 @@ from pathlib import Path
 
 import numpy as np
 
+from ves_twin.control.emulated_beam import beam_matrices
 from ves_twin.errors import InvalidInputError, UnknownNameError
 from ves_twin.resources import find_resource
 from ves_twin.toml_file import check_schema, read_toml
 from ves_twin.types import FloatArray
 
 SCHEMA = 1
-_KEYS = {"schema", "name", "coupling", "source", "mass", "damping", "stiffness"}
+MATRICES = ("mass", "damping", "stiffness")
+_KEYS = {"schema", "name", "coupling", "source", "units", "nonsymmetric", "beam", *MATRICES}
+
+SYMMETRY = 1e-9
+"""Largest difference across the diagonal over the size of the two entries: round-off of a file."""
 
 
 class Coupling(StrEnum):
@@ -33,8 +38,8 @@ class EmulatedSystem:
         name: name of the model.
         coupling: how full the matrices are.
         mass: M (6, 6), symmetric, positive definite [kg, kg m, kg m^2].
-        damping: B (6, 6), any [N s/m ...].
-        stiffness: K (6, 6), any [N/m ...].
+        damping: B (6, 6) [N s/m, N s, N m s].
+        stiffness: K (6, 6) [N/m, N, N m].
         source: where the numbers come from.
     """
 
@@ -49,10 +54,16 @@ class EmulatedSystem:
     def load(name_or_path: str) -> EmulatedSystem:
         """A model from models/emulated/, or from a file.
 
+        A file gives `mass`, `damping` and `stiffness` in SI (6 numbers of a diagonal or 6 rows),
+        or a `[beam]` table from which they follow. M must be symmetric and positive definite; B
+        and K symmetric and positive semi-definite (a free base has no spring). A file that means
+        a matrix to be otherwise, such as the printed B of thesis A.5, says
+        `nonsymmetric = ["damping"]`.
+
         Raises:
             FileAccessError: missing or unreadable.
             UnknownNameError: no such model or key.
-            InvalidInputError: matrices of another shape, not finite, M not positive definite.
+            InvalidInputError: matrices of another shape, not finite, or not as said above.
             VersionError: another version of the format.
         """
         path = find_resource("emulated model", "models/emulated", name_or_path)
@@ -99,13 +110,7 @@ def _parse(content: dict[str, object], path: Path) -> EmulatedSystem:
     coupling = str(content.get("coupling"))
     if coupling not in set(Coupling):
         raise UnknownNameError("coupling", coupling, set(Coupling))
-    mass, damping, stiffness = (
-        _matrix(content.get(key), f"{path.name}: {key}") for key in ("mass", "damping", "stiffness")
-    )
-    if not np.allclose(mass, mass.T) or np.min(np.linalg.eigvalsh(mass)) <= 0:
-        raise InvalidInputError(
-            f"{path.name}: mass", content["mass"], "a symmetric, positive definite matrix"
-        )
+    mass, damping, stiffness = _matrices(content, path.name)
     diagonal = all(np.array_equal(m, np.diag(np.diag(m))) for m in (mass, damping, stiffness))
     if coupling == Coupling.DECOUPLED and not diagonal:
         raise InvalidInputError(
@@ -119,6 +124,50 @@ def _parse(content: dict[str, object], path: Path) -> EmulatedSystem:
         stiffness=stiffness,
         source=str(content.get("source", "")),
     )
+
+
+def _matrices(content: dict[str, object], where: str) -> list[FloatArray]:
+    units = content.get("units", "SI")
+    if units != "SI":
+        expected = "'SI': kg, N s/m and N/m, with rad for angles"
+        raise InvalidInputError(f"{where}: units", units, expected)
+    if "beam" in content:
+        given = [key for key in (*MATRICES, "nonsymmetric") if key in content]
+        if given:
+            expected = "nothing beside [beam], from which it follows"
+            raise InvalidInputError(f"{where}: {given[0]}", content[given[0]], expected)
+        beam = beam_matrices(content["beam"], where)
+        return [beam.mass, beam.damping, beam.stiffness]
+    exempt = content.get("nonsymmetric", [])
+    if not isinstance(exempt, list) or not set(map(str, exempt)) <= {"damping", "stiffness"}:
+        expected = "a list out of 'damping' and 'stiffness'"
+        raise InvalidInputError(f"{where}: nonsymmetric", exempt, expected)
+    found = [_matrix(content.get(key), f"{where}: {key}") for key in MATRICES]
+    for key, matrix in zip(MATRICES, found, strict=True):
+        if key not in exempt:
+            _check_energy(key, matrix, where)
+        elif np.array_equal(matrix, matrix.T):
+            expected = f"no exception for a symmetric {key}"
+            raise InvalidInputError(f"{where}: nonsymmetric", exempt, expected)
+    return found
+
+
+def _check_energy(key: str, matrix: FloatArray, where: str) -> None:
+    """Refuse a matrix whose energy x' A x is not one: skew parts, or negative values."""
+    pair = np.sqrt(np.abs(np.outer(np.diag(matrix), np.diag(matrix))))
+    size = np.maximum(pair, np.maximum(np.abs(matrix), np.abs(matrix.T)))
+    skew = np.abs(matrix - matrix.T) > SYMMETRY * size
+    if np.any(skew):
+        i, j = (int(k) for k in np.argwhere(skew)[0])
+        came = f"{matrix[i, j]:g} in row {i + 1}, column {j + 1} and {matrix[j, i]:g} across"
+        declare = "" if key == "mass" else f', or nonsymmetric = ["{key}"] where that is meant'
+        raise InvalidInputError(f"{where}: {key}", came, f"a symmetric matrix{declare}")
+    scale = np.sqrt(np.where(np.diag(matrix) > 0, np.diag(matrix), 1.0))
+    smallest = float(np.min(np.linalg.eigvalsh(matrix / np.outer(scale, scale))))
+    definite = "positive definite" if key == "mass" else "positive semi-definite"
+    if smallest < -SYMMETRY or (key == "mass" and smallest <= SYMMETRY):
+        came = f"an eigenvalue of {smallest:.3g} of the matrix scaled to ones on its diagonal"
+        raise InvalidInputError(f"{where}: {key}", came, f"a symmetric, {definite} matrix")
 
 
 def _matrix(value: object, what: str) -> FloatArray:
