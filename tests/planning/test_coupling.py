@@ -10,7 +10,8 @@ from ves_twin.planning.base_motion import base_motion
 from ves_twin.planning.coupling import CouplingForm, coupling_length, coupling_matrix
 from ves_twin.planning.coupling_map import coupling_map
 from ves_twin.planning.flexible_base import strain_energy
-from ves_twin.planning.hot_spot import evenly, hot_spot_path
+from ves_twin.planning.hot_spot import hot_spot_path
+from ves_twin.planning.timed_path import evenly, rounded, timed_path
 
 RIGHT = np.pi / 2
 START, END = np.array([0.0, RIGHT, 0.0]), np.array([RIGHT, 0.0, 0.0])
@@ -23,10 +24,8 @@ def beam():
     return EmulatedSystem.load("beam_bent_thesis")
 
 
-def moved(path, seconds, period=0.01, rest=10.0):
-    share = [quintic(k * period / seconds) for k in range(int((seconds + rest) / period) + 1)]
-    places = np.array(share) * (len(path) - 1)
-    return np.column_stack([np.interp(places, np.arange(len(path)), c) for c in path.T])
+def moved(path, seconds, period=0.01):
+    return timed_path(path, seconds, period, rest=10.0)
 
 
 def small_motion(q, direction, seconds, period):
@@ -127,11 +126,52 @@ def test_the_planned_path_transfers_far_less_energy_than_the_bad_one(puma, beam,
     low[2], high[2] = (0.0, 0.0) if free == (0, 1) else (-0.5, 0.5)
     good = hot_spot_path(puma, beam, START, END, low, high, cells=24)
     np.testing.assert_array_equal(good[[0, -1]], [START, END])
-    bad = evenly(np.array([START, CORNER, END]), len(good))
+    bad = rounded(np.array([START, CORNER, END]))
     assert coupling_length(puma, beam, good) < 0.5 * coupling_length(puma, beam, bad)
     both = np.array([moved(good, 5.0), moved(bad, 5.0)])
     peaks = strain_energy(beam, base_motion(puma, beam, both, 0.01)).max(axis=1)
     assert peaks[0] < 0.5 * peaks[1]
+
+
+def test_a_rounded_path_keeps_its_ends_and_turns_gently():
+    path = rounded(np.array([START, CORNER, END]))
+    np.testing.assert_array_equal(path[[0, -1]], [START, END])
+    steps = np.diff(path, axis=0)
+    steps /= np.linalg.norm(steps, axis=1)[:, None]
+    turns = np.degrees(np.arccos(np.clip(np.sum(steps[1:] * steps[:-1], axis=1), -1, 1)))
+    # 90 deg of a Gaussian of 16 points: 2.2 deg a point, twice that once they are spaced evenly
+    assert turns.max() < 5.0
+    assert np.min(np.linalg.norm(path - CORNER, axis=1)) < np.radians(6.0)
+    assert np.all(path[:, 0] > -1e-3)  # no wiggle at the ends
+    assert np.all(path[:, 1] > -1e-3)
+
+
+def test_the_coupling_crossed_predicts_the_energy_of_random_moves(puma, beam, figure):
+    """40 straight moves of 4 s in the quadrant; nothing in Q knows the dynamics of the base."""
+    rng = np.random.default_rng(7)
+    ends = rng.uniform(0.0, RIGHT, (40, 2, 3))
+    paths = [evenly(pair, 41) for pair in ends]
+    poses = base_motion(puma, beam, np.array([moved(path, 4.0, 0.02) for path in paths]), 0.02)
+    energy = np.log(strain_energy(beam, poses).max(axis=1))
+    correlation = {}
+    for form in CouplingForm:
+        crossed = [np.log(coupling_length(puma, beam, path, form)) for path in paths]
+        correlation[form] = float(np.corrcoef(crossed, energy)[0, 1])
+        what = f"coupling map ({form}): peak energy of random moves not explained"
+        figure(what, 100 * (1 - correlation[form] ** 2), 40.0, "%")
+    assert correlation[CouplingForm.COMPLIANCE] > 0.95
+
+
+def test_a_timed_path_starts_and_ends_at_rest_on_the_corners():
+    path = timed_path(np.array([START, CORNER, END]), 4.0, 0.01, 1.0)
+    assert path.shape == (501, 3)
+    np.testing.assert_array_equal(path[0], START)
+    np.testing.assert_allclose(path[400:], np.tile(END, (101, 1)), rtol=0, atol=1e-12)
+    np.testing.assert_allclose(path[200], CORNER, rtol=0, atol=1e-12)  # half the length
+    rates = np.linalg.norm(np.diff(path, axis=0), axis=1) / 0.01
+    assert rates[0] < 0.01
+    # a quintic peaks at 15/8 of the mean rate
+    np.testing.assert_allclose(rates.max(), 15 / 8 * np.pi / 4, rtol=0.001)
 
 
 def test_a_path_without_price_on_coupling_is_straight(puma, beam):
@@ -154,5 +194,9 @@ def test_wrong_questions_are_refused(puma, beam):
     free = EmulatedSystem("free", Coupling.COUPLED, beam.mass, beam.damping, 0 * beam.mass, "")
     with pytest.raises(InvalidInputError, match="singular"):
         coupling_matrix(puma, free, np.zeros(3))
+    with pytest.raises(InvalidInputError, match="two different configurations"):
+        timed_path(np.array([START, START]), 1.0, 0.1, 0.0)
+    with pytest.raises(InvalidInputError, match="above zero"):
+        timed_path(np.array([START, END]), 0.0, 0.1, 0.0)
     with pytest.raises(InvalidInputError, match="three or more rows"):
         base_motion(puma, beam, np.zeros((2, 3)), 0.1)

@@ -6,7 +6,6 @@ import itertools
 import math
 
 import numpy as np
-from scipy.ndimage import gaussian_filter1d
 from scipy.sparse import coo_matrix
 from scipy.sparse.csgraph import dijkstra
 
@@ -14,13 +13,8 @@ from ves_twin.control.emulated import EmulatedSystem
 from ves_twin.errors import InvalidInputError
 from ves_twin.planning.chain import SerialChain
 from ves_twin.planning.coupling import CouplingForm, coupling_matrix
+from ves_twin.planning.timed_path import rounded
 from ves_twin.types import FloatArray
-
-POINTS = 401
-"""Points of a path: under a degree apart for any move of this arm."""
-
-SMOOTHING = 16.0
-"""Corners of the grid are rounded over this many points, one sd: a few grid cells."""
 
 REACH = 3
 """Steps of the grid go up to this many cells along each axis: headings 16 deg apart or less."""
@@ -87,7 +81,7 @@ def hot_spot_path(
     way = [last]
     while way[-1] != first:
         way.append(int(before[way[-1]]))
-    return _rounded(nodes[way[::-1]])
+    return rounded(nodes[way[::-1]])
 
 
 def _graph(grid: FloatArray, metric: FloatArray) -> coo_matrix:
@@ -109,22 +103,3 @@ def _graph(grid: FloatArray, metric: FloatArray) -> coo_matrix:
         lengths.append(np.sqrt(square).ravel())
     entries = (np.concatenate(rows), np.concatenate(columns))
     return coo_matrix((np.concatenate(lengths), entries), shape=(number.size, number.size)).tocsr()
-
-
-def _rounded(corners: FloatArray) -> FloatArray:
-    """A polyline (k, n) with rounded corners, evenly spaced (401, n), ends kept."""
-    path = evenly(corners, POINTS)
-    straight = path[0] + np.linspace(0.0, 1.0, POINTS)[:, None] * (path[-1] - path[0])
-    bulge = gaussian_filter1d(path - straight, SMOOTHING, axis=0, mode="constant")
-    fade = np.minimum(1.0, np.minimum(np.arange(POINTS), np.arange(POINTS)[::-1]) / SMOOTHING)
-    rounded = evenly(straight + fade[:, None] * bulge, POINTS)
-    rounded[0], rounded[-1] = corners[0], corners[-1]
-    return rounded
-
-
-def evenly(corners: FloatArray, count: int) -> FloatArray:
-    """A polyline (k, n) at places evenly spaced along it (count, n)."""
-    corners = np.asarray(corners, float)
-    lengths = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(corners, axis=0), axis=1))])
-    places = np.linspace(0.0, lengths[-1], count)
-    return np.column_stack([np.interp(places, lengths, column) for column in corners.T])

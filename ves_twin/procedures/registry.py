@@ -7,10 +7,15 @@ from collections.abc import Mapping
 from pydantic import ValidationError
 
 from ves_twin.errors import UnknownNameError
+from ves_twin.procedures.coupling_map_paths import CouplingMapPaths
+from ves_twin.procedures.pped_release import PpedRelease
 from ves_twin.procedures.procedure import Procedure
 from ves_twin.scenario.load import refusal, scenario_content
 
-PROCEDURES: dict[str, type[Procedure]] = {}
+PROCEDURES: dict[str, type[Procedure]] = {
+    "coupling_map_paths": CouplingMapPaths,
+    "pped_release": PpedRelease,
+}
 """Value of `procedure` in a file -> class."""
 
 

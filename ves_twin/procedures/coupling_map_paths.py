@@ -1,0 +1,150 @@
+"""CouplingMapPaths: the same move along a planned, a straight and a bad path, in zero gravity."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Annotated
+
+import numpy as np
+from pydantic import Field, JsonValue
+
+from ves_twin.control.emulated import EmulatedSystem
+from ves_twin.planning.base_motion import base_motion
+from ves_twin.planning.chain import SerialChain
+from ves_twin.planning.coupling import coupling_length
+from ves_twin.planning.flexible_base import strain_energy
+from ves_twin.planning.hot_spot import hot_spot_path
+from ves_twin.planning.puma import puma_chain
+from ves_twin.planning.timed_path import evenly, path_lengths, rounded, timed_path
+from ves_twin.plant.plant import Plant
+from ves_twin.procedures.number_table import write_table
+from ves_twin.procedures.procedure import Account, Conduct, Procedure
+from ves_twin.scenario.fields import Joints, Seconds
+from ves_twin.simulator.outcome import Outcome
+from ves_twin.simulator.zero_gravity import zero_gravity_motion
+from ves_twin.types import FloatArray
+
+CYCLE = 1.0 / 80.0
+"""Time between two commands to the joints [s]. Source: the beam models' rate, thesis App. E."""
+
+PATHS = ("good", "straight", "bad")
+
+
+@dataclass(frozen=True)
+class PathRun:
+    """One way from start to end.
+
+    Attributes:
+        path: evenly spaced joint angles (k, 3) [rad].
+        commands: one a cycle (m, 3) [rad].
+        length: in joint space [rad].
+        coupling: darkness crossed, the integral of sqrt(dq' Q dq).
+        energy: strain energy of the base in the nonlinear zero-g reference [J] (m,).
+        energy_linear: by the linear base under joints that follow exactly [J] (m,).
+    """
+
+    path: FloatArray
+    commands: FloatArray
+    length: float
+    coupling: float
+    energy: FloatArray
+    energy_linear: FloatArray
+
+
+class CouplingMapPaths(Procedure):
+    """Plan on the coupling map, then run the plan against other ways between the same ends.
+
+    `corners` are the places near which the bad path turns; it is rounded like the planned one, so
+    that no jump of a joint rate speaks against it. `low` and `high` bound the planned path.
+    """
+
+    emulated: str
+    start: Joints
+    end: Joints
+    corners: Annotated[tuple[Joints, ...], Field(min_length=1)]
+    low: Joints
+    high: Joints
+    cells: Annotated[int, Field(ge=2, le=200)] = 40
+    straightness: Annotated[float, Field(ge=0)] = 0.1
+    duration: Annotated[Seconds, Field(gt=0)]
+    rest: Annotated[Seconds, Field(ge=0)]
+
+    def paths(self, chain: SerialChain, base: EmulatedSystem) -> dict[str, FloatArray]:
+        """The three ways by name, evenly spaced (k, 3)."""
+        start, end = np.array(self.start), np.array(self.end)
+        good = hot_spot_path(
+            chain,
+            base,
+            start,
+            end,
+            np.array(self.low),
+            np.array(self.high),
+            self.cells,
+            self.straightness,
+        )
+        straight = evenly(np.array([start, end]), len(good))
+        bad = rounded(np.array([start, *map(np.array, self.corners), end]))
+        return dict(zip(PATHS, (good, straight, bad), strict=True))
+
+    def runs(self, plant: Plant) -> dict[str, PathRun]:
+        """Every path planned, timed and run in zero gravity with the plant's own servo."""
+        chain, base = puma_chain(plant), EmulatedSystem.load(self.emulated)
+        found = {}
+        for name, path in self.paths(chain, base).items():
+            commands = timed_path(path, self.duration, CYCLE, self.rest)
+            motion = zero_gravity_motion(plant, base, commands, CYCLE)
+            found[name] = PathRun(
+                path=path,
+                commands=commands,
+                length=float(path_lengths(path)[-1]),
+                coupling=coupling_length(chain, base, path),
+                energy=strain_energy(base, motion.pose),
+                energy_linear=strain_energy(base, base_motion(chain, base, commands, CYCLE)),
+            )
+        return found
+
+    def carry_out(self, conduct: Conduct) -> Account:
+        """Run the paths; write `paths.csv` with commands and energies over time.
+
+        Raises:
+            VesTwinError: a base or a path that cannot be.
+        """
+        conduct.progress(0.0, "paths in zero gravity")
+        runs = self.runs(conduct.plant or Plant.load(self.plant))
+        count = len(runs["good"].energy)
+        columns: dict[str, FloatArray] = {"t [s]": CYCLE * np.arange(count, dtype=float)}
+        for name, run in runs.items():
+            for j in range(3):
+                columns[f"{name}.q.{j + 1} [rad]"] = run.commands[:, j]
+            columns[f"{name}.energy [J]"] = run.energy
+        write_table(conduct.folder / "paths.csv", columns)
+        conduct.progress(1.0, "written")
+        return Account(Outcome.COMPLETED, {"zero_g": path_figures(runs)}, _lines(runs))
+
+
+def path_figures(runs: dict[str, PathRun]) -> dict[str, JsonValue]:
+    """Numbers of the three paths, and the ratios of their peak energies."""
+    peaks = {name: float(run.energy.max()) for name, run in runs.items()}
+    values: dict[str, JsonValue] = {}
+    for name, run in runs.items():
+        values[name] = {
+            "peak_energy": peaks[name],
+            "peak_energy_linear": float(run.energy_linear.max()),
+            "mean_energy": float(run.energy.mean()),
+            "joint_length": run.length,
+            "coupling_length": run.coupling,
+        }
+    values["good_over_bad"] = peaks["good"] / peaks["bad"]
+    values["good_over_straight"] = peaks["good"] / peaks["straight"]
+    return values
+
+
+def _lines(runs: dict[str, PathRun]) -> tuple[str, ...]:
+    head = "  path        peak energy   linear   joint length   coupling crossed"
+    rows = [
+        f"  {name:<10} {run.energy.max():9.4f} J {run.energy_linear.max():9.4f} J"
+        f" {np.degrees(run.length):9.1f} deg {run.coupling:12.3f}"
+        for name, run in runs.items()
+    ]
+    ratio = runs["good"].energy.max() / runs["bad"].energy.max()
+    return (head, *rows, "", f"  good over bad, peak energy: {ratio:.3f}")
