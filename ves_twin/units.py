@@ -17,10 +17,11 @@ SI_UNITS = frozenset(
     (
         *("1", "m", "rad", "s", "Hz", "kg", "N", "Pa", "m/s", "rad/s", "m/s^2", "1/s", "N/m"),
         *("N*m", "N*s/m", "N*m/rad", "N*m/rad/s", "N*m*s/rad", "kg*m^2", "N/s", "N*m/s"),
-        *("m^3", "m^3/s/Pa"),
+        *("m^3", "m^3/s", "m^3/Pa", "m^3/s/Pa", "Pa*s/m^3", "dimensionless"),
     )
 )
-"""Units that numbers have inside; files may give others, which are converted."""
+"""Units that numbers have inside; files may give others, which are converted. "1" counts whole
+things, "dimensionless" is a share."""
 
 
 def check_unit(unit: str, what: str) -> None:

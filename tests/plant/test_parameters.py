@@ -128,6 +128,30 @@ def test_an_array_is_taken_like_a_list(table):
     np.testing.assert_array_equal(changed.array("sensor.position"), position)
 
 
+def test_one_number_for_each_leg_is_that_of_all_legs(table):
+    six = [1e-12, 2e-12, 3e-12, 0.0, 0.0, 0.0]
+    changed = table.with_values({"chamber.leakage": six})
+    np.testing.assert_array_equal(changed.array("chamber.leakage"), six)
+    alike = table.with_values({"chamber.leakage": 2e-12})
+    np.testing.assert_array_equal(alike.array("chamber.leakage"), [2e-12] * 6)
+    assert alike.number("chamber.leakage") == 2e-12
+    refused(lambda: changed.number("chamber.leakage"), "chamber.leakage", "same value for all legs")
+    refused(lambda: table.with_values({"chamber.leakage": [1e-12] * 5}), "shape (6,)")
+
+
+def test_an_entry_of_each_leg_is_read_from_one_number_or_six(load):
+    assert load(each='"leg"').value.tolist() == [9.81] * 6
+    assert load(each='"leg"', sd="0.1").sd.tolist() == [0.1] * 6
+    assert load(each='"leg"', value="[1, 2, 3, 4, 5, 6]").value.tolist() == [1, 2, 3, 4, 5, 6]
+    refused(lambda: load(each='"leg"', value="[1, 2]"), "gravity", "6")
+    refused(lambda: load(each='"arm"'), "gravity.each", "leg")
+
+
+def test_a_share_takes_per_cent(table):
+    changed = table.with_values({"hydraulics.valve_deadband": "0.5 %"})
+    assert changed.number("hydraulics.valve_deadband") == pytest.approx(0.005)
+
+
 def test_an_unknown_parameter_is_answered_with_the_nearest(table):
     for action in (
         lambda: table["leg.rod_mas"],

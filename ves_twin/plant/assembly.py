@@ -8,15 +8,18 @@ import numpy as np
 from ves_twin.errors import InvalidInputError, one_line
 from ves_twin.plant.arm_part import arm_part
 from ves_twin.plant.leg_part import leg_part
-from ves_twin.plant.parameters import ParameterTable
+from ves_twin.plant.parameters import LEGS, ParameterTable
 from ves_twin.plant.plant import Plant, mjcf_part
 from ves_twin.types import FloatArray
 
-LEGS = 6
 JOINTS = ("q1", "q2", "q3")
 
 CLOSURE_SOLIMP = (0.9999, 0.99999, 0.001, 0.5, 2.0)
 """Impedance of the leg closure, nearly rigid: keeps the loop closed to micrometres."""
+
+FRICTION_SOLIMP = (0.9999, 0.9999, 0.001, 0.5, 2.0)
+"""Impedance of dry friction, the engine's highest: its default lets a leg that should stick creep
+by centimetres a second (docs/decisions/0008-dry-friction.md)."""
 
 
 def assemble(plant: Plant, timestep: float) -> mujoco.MjSpec:
@@ -49,6 +52,7 @@ def assemble(plant: Plant, timestep: float) -> mujoco.MjSpec:
     spec.attach(sensor, prefix="sensor/", site=spec.site("platform/top"))
     spec.attach(_arm(plant), prefix="arm/", site=spec.site("sensor/mount"))
     _close_legs(spec, timestep)
+    _stick(spec, timestep)
     _actuators_and_sensors(spec)
     for effect in plant.effects:
         effect.edit_rig(spec)
@@ -138,6 +142,15 @@ def _close_legs(spec: mujoco.MjSpec, timestep: float) -> None:
         )
         closure.solref = np.array([2.0 * timestep, 1.0])
         closure.solimp = np.array(CLOSURE_SOLIMP)
+
+
+def _stick(spec: mujoco.MjSpec, timestep: float) -> None:
+    """Stiff dry friction in cylinders and arm joints; without friction it makes no constraint."""
+    slides = [f"leg{i}/slide" for i in range(1, LEGS + 1)]
+    for name in (*slides, *(f"arm/{joint}" for joint in JOINTS)):
+        joint = spec.joint(name)
+        joint.solref_friction = np.array([2.0 * timestep, 1.0])
+        joint.solimp_friction = np.array(FRICTION_SOLIMP)
 
 
 def _actuators_and_sensors(spec: mujoco.MjSpec) -> None:

@@ -7,7 +7,8 @@ from dataclasses import dataclass
 import mujoco
 import numpy as np
 
-from ves_twin.plant.assembly import JOINTS, LEGS
+from ves_twin.plant.assembly import JOINTS
+from ves_twin.plant.parameters import LEGS
 from ves_twin.types import IntArray
 
 

@@ -7,9 +7,10 @@ from dataclasses import dataclass
 import mujoco
 import numpy as np
 
-from ves_twin.plant.assembly import JOINTS, LEGS, assemble, compile_model
+from ves_twin.plant.assembly import JOINTS, assemble, compile_model
 from ves_twin.plant.hydraulics import Hydraulics, chamber_stiffness, fill_chambers
 from ves_twin.plant.layout import Layout
+from ves_twin.plant.parameters import LEGS
 from ves_twin.plant.physics import chambers
 from ves_twin.plant.plant import Plant
 from ves_twin.plant.statics import place_rig, static_leg_forces
@@ -83,7 +84,8 @@ def _resting(
     for i in range(LEGS):
         slide = spec.joint(f"leg{i + 1}/slide")
         slide.stiffness = np.array([oil_stiffness[i], 0.0, 0.0])
-        slide.damping = np.array([oil_damping, 0.0, 0.0])
+        slide.damping = np.array([oil_damping[i], 0.0, 0.0])
+        slide.frictionloss = 0.0  # a leg that sticks would have no mode
     stiffness, damping = array("servo.stiffness"), array("servo.damping")
     for j, name in enumerate(JOINTS):
         joint = spec.joint(f"arm/{name}")
@@ -101,20 +103,20 @@ def _resting(
     return model, data
 
 
-def _oil(plant: Plant, pose: FloatArray) -> tuple[FloatArray, float]:
-    """Stiffness of each oil column (6,) [N/m] and damping [N s/m] with the valves closed.
+def _oil(plant: Plant, pose: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Stiffness of each oil column (6,) [N/m] and its damping (6,) [N s/m], valves closed.
 
     In the pressure form the stiffness follows the rod travel, and the valves' null leakage, which
     damps in series with the oil, has no place in a joint: its damping ratios are too small.
     """
-    number = plant.parameters.number
+    array = plant.parameters.array
     if plant.hydraulics is Hydraulics.LINEAR:
-        return np.full(LEGS, number("hydraulics.oil_stiffness")), number("hydraulics.oil_damping")
+        return array("hydraulics.oil_stiffness"), array("hydraulics.oil_damping")
     block = np.zeros(1, chambers.PARAMETERS)
     fill_chambers(block[0], plant.parameters)
     geometry = plant.geometry
     travel = geometry.lengths(pose) - geometry.lengths(np.zeros(6))
-    return chamber_stiffness(block[0], travel), number("chamber.viscous")
+    return chamber_stiffness(block[0], travel), array("chamber.viscous")
 
 
 def _bending_dofs(model: mujoco.MjModel) -> list[int]:

@@ -17,10 +17,13 @@ from ves_twin.units import check_unit, to_si
 SCHEMA = 1
 """Version of the plant file format."""
 
+LEGS = 6
+"""Legs of the platform."""
+
 HEAD_KEYS = frozenset({"schema", "name", "base", "hydraulic_model", "parameters", "effects"})
 """Keys of a plant file beside its parameters."""
 
-_KEYS = {"value", "unit", "sd", "low", "high", "grade", "source"}
+_KEYS = {"value", "unit", "sd", "low", "high", "grade", "source", "each"}
 
 
 class Grade(StrEnum):
@@ -45,6 +48,7 @@ class Parameter:
         high: largest value allowed.
         grade: how the number came about.
         source: where it comes from.
+        per_leg: whether it has six values, a single number standing for all legs.
     """
 
     name: str
@@ -55,17 +59,21 @@ class Parameter:
     high: float
     grade: Grade
     source: str
+    per_leg: bool = False
 
     def with_value(self, value: object) -> Parameter:
         """The same parameter with another value.
 
         Args:
-            value: a number, a text with a unit, or nested lists of the same shape.
+            value: a number, a text with a unit, or nested lists of the same shape; a single
+                number for a parameter of each leg is that of all legs.
 
         Raises:
             InvalidInputError: another shape or unit, not finite, or out of bounds.
         """
         array = _numbers(value, self.unit, self.name)
+        if self.per_leg and array.shape == ():
+            array = np.full(LEGS, array)
         if array.shape != self.value.shape:
             shape = f"shape {self.value.shape}" if self.value.shape else "a single number"
             raise InvalidInputError(self.name, value, shape)
@@ -106,8 +114,17 @@ class ParameterTable(Mapping[str, Parameter]):
         return len(self.entries)
 
     def number(self, name: str) -> float:
-        """Value of a scalar parameter in SI."""
-        return float(self[name].value)
+        """Value of a scalar parameter in SI, or the value that all legs share.
+
+        Raises:
+            InvalidInputError: legs that differ, where one number must stand for them.
+        """
+        value = self[name].value
+        if self[name].per_leg:
+            if np.any(value != value[0]):
+                raise InvalidInputError(name, value.tolist(), "the same value for all legs here")
+            return float(value[0])
+        return float(value)
 
     def array(self, name: str) -> FloatArray:
         """Value of an array parameter in SI, a fresh copy."""
@@ -178,7 +195,12 @@ def _parameter(name: str, entry: Mapping[str, object]) -> Parameter:
     unit = str(entry["unit"])
     for part in unit.split(", "):
         check_unit(part, f"{name}.unit")
+    per_leg = _is_per_leg(name, entry)
     value = _numbers(entry["value"], unit, name)
+    if per_leg and value.shape == ():
+        value = np.full(LEGS, value)
+    if per_leg and value.shape != (LEGS,):
+        raise InvalidInputError(name, entry["value"], f"one number, or one for each of {LEGS} legs")
     sd = _numbers(entry.get("sd"), unit, f"{name}.sd")
     if sd.shape not in {(), value.shape[-1:], value.shape} or np.any(sd < 0):
         raise InvalidInputError(f"{name}.sd", entry["sd"], "one number >= 0, or one for each value")
@@ -191,7 +213,14 @@ def _parameter(name: str, entry: Mapping[str, object]) -> Parameter:
         high=_bound(entry, "high", np.inf, unit, name),
         grade=Grade(str(entry["grade"])),
         source=str(entry["source"]),
+        per_leg=per_leg,
     ).checked(entry["value"])
+
+
+def _is_per_leg(name: str, entry: Mapping[str, object]) -> bool:
+    if entry.get("each", "leg") != "leg":
+        raise InvalidInputError(f"{name}.each", entry["each"], '"leg", or no such key')
+    return "each" in entry
 
 
 def _bound(entry: Mapping[str, object], key: str, default: float, unit: str, name: str) -> float:

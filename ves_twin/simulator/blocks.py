@@ -9,10 +9,10 @@ import numpy as np
 from ves_twin.control import arm_servo, leg_loop
 from ves_twin.control.belief import Belief
 from ves_twin.errors import InvalidInputError
-from ves_twin.plant.hydraulics import fill_chambers
+from ves_twin.plant.hydraulics import fill_chambers, refuse_idle
 from ves_twin.plant.layout import Layout
 from ves_twin.plant.parameters import ParameterTable
-from ves_twin.plant.physics import chambers, cylinder, force_sensor, transducer, valve
+from ves_twin.plant.physics import chambers, cylinder, force_sensor, supply, transducer, valve
 from ves_twin.plant.plant import Plant
 from ves_twin.scenario.schema import Legs
 from ves_twin.simulator.clock import Clock
@@ -68,7 +68,7 @@ PARAMETERS = np.dtype(
         ("limits", LIMITS),
         ("noise", NOISE),
         ("drive", DRIVE),
-        ("pressure", np.float64),
+        ("supply", supply.PARAMETERS),
         ("hydraulics", np.int64),
         ("transducer", transducer.PARAMETERS),
         ("legs", leg_loop.PARAMETERS),
@@ -104,6 +104,7 @@ STATE = np.dtype(
         ("valve", valve.STATE),
         ("cylinder", cylinder.STATE),
         ("chambers", chambers.STATE),
+        ("supply", supply.STATE),
         ("rod_force", np.float64, 6),
         ("sensor", force_sensor.STATE),
         ("servo", arm_servo.STATE),
@@ -116,8 +117,13 @@ rod_force: force of each cylinder [N]."""
 def parameter_block(
     plant: Plant, layout: Layout, clock: Clock, legs: Legs, belief: Belief
 ) -> Block:
-    """Parameters of the loop: the plant's for the hardware, the belief's for the computers."""
+    """Parameters of the loop: the plant's for the hardware, the belief's for the computers.
+
+    Raises:
+        InvalidInputError: a changed parameter that acts on nothing in this form of hydraulics.
+    """
     table = plant.actual
+    refuse_idle(plant.hydraulics, table, Plant.load(plant.base).parameters)
     block = np.zeros(1, PARAMETERS)
     p = block[0]
     for name in CLOCKS.names or ():
@@ -143,18 +149,20 @@ def _fill_small_devices(p: np.void, table: ParameterTable, plant: Plant) -> None
     p["noise"]["encoder_count"] = table.array("arm.encoder_resolution")
     p["noise"]["torque"] = table.array("arm.torque_noise")
     p["noise"]["pressure"] = table.number("supply.noise")
-    p["pressure"] = table.number("supply.pressure")
     p["drive"]["torque_gain"] = 1.0
     p["transducer"]["scale"] = 1.0
     p["transducer"]["home"] = plant.geometry.lengths(np.zeros(6))
     p["transducer"]["noise"] = table.number("transducer.noise")
     p["transducer"]["resolution"] = table.number("transducer.resolution")
-    p["valve"]["lag"] = table.number("hydraulics.valve_lag")
     p["hydraulics"] = plant.hydraulics.code
+    for name in valve.PARAMETERS.names or ():
+        p["valve"][name] = table.array(f"hydraulics.valve_{name}")
+    for name in supply.PARAMETERS.names or ():
+        p["supply"][name] = table.number(f"supply.{name}")
     fill_chambers(p["chambers"], table)
     p["cylinder"]["full_speed"] = table.number("hydraulics.full_speed")
-    p["cylinder"]["stiffness"] = table.number("hydraulics.oil_stiffness")
-    p["cylinder"]["damping"] = table.number("hydraulics.oil_damping")
+    p["cylinder"]["stiffness"] = table.array("hydraulics.oil_stiffness")
+    p["cylinder"]["damping"] = table.array("hydraulics.oil_damping")
 
 
 def _fill_legs(p: np.void, legs: Legs, clock: Clock, belief: Belief) -> None:

@@ -81,7 +81,8 @@ def build_references(
     emulated = emulated_of(scenario)
     if emulated is None or not scenario.has_reference:
         return {}
-    legs = (scenario.legs.gain, plant.parameters.number("hydraulics.valve_lag"))
+    lag = float(np.median(plant.actual.array("hydraulics.valve_lag")))  # legs may differ
+    legs = (scenario.legs.gain, lag)
     return {
         name: ZeroGravityReference(
             plant=plant,
@@ -90,9 +91,9 @@ def build_references(
             start=np.array(scenario.platform.start),
             home=np.array(scenario.platform.home),
             arm_start=np.array(scenario.arm.start),
-            legs=lag,
+            legs=law,
         )
-        for name, lag in ((IDEAL, None), (LEG_LAG, legs))
+        for name, law in ((IDEAL, None), (LEG_LAG, legs))
     }
 
 

@@ -12,6 +12,7 @@ from ves_twin.plant.hydraulics import PRESSURE_FORM
 from ves_twin.plant.physics.chambers import push_rods_by_pressure
 from ves_twin.plant.physics.cylinder import push_rods
 from ves_twin.plant.physics.force_sensor import sample_wrench, wander_on
+from ves_twin.plant.physics.supply import feed_manifold
 from ves_twin.plant.physics.transducer import read_lengths
 from ves_twin.plant.physics.valve import move_spool
 from ves_twin.simulator.codes import (
@@ -81,7 +82,10 @@ def _push_legs(
     move_spool(p.valve, s.valve, s.current, step)
     spool, force = s.valve.mean, s.rod_force
     if p.hydraulics == PRESSURE_FORM:
-        push_rods_by_pressure(p.chambers, s.chambers, force, spool, work.slide, work.speed, step)
+        demand, slope = push_rods_by_pressure(
+            p.chambers, s.chambers, force, spool, work.slide, work.speed, s.supply.manifold, step
+        )
+        feed_manifold(p.supply, s.supply, demand, slope, step)
     else:
         push_rods(p.cylinder, s.cylinder, force, spool, work.slide, work.speed, step)
     for i in range(6):
@@ -97,7 +101,7 @@ def _read_and_command(
     for i in range(6):
         s.work.slide[i] = qpos[p.layout.slide_qpos[i]]
     read_lengths(p.transducer, s.work.slide, fast[LENGTH:], board.leg_length)
-    board.supply_pressure[0] = p.pressure + p.noise.pressure * slow[PRESSURE]
+    board.supply_pressure[0] = s.supply.manifold + p.noise.pressure * slow[PRESSURE]
     _drive_arm(p, s, board, tick, qpos, qvel, ctrl, slow)
     if tick % p.clock.leg == 0:
         control_legs(p.legs, s.legs, board.leg_length, board.valve_command)

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from ves_twin.control.leg_loop import start_legs
-from ves_twin.plant.hydraulics import loaded_pressures
+from ves_twin.plant.hydraulics import loaded_pressures, resting_supply
 from ves_twin.plant.physics.force_sensor import start_at
 from ves_twin.plant.statics import joints_on_platform, place_rig, static_leg_forces
 from ves_twin.recording.recording import Event
@@ -78,7 +78,9 @@ def _start_states(rig: Rig, pose: FloatArray, q: FloatArray, believed: FloatArra
     force = static_leg_forces(rig.model, rig.data, layout, geometry, pose)
     slide = rig.data.qpos[layout.slide_qpos]
     s["cylinder"]["column"] = slide + force / p["cylinder"]["stiffness"]
-    s["chambers"]["pressure"][0] = loaded_pressures(p[0]["chambers"], force)
+    s["supply"]["manifold"] = resting_supply(p[0]["supply"], p[0]["chambers"])
+    supply = float(s["supply"]["manifold"][0])
+    s["chambers"]["pressure"][0] = loaded_pressures(p[0]["chambers"], force, supply)
     s["rod_force"] = force
     s["servo"]["integral"] = rig.data.qfrc_bias[layout.arm_dof]
     rig.board["leg.length"][:] = believed

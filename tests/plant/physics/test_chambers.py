@@ -1,4 +1,4 @@
-"""Pressure hydraulics against closed forms: orifice, stiffness, natural frequency, speed, limit."""
+"""Pressure hydraulics against closed forms: orifice, stiffness, natural frequency, speed, leaks."""
 
 import numpy as np
 import pytest
@@ -20,11 +20,11 @@ def block():
     return p, s
 
 
-def push(block, spool, slide, speed, step=TICK):
+def push(block, spool, slide, speed, step=TICK, supply=1e7):
     """Rod forces (6,) after one step."""
     p, s = block
     force = np.zeros(6)
-    chambers.push_rods_by_pressure(p[0], s[0], force, spool, slide, speed, step)
+    chambers.push_rods_by_pressure(p[0], s[0], force, spool, slide, speed, supply, step)
     return force
 
 
@@ -140,3 +140,94 @@ def test_pressures_stay_above_vacuum_and_volumes_positive(block):
         force = push(block, np.full(6, np.sign(slide)), np.full(6, slide), np.full(6, -3.0))
         assert np.all(np.isfinite(force))
         assert np.all(block[1]["pressure"] >= 0.0)
+
+
+def steady_speed(block, opening, supply):
+    """Speed of an unloaded rod at an opening [m/s], volumes held at mid stroke."""
+    p, s = block
+    s["pressure"][0] = loaded_pressures(p[0], np.zeros(6), supply)
+    v, late = np.zeros(6), []
+    for k in range(20_000):
+        v = v + 2e-5 * push(block, np.full(6, opening), HOME, v, 2e-5, supply) / 20.0
+        if k >= 10_000:
+            late.append(v[0])
+    return np.mean(late)
+
+
+def test_speed_goes_with_the_root_of_the_supply(block):
+    block[0]["conductance"] = block[0]["leakage"] = block[0]["viscous"] = 0.0
+    block[0]["crossover"] = 1.0
+    high, low = (steady_speed(block, 0.5, supply) for supply in (1e7, 8e6))
+    assert low / high == pytest.approx(np.sqrt(0.8), rel=1e-4)
+
+
+def test_null_pressures_follow_the_supply(block):
+    block[0]["leakage"] = 0.0
+    block[1]["pressure"][0] = loaded_pressures(block[0][0], np.zeros(6), 7e6)
+    force = push(block, np.zeros(6), HOME, np.zeros(6), supply=7e6)
+    assert np.max(np.abs(force)) < 1e-9
+    assert block[1]["pressure"][0].sum(axis=1) == pytest.approx(7e6, rel=1e-14)
+
+
+def test_a_held_piston_leaks_to_equal_pressures_at_the_closed_form_rate(block):
+    """d(p1 - p2)/dt = -cl beta (1/V1 + 1/V2) (p1 - p2), another leakage in each leg."""
+    p, s = block
+    p["conductance"] = 0.0
+    leakage = np.array([1e-12, 2e-12, 5e-12, 1e-11, 2e-11, 0.0])
+    p["leakage"] = leakage
+    start = s["pressure"][0].copy()
+    errors = []
+    for parts in (1, 2, 4):
+        s["pressure"][0] = start
+        for _ in range(300 * parts):
+            push(block, np.zeros(6), HOME, np.zeros(6), TICK / parts)
+        across = np.subtract(*s["pressure"][0].T)
+        volumes = p["dead_volume"][0] + np.outer(p["area"][0], p["half_stroke"])
+        rate = leakage * p["bulk_modulus"][0] * np.sum(1.0 / volumes, axis=0)
+        closed = np.subtract(*start.T) * np.exp(-rate * 300 * TICK)
+        errors.append(np.max(np.abs(across - closed)))
+    assert errors[0] < 0.01 * abs(np.subtract(*start[0]))
+    assert errors[1] < 0.6 * errors[0]  # first order in the step
+    assert errors[2] < 0.6 * errors[1]
+
+
+def test_a_loaded_leg_with_its_valve_shut_drifts_at_the_closed_form_speed(block):
+    """cv (n1 - p1) - cl dp = A1 v, cv/R (n2 - p2) + cl dp = -A2 v, A1 p1 - A2 p2 = F."""
+    p, s = block
+    leakage = np.array([0.0, 2e-13, 1e-12, 5e-12, 1e-11, 1e-10])
+    load, mass, step = 300.0, 50.0, 1e-4
+    p["leakage"], p["viscous"], p["bulk_modulus"] = leakage, 0.0, 8.5e8
+    s["pressure"][0] = loaded_pressures(p[0], np.full(6, load))
+    v, late = np.zeros(6), []
+    for k in range(12_000):
+        v = v + step * (push(block, np.zeros(6), HOME, v, step) - load) / mass
+        if k >= 10_000:
+            late.append(v)
+    (a1, a2), (c1, c2), (n1, n2) = (p[0][n] for n in ("area", "conductance", "null"))
+    closed = [
+        np.linalg.solve(
+            [[c1 + cl, -cl, a1], [-cl, c2 + cl, -a2], [a1, -a2, 0.0]], [c1 * n1, c2 * n2, load]
+        )[2]
+        for cl in leakage
+    ]
+    assert np.mean(late, axis=0) == pytest.approx(closed, rel=1e-3)
+    assert abs(closed[-1] - closed[0]) > 2e-3  # m/s; the leak is seen
+
+
+def test_a_fault_of_one_leg_stays_in_that_leg(block):
+    p, s = block
+    speed = np.full(6, 0.01)
+    push(block, np.full(6, 0.1), HOME, speed)
+    sound = s["pressure"][0].copy()
+    for name, factor in (
+        *(("leakage", 100.0), ("bulk_modulus", 0.7), ("dead_volume", 2.0), ("viscous", 3.0)),
+    ):
+        kept = p[name].copy()
+        p[name][0, 2] *= factor
+        s["pressure"][0] = loaded_pressures(p[0], np.zeros(6))
+        force = push(block, np.full(6, 0.1), HOME, speed)
+        others = [0, 1, 3, 4, 5]
+        np.testing.assert_array_equal(s["pressure"][0, others], sound[others])
+        assert np.all(force[others] == force[0])
+        assert force[2] != force[0]
+        p[name] = kept

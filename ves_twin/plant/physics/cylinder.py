@@ -8,9 +8,10 @@ from ves_twin.compiled import compiled
 from ves_twin.types import FloatArray, Record
 
 PARAMETERS = np.dtype(
-    [("full_speed", np.float64), ("stiffness", np.float64), ("damping", np.float64)]
+    [("full_speed", np.float64), ("stiffness", np.float64, 6), ("damping", np.float64, 6)]
 )
-"""full_speed: rod speed at full opening [m/s]; stiffness [N/m] and damping [N s/m] of the oil."""
+"""full_speed: rod speed at full opening [m/s]; stiffness [N/m] and damping [N s/m] of
+the oil of each leg."""
 
 STATE = np.dtype([("column", np.float64, 6)])
 """column: rod position at which the oil carries no load [m]."""
@@ -29,7 +30,8 @@ def push_rods(
     """Rod forces F = k (x - q) - c q', then the oil column moves by full_speed * spool * h.
 
     The small-signal limit of a servovalve with two chambers: flow integrates to position and
-    the trapped oil is a spring. No friction, leakage or saturation of the supply.
+    the trapped oil is a spring. Leakage and supply are those of
+    the pressure form; dry friction is a joint friction of the engine.
 
     Args:
         p: PARAMETERS.
@@ -41,5 +43,5 @@ def push_rods(
         step: physics step h [s].
     """
     for i in range(6):
-        force[i] = p.stiffness * (s.column[i] - slide[i]) - p.damping * speed[i]
+        force[i] = p.stiffness[i] * (s.column[i] - slide[i]) - p.damping[i] * speed[i]
         s.column[i] += p.full_speed * spool[i] * step

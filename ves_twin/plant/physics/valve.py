@@ -1,4 +1,4 @@
-"""valve: servovalve spool as a first-order lag, averaged exactly over a step."""
+"""valve: servovalve spool as a first-order lag with its faults, averaged over a step."""
 
 from __future__ import annotations
 
@@ -7,28 +7,49 @@ import numpy as np
 from ves_twin.compiled import compiled
 from ves_twin.types import FloatArray, Record
 
-PARAMETERS = np.dtype([("lag", np.float64)])
-"""lag: time constant of the spool [s]."""
+PARAMETERS = np.dtype(
+    [
+        ("lag", np.float64, 6),
+        ("null", np.float64, 6),
+        ("deadband", np.float64, 6),
+        ("gain", np.float64, 6),
+        ("limit", np.float64, 6),
+    ]
+)
+"""lag: time constant of the spool [s]; null: opening without current; deadband: overlap of the
+lands on each side; gain: flow per nominal flow; limit: largest travel. All but lag are shares of
+full opening."""
 
 STATE = np.dtype([("spool", np.float64, 6), ("mean", np.float64, 6)])
-"""spool: opening, -1 to 1; mean: its mean over the last step."""
+"""spool: travel, -1 to 1; mean: opening that the flow sees, mean over the last step."""
 
 
 @compiled
 def move_spool(p: Record, s: Record, current: FloatArray, step: float) -> None:
-    """Advance the spools: x' = (c - x) / lag, with c the held current.
+    """Advance the spools and give the openings.
 
-    The mean over the step, c + (x0 - c)(1 - e^(-h/lag)) lag / h, drives the flow: the end value
-    would be a half-step lead, which is most of the error of a naive scheme.
+        x' = (c - x) / lag,  c = the held current, within +-limit
+        opening = gain * D(mean of x over the step + null)
+        D(y) = sign(y) max(|y| - deadband, 0)
+
+    The mean, c + (x0 - c)(1 - e^(-h/lag)) lag / h, drives the flow: the end value would be a
+    half-step lead, which is most of the error of a naive scheme. D of the mean differs from the
+    mean of D only in steps that cross an edge of the deadband.
 
     Args:
         p: PARAMETERS.
         s: STATE.
         current: amplifier output, -1 to 1 (6,).
         step: physics step h [s].
+
+    Source: Merritt, Hydraulic Control Systems (1967), chapter 5 (overlap, null shift).
     """
-    decay = np.exp(-step / p.lag)
     for i in range(6):
-        gap = s.spool[i] - current[i]
-        s.mean[i] = current[i] + gap * (1.0 - decay) * p.lag / step
-        s.spool[i] = current[i] + gap * decay
+        decay = np.exp(-step / p.lag[i])
+        command = min(max(current[i], -p.limit[i]), p.limit[i])
+        gap = s.spool[i] - command
+        mean = command + gap * (1.0 - decay) * p.lag[i] / step
+        s.spool[i] = command + gap * decay
+        open_by = mean + p.null[i]
+        beyond = max(abs(open_by) - p.deadband[i], 0.0)
+        s.mean[i] = p.gain[i] * (beyond if open_by >= 0.0 else -beyond)
