@@ -6,7 +6,7 @@ PYTHON ?= $(shell for p in python3.12 python3.11 python3 python; do \
 BIN := .venv/bin
 PIP := $(BIN)/python -m pip install --quiet --disable-pip-version-check
 
-.PHONY: demo test check fast types lint layers bench figures picture clean
+.PHONY: demo test check fast types lint layers bench figures fidelity picture clean
 
 demo: .venv/.run
 	$(BIN)/ves-twin run beam_horizontal_truth --out runs/demo
@@ -38,6 +38,9 @@ picture: .venv/.dev
 figures: .venv/.dev
 	$(BIN)/python -m pytest -n 0 --figures docs/figures.md \
 		tests/kinematics/test_stewart.py tests/plant tests/simulator
+
+fidelity: .venv/.dev
+	$(BIN)/python benchmarks/fidelity.py docs/fidelity.md
 
 .venv/.run: pyproject.toml constraints.txt
 	@test -n "$(PYTHON)" || { echo "ves_twin needs Python 3.11 or 3.12; none was found (make PYTHON=... demo)"; exit 1; }

@@ -51,6 +51,10 @@ class FileAccessError(VesTwinError):
     """A file or folder that is missing, unreadable or read-only."""
 
 
+class PluginError(VesTwinError):
+    """An installed extension that cannot be used: a clash of names, or it does not load."""
+
+
 class ControllerError(VesTwinError):
     """A controller that raised or returned something that is not a finite command."""
 

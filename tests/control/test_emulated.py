@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
+from scipy.linalg import sqrtm
 from scipy.signal import cont2discrete
 
 from ves_twin.control.emulated import Coupling, EmulatedSystem
@@ -15,6 +16,7 @@ from ves_twin.errors import (
 )
 
 MODELS = ["beam_horizontal_thesis", "beam_horizontal_corrected", "table_5_2"]
+MODELS += ["beam_vertical_thesis", "beam_vertical_corrected", "beam_bent_thesis", "free_float"]
 EXPONENTIALS = 1e-10
 """Relative to the largest entry of a row: expm of two libraries, entries up to 592 rad/s."""
 PRINTED = 0.005
@@ -93,6 +95,80 @@ def test_the_corrected_beam_differs_in_two_inertias_only():
     np.testing.assert_array_equal(printed.damping, corrected.damping)
     np.testing.assert_array_equal(np.diag(printed.mass)[3:], [2900.0, 2900.0, 5.0])
     np.testing.assert_array_equal(np.diag(corrected.mass)[3:], [5.0, 2900.0, 2900.0])
+
+
+def test_the_vertical_beam_is_the_horizontal_one_turned():
+    """Turned by 90 deg about Y, so that -X, in which the beam leaves its root, becomes +Z."""
+    upright, lying = (
+        EmulatedSystem.load(f"beam_{way}_thesis") for way in ("vertical", "horizontal")
+    )
+    turn = np.array([[0.0, 0.0, 1.0], [0.0, 1.0, 0.0], [-1.0, 0.0, 0.0]])
+    both = np.kron(np.eye(2), turn)
+    for matrix in ("stiffness", "damping"):
+        expected = both @ getattr(lying, matrix) @ both.T
+        np.testing.assert_allclose(getattr(upright, matrix), expected, rtol=0, atol=1e-9)
+    # printed, the two M are interchanged (E-10): each has the 5 kg m^2 across its beam
+    assert (np.argmin(np.diag(upright.mass)), np.argmin(np.diag(lying.mass))) == (3, 5)
+
+
+def bent_beam_compliance(ei, gj, ea, length, faulty):
+    """Q of two equal tubes, L1 along -X and then L2 along +Z; `faulty` as the thesis has Q55."""
+    q = np.zeros((6, 6))
+    one, two, three = length, length**2, length**3
+    q[0, 0] = three / (3 * ei) + one / ea + three / ei
+    q[0, 2] = three / (2 * ei)
+    q[0, 4] = two / (2 * ei) + two / ei
+    q[1, 1] = 2 * three / (3 * ei) + three / gj
+    q[1, 3] = -two / (2 * ei) - two / gj
+    q[1, 5] = -two / (2 * ei)
+    q[2, 2] = one / ea + three / (3 * ei)
+    q[2, 4] = two / (2 * ei)
+    q[3, 3] = q[5, 5] = one / ei + one / gj
+    q[4, 4] = one / ei + (one / gj if faulty else one / ei)
+    return q + np.triu(q, 1).T
+
+
+def test_the_bent_beam_has_the_printed_errors():
+    """K inverts a compliance with L1 / GJ in Q55 (E-15); B is 0.1 sqrtm(K M), M twice too heavy
+    in translation and of another order in rotation (E-17, E-18), all to the printed digit."""
+    outer, wall, length = 0.090, 0.007, 8.0
+    inner = outer - 2 * wall
+    second, area = np.pi / 64 * (outer**4 - inner**4), np.pi / 4 * (outer**2 - inner**2)
+    ei, gj, ea = 72e9 * second, 27e9 * 2 * second, 72e9 * area
+    system = EmulatedSystem.load("beam_bent_thesis")
+    stiffness = np.linalg.inv(bent_beam_compliance(ei, gj, ea, length, faulty=True))
+    np.testing.assert_allclose(system.stiffness, stiffness, rtol=0, atol=0.75)
+    right = np.linalg.inv(bent_beam_compliance(ei, gj, ea, length, faulty=False))
+    assert np.max(np.abs(system.stiffness - right)) > 2e4
+    beam = 2800.0 * area * 2 * length
+    assumed = np.diag([beam, beam, beam, 2617.0, 2617.0, 5233.0])
+    damping = np.real(sqrtm(stiffness @ assumed)) * 0.1
+    # printed with whole numbers, some cut off: 805.7 is 800
+    np.testing.assert_allclose(system.damping, damping, rtol=0.008, atol=1.0)
+    assert not np.allclose(system.damping, system.damping.T, atol=100.0)
+    np.testing.assert_allclose(np.diag(system.mass)[:3], beam / 2, rtol=0.01)
+
+
+@pytest.mark.parametrize(
+    ("name", "expected"),
+    [
+        ("beam_vertical_thesis", [0.156, 0.162, 0.315, 0.707, 8.73]),
+        ("beam_bent_thesis", [0.167, 0.192, 0.197, 0.643, 0.725, 1.165]),
+        ("free_float", [0.0] * 6),
+    ],
+)
+def test_the_other_models_have_the_frequencies_of_the_fact_sheet(name, expected):
+    system = EmulatedSystem.load(name)
+    squares = np.linalg.eigvals(np.linalg.solve(system.mass, system.stiffness))
+    found = np.sort(np.sqrt(squares.real)) / (2 * np.pi)
+    np.testing.assert_allclose(found[: len(expected)], expected, rtol=PRINTED)
+
+
+def test_the_free_spacecraft_is_a_homogeneous_cube():
+    system = EmulatedSystem.load("free_float")
+    assert not system.stiffness.any()
+    assert not system.damping.any()
+    np.testing.assert_allclose(np.diag(system.mass), [1200.0] * 3 + [1200.0 * 2.0**2 / 6] * 3)
 
 
 @pytest.mark.parametrize("name", MODELS)

@@ -8,7 +8,7 @@ def test_every_coordinate_is_named_exactly_once(rig):
     layout = rig.layout
     used = np.concatenate(
         [
-            layout.slide_qpos,
+            layout.slide_at,
             layout.universal_qpos,
             layout.bending_qpos,
             layout.platform_qpos + np.arange(7),
@@ -23,7 +23,7 @@ def test_a_slide_lengthens_its_own_leg(rig):
     data = mujoco.MjData(model)
     for leg in range(6):
         data.qpos[:] = model.qpos0
-        data.qpos[layout.slide_qpos[leg]] = 0.1
+        data.qpos[layout.slide_at[leg]] = 0.1
         mujoco.mj_kinematics(model, data)
         end, foot = data.site(f"leg{leg + 1}/rod_end").xpos, rig.plant.geometry.base[leg]
         home = rig.plant.geometry.lengths(np.zeros(6))[leg]
@@ -34,7 +34,7 @@ def test_each_drive_pushes_its_own_joint(rig):
     model, layout = rig.model, rig.layout
     data = mujoco.MjData(model)
     for ctrl, dof in zip(
-        [*layout.leg_ctrl, *layout.arm_ctrl], [*layout.slide_dof, *layout.arm_dof], strict=True
+        [*layout.leg_ctrl, *layout.arm_ctrl], [*layout.speed_at, *layout.arm_dof], strict=True
     ):
         data.ctrl[:] = 0.0
         data.ctrl[ctrl] = 7.0

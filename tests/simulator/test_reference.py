@@ -7,6 +7,7 @@ import ves_twin as vt
 from ves_twin.control.emulated import EmulatedSystem
 from ves_twin.plant.assembly import assemble_free_arm
 from ves_twin.simulator import reference as module
+from ves_twin.simulator.build import arm_motion
 from ves_twin.simulator.reference import ZeroGravityReference
 
 CYCLE = 37 * 341e-6
@@ -144,6 +145,53 @@ def test_base_without_spring_keeps_its_momentum(monkeypatch):
     assert np.linalg.norm(ref.pose[:3]) > 0.01
     # what RK4 leaves at a fine step over 2 s; the base itself moves 16 cm
     assert np.max(np.abs(centre() - before)) < 1e-9
+
+
+def test_free_floating_scenario_keeps_all_momentum_and_its_centre_of_mass(figure):
+    """From rest without outer force, momentum and moment of momentum stay zero.
+
+    The payload's come from MuJoCo's subtree sums (`armature` has none); the base adds m X' and
+    J phi' + X x m X'. The centre of mass of both stays where it was, which gives the base's place in closed form.
+    """
+    scenario = vt.Scenario.load("free_float", {"run.settle": 0.1})
+    sim = vt.Simulator(None, scenario)
+    ref = sim.recorder._references["reference.pose"]
+    system = EmulatedSystem.load("free_float")
+    model = assemble_free_arm(sim.plant).compile()
+    data, motion = mujoco.MjData(model), arm_motion(scenario)
+    payload = float(model.body_subtreemass[0])
+    place_error = momentum = turning = fastest = 0.0
+    start, cycle = None, sim.rig.clock.admittance * sim.rig.clock.tick
+    for k in range(int(4.0 / cycle)):
+        points = np.array([motion.q((k + i - 1) * cycle) for i in range(4)])
+        ref.advance(points, cycle)
+        state = ref.snapshot()
+        pose, rate = state[:6], state[6:12]
+        data.qpos[:] = [*pose[:3], pose[5], pose[4], pose[3], *state[24:27]]
+        data.qvel[:] = [*rate[:3], rate[5], rate[4], rate[3], *state[27:30]]
+        mujoco.mj_forward(model, data)
+        mujoco.mj_subtreeVel(model, data)
+        com, velocity = data.subtree_com[0], data.subtree_linvel[0]
+        base = system.mass[0, 0] * rate[:3]
+        linear = base + payload * velocity
+        angular = system.mass[3:, 3:] @ rate[3:] + np.cross(pose[:3], base)
+        angular += data.subtree_angmom[0] + np.cross(com, payload * velocity)
+        start = com - pose[:3] if start is None else start
+        share = payload / (payload + system.mass[0, 0])
+        place_error = max(place_error, np.max(np.abs(pose[:3] + share * (com - pose[:3] - start))))
+        momentum = max(momentum, np.max(np.abs(linear)))
+        turning = max(turning, np.max(np.abs(angular)))
+        fastest = max(fastest, np.linalg.norm(payload * velocity))
+    # what RK4 leaves at the shipped step; the payload's own momentum peaks at tens of N s
+    assert fastest > 10.0
+    figure(
+        "free float: base against the closed form of a still centre of mass",
+        place_error * 1e6,
+        1.0,
+        "um",
+    )
+    figure("free float: momentum of base and arm", momentum, 1e-3, "N s")
+    figure("free float: moment of momentum of base and arm", turning, 1e-3, "N m s")
 
 
 def test_platform_with_fast_legs_is_the_ideal_emulation():

@@ -28,6 +28,8 @@ def execute(arguments: argparse.Namespace) -> int:
     for title, entries in content.items():
         print(f"{title}:" if not isinstance(entries, str) else f"{title}: {entries}")
         if isinstance(entries, dict):
+            if not entries:
+                print("  none")
             width = max(map(len, entries), default=0)
             for name, value in entries.items():
                 print(f"  {name:<{width}}  {value if isinstance(value, str) else _words(value)}")
@@ -37,7 +39,7 @@ def execute(arguments: argparse.Namespace) -> int:
 
 
 def general_content() -> dict[str, object]:
-    """Versions, plants, emulated systems, controllers, scenarios, signals."""
+    """Versions, plants, emulated systems, controllers, plugins, scenarios, signals."""
     from ves_twin.compiled import cache_folder
     from ves_twin.control.registry import GRAVITY_COMPENSATIONS, PLATFORM_CONTROLLERS
     from ves_twin.effects.registry import EFFECTS
@@ -55,6 +57,11 @@ def general_content() -> dict[str, object]:
         "effects": {kind: ", ".join(_sizes(effect)) for kind, effect in EFFECTS.items()},
         "platform controllers": list(PLATFORM_CONTROLLERS),
         "gravity compensations": list(GRAVITY_COMPENSATIONS),
+        "plugins": {
+            f"{registry.group}: {name}": origin
+            for registry in (PLATFORM_CONTROLLERS, GRAVITY_COMPENSATIONS)
+            for name, origin in registry.plugins().items()
+        },
         "scenarios": list(scenario_questions()),
         "signals": {
             s.name: f"{s.width} {', '.join(dict.fromkeys(s.units))}; {s.role.value}; {s.meaning}"

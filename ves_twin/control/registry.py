@@ -13,16 +13,25 @@ from ves_twin.control.gravity import (
     TruthPort,
 )
 from ves_twin.control.position import PositionController
+from ves_twin.plugins import Registry, lacks
 
-PLATFORM_CONTROLLERS: dict[str, type[PlatformController]] = {
-    "position": PositionController,
-    "admittance": AdmittanceController,
-    "micro_gravity": AdmittanceController,
-}
+PLATFORM_CONTROLLERS: Registry[type[PlatformController]] = Registry(
+    "ves_twin.controllers",
+    {
+        "position": PositionController,
+        "admittance": AdmittanceController,
+        "micro_gravity": AdmittanceController,
+    },
+    lacks(PlatformController),
+)
 """Operating mode (thesis 2.2) -> controller; the last two differ in the gravity estimate."""
 
-GRAVITY_COMPENSATIONS: dict[str, Callable[[TruthPort], GravityCompensation]] = {
-    "none": lambda port: NoCompensation(),
-    "truth": TruthCompensation,
-}
+GRAVITY_COMPENSATIONS: Registry[Callable[[TruthPort], GravityCompensation]] = Registry(
+    "ves_twin.gravity",
+    {
+        "none": lambda port: NoCompensation(),
+        "truth": TruthCompensation,
+    },
+    lambda loaded: None if callable(loaded) else "cannot be called",
+)
 """Method -> compensation, given the truth port that only the test method opens."""

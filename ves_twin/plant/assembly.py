@@ -6,10 +6,13 @@ import mujoco
 import numpy as np
 
 from ves_twin.errors import InvalidInputError, one_line
+from ves_twin.kinematics.stewart import StewartGeometry
 from ves_twin.plant.arm_part import arm_part
+from ves_twin.plant.fidelity import Fidelity
 from ves_twin.plant.leg_part import leg_part
 from ves_twin.plant.parameters import LEGS, ParameterTable
 from ves_twin.plant.plant import Plant, mjcf_part
+from ves_twin.plant.tendon_legs import add_tendon_legs
 from ves_twin.types import FloatArray
 
 JOINTS = ("q1", "q2", "q3")
@@ -25,8 +28,9 @@ by centimetres a second (docs/decisions/0008-dry-friction.md)."""
 def assemble(plant: Plant, timestep: float) -> mujoco.MjSpec:
     """The whole rig as an MjSpec: frame, six legs, platform, force sensor, arm.
 
-    The chain closes through `connect` constraints between rod ends and platform joints, with a
-    time constant of two steps. The hydraulic and joint forces enter through plain motors.
+    In `full` the chain closes through `connect` constraints between rod ends and platform joints,
+    with a time constant of two steps; in `fast` the legs are tendons without bodies. The hydraulic
+    and joint forces enter through plain motors.
 
     Args:
         plant: the rig.
@@ -40,10 +44,8 @@ def assemble(plant: Plant, timestep: float) -> mujoco.MjSpec:
     spec.modelname = plant.name
     spec.option.timestep = timestep
     spec.option.gravity = [0.0, 0.0, -parameters.number("gravity")]
-    for i in range(LEGS):
-        leg, frame_quat = leg_part(_part("leg.xml"), parameters, geometry, i)
-        base = spec.worldbody.add_frame(pos=geometry.base[i], quat=frame_quat)
-        spec.attach(leg, prefix=f"leg{i + 1}/", frame=base)
+    if plant.fidelity is Fidelity.FULL:
+        _attach_legs(spec, parameters, geometry)
     platform = _platform(_part("platform.xml"), parameters, geometry.top)
     home = spec.worldbody.add_frame(pos=geometry.home)
     spec.attach(platform, prefix="platform/", frame=home)
@@ -51,9 +53,13 @@ def assemble(plant: Plant, timestep: float) -> mujoco.MjSpec:
     sensor.site("wrench").pos = parameters.array("sensor.position")
     spec.attach(sensor, prefix="sensor/", site=spec.site("platform/top"))
     spec.attach(_arm(plant), prefix="arm/", site=spec.site("sensor/mount"))
-    _close_legs(spec, timestep)
-    _stick(spec, timestep)
-    _actuators_and_sensors(spec)
+    if plant.fidelity is Fidelity.FULL:
+        _close_legs(spec, timestep)
+    else:
+        number = parameters.number
+        add_tendon_legs(spec, geometry, number("leg.rod_mass"), number("leg.rod_radius"))
+    _stick(spec, plant.fidelity, parameters, timestep)
+    _actuators_and_sensors(spec, plant.fidelity)
     for effect in plant.effects:
         effect.edit_rig(spec)
     return spec
@@ -131,6 +137,15 @@ def _platform(spec: mujoco.MjSpec, parameters: ParameterTable, joints: FloatArra
     return spec
 
 
+def _attach_legs(
+    spec: mujoco.MjSpec, parameters: ParameterTable, geometry: StewartGeometry
+) -> None:
+    for i in range(LEGS):
+        leg, frame_quat = leg_part(_part("leg.xml"), parameters, geometry, i)
+        base = spec.worldbody.add_frame(pos=geometry.base[i], quat=frame_quat)
+        spec.attach(leg, prefix=f"leg{i + 1}/", frame=base)
+
+
 def _close_legs(spec: mujoco.MjSpec, timestep: float) -> None:
     for i in range(1, LEGS + 1):
         closure = spec.add_equality(
@@ -144,19 +159,27 @@ def _close_legs(spec: mujoco.MjSpec, timestep: float) -> None:
         closure.solimp = np.array(CLOSURE_SOLIMP)
 
 
-def _stick(spec: mujoco.MjSpec, timestep: float) -> None:
+def _stick(
+    spec: mujoco.MjSpec, fidelity: Fidelity, parameters: ParameterTable, timestep: float
+) -> None:
     """Stiff dry friction in cylinders and arm joints; without friction it makes no constraint."""
-    slides = [f"leg{i}/slide" for i in range(1, LEGS + 1)]
-    for name in (*slides, *(f"arm/{joint}" for joint in JOINTS)):
-        joint = spec.joint(name)
-        joint.solref_friction = np.array([2.0 * timestep, 1.0])
-        joint.solimp_friction = np.array(FRICTION_SOLIMP)
+    friction = parameters.array("leg.dry_friction")
+    rubbing = [spec.joint(f"arm/{joint}") for joint in JOINTS]
+    for i in range(LEGS):
+        full = fidelity is Fidelity.FULL
+        rod = spec.joint(f"leg{i + 1}/slide") if full else spec.tendon(f"leg{i + 1}")
+        rod.frictionloss = friction[i]
+        rubbing.append(rod)
+    for part in rubbing:
+        part.solref_friction = np.array([2.0 * timestep, 1.0])
+        part.solimp_friction = np.array(FRICTION_SOLIMP)
 
 
-def _actuators_and_sensors(spec: mujoco.MjSpec) -> None:
-    joint = mujoco.mjtTrn.mjTRN_JOINT
+def _actuators_and_sensors(spec: mujoco.MjSpec, fidelity: Fidelity) -> None:
+    joint, tendon = mujoco.mjtTrn.mjTRN_JOINT, mujoco.mjtTrn.mjTRN_TENDON
     for i in range(1, LEGS + 1):
-        spec.add_actuator(name=f"leg{i}", target=f"leg{i}/slide", trntype=joint).set_to_motor()
+        rod = (f"leg{i}/slide", joint) if fidelity is Fidelity.FULL else (f"leg{i}", tendon)
+        spec.add_actuator(name=f"leg{i}", target=rod[0], trntype=rod[1]).set_to_motor()
     for name in JOINTS:
         spec.add_actuator(name=name, target=f"arm/{name}", trntype=joint).set_to_motor()
     for name, kind in (

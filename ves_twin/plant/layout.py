@@ -9,15 +9,23 @@ import numpy as np
 
 from ves_twin.plant.assembly import JOINTS
 from ves_twin.plant.parameters import LEGS
-from ves_twin.types import IntArray
+from ves_twin.types import FloatArray, IntArray
 
 
 @dataclass(frozen=True)
 class Layout:
-    """Indices into qpos, qvel, ctrl and sensordata of a compiled rig."""
+    """Indices into the arrays of a compiled rig.
 
-    slide_qpos: IntArray
-    slide_dof: IntArray
+    A rod's travel is a joint coordinate in `full`, and the length of a tendon less its length at
+    home in `fast`; `slide_at`, `speed_at` and `slide_home` are indices into the arrays that
+    `slide_arrays` gives, and what to take off. The other fields are indices into qpos, qvel, ctrl,
+    sensordata, sites and bodies.
+    """
+
+    slide_at: IntArray
+    speed_at: IntArray
+    slide_home: FloatArray
+    tendons: bool
     universal_qpos: IntArray
     bending_qpos: IntArray
     platform_qpos: int
@@ -35,16 +43,20 @@ class Layout:
     def of(model: mujoco.MjModel) -> Layout:
         """The layout of a model compiled from `assemble`."""
         legs = range(1, LEGS + 1)
-        slides = [model.joint(f"leg{i}/slide") for i in legs]
-        bends = [model.joint(f"leg{i}/bending_{axis}") for i in legs for axis in "xy"]
-        universals = [model.joint(f"leg{i}/universal_{axis}") for i in legs for axis in "xy"]
         arm = [model.joint(f"arm/{name}") for name in JOINTS]
         free = model.joint("platform/free")
+        tendons = model.ntendon > 0
+        slides = [] if tendons else [model.joint(f"leg{i}/slide") for i in legs]
+        bends = [] if tendons else [f"leg{i}/bending_{axis}" for i in legs for axis in "xy"]
+        universals = [] if tendons else [f"leg{i}/universal_{axis}" for i in legs for axis in "xy"]
+        lines = [model.tendon(f"leg{i}").id for i in legs] if tendons else []
         return Layout(
-            slide_qpos=_ints([j.qposadr[0] for j in slides]),
-            slide_dof=_ints([j.dofadr[0] for j in slides]),
-            universal_qpos=_ints([j.qposadr[0] for j in universals]),
-            bending_qpos=_ints([j.qposadr[0] for j in bends]),
+            slide_at=_ints(lines or [j.qposadr[0] for j in slides]),
+            speed_at=_ints(lines or [j.dofadr[0] for j in slides]),
+            slide_home=model.tendon_lengthspring[lines, 0] if tendons else np.zeros(LEGS),
+            tendons=tendons,
+            universal_qpos=_ints([model.joint(name).qposadr[0] for name in universals]),
+            bending_qpos=_ints([model.joint(name).qposadr[0] for name in bends]),
             platform_qpos=int(free.qposadr[0]),
             platform_dof=int(free.dofadr[0]),
             arm_qpos=_ints([j.qposadr[0] for j in arm]),
@@ -56,6 +68,21 @@ class Layout:
             sensor_body=int(model.body("sensor/sensor").id),
             top_site=int(model.site("platform/top").id),
         )
+
+    @property
+    def bends(self) -> int:
+        """Number of bending coordinates."""
+        return len(self.bending_qpos)
+
+    def slide_arrays(self, data: mujoco.MjData) -> tuple[FloatArray, FloatArray]:
+        """Live arrays that hold the rods' travel [m] and speed [m/s]."""
+        if self.tendons:
+            return data.ten_length, data.ten_velocity
+        return data.qpos, data.qvel
+
+    def slide(self, data: mujoco.MjData) -> FloatArray:
+        """Rod travel from home [m] (6,); in `fast` that of the last forward computation."""
+        return np.asarray(self.slide_arrays(data)[0][self.slide_at] - self.slide_home)
 
 
 def _ints(values: list[int]) -> IntArray:

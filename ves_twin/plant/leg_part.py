@@ -48,7 +48,6 @@ def leg_part(
     rod.pos = [0.0, 0.0, hinge]
     for name in ("universal_x", "universal_y"):
         spec.joint(name).damping = np.array([number("leg.joint_damping"), 0.0, 0.0])
-    spec.joint("slide").frictionloss = parameters.array("leg.dry_friction")[leg]
     for name in ("bending_x", "bending_y"):
         joint = spec.joint(name)
         joint.pos = [number("leg.bending_offset"), 0.0, 0.0]

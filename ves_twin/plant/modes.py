@@ -8,6 +8,7 @@ import mujoco
 import numpy as np
 
 from ves_twin.plant.assembly import JOINTS, assemble, compile_model
+from ves_twin.plant.fidelity import Fidelity
 from ves_twin.plant.hydraulics import Hydraulics, chamber_stiffness, fill_chambers
 from ves_twin.plant.layout import Layout
 from ves_twin.plant.parameters import LEGS
@@ -53,7 +54,8 @@ def structural_modes(
         highest: leave out modes above this [Hz].
 
     Returns:
-        Modes by rising frequency.
+        Modes by rising frequency. The fast rig has none below its oil and its servos, since its
+        legs do not bend.
 
     Source: thesis 5.2 (first modes 10 to 13 Hz, falling with leg extension).
     """
@@ -70,7 +72,7 @@ def structural_modes(
         frequency = abs(pole) / (2 * np.pi)
         if pole.imag > 1.0 and frequency < highest:
             energy = _spring_energy(model, vector[: model.nv])
-            share = float(np.sum(energy[bending]) / np.sum(energy))
+            share = float(np.sum(energy[bending]) / np.sum(energy)) if bending else 0.0
             modes.append(Mode(float(frequency), float(-pole.real / abs(pole)), share))
     return sorted(modes, key=lambda mode: mode.frequency)
 
@@ -81,11 +83,12 @@ def _resting(
     spec = assemble(plant, tick)
     array = plant.parameters.array
     oil_stiffness, oil_damping = _oil(plant, pose)
+    full = plant.fidelity is Fidelity.FULL
     for i in range(LEGS):
-        slide = spec.joint(f"leg{i + 1}/slide")
-        slide.stiffness = np.array([oil_stiffness[i], 0.0, 0.0])
-        slide.damping = np.array([oil_damping[i], 0.0, 0.0])
-        slide.frictionloss = 0.0  # a leg that sticks would have no mode
+        rod = spec.joint(f"leg{i + 1}/slide") if full else spec.tendon(f"leg{i + 1}")
+        rod.stiffness = np.array([oil_stiffness[i], 0.0, 0.0])
+        rod.damping = np.array([oil_damping[i], 0.0, 0.0])
+        rod.frictionloss = 0.0  # a leg that sticks would have no mode
     stiffness, damping = array("servo.stiffness"), array("servo.damping")
     for j, name in enumerate(JOINTS):
         joint = spec.joint(f"arm/{name}")
@@ -96,7 +99,11 @@ def _resting(
     layout = Layout.of(model)
     place_rig(data, layout, plant.geometry, pose, q)
     force = static_leg_forces(model, data, layout, plant.geometry, pose)
-    model.qpos_spring[layout.slide_qpos] = data.qpos[layout.slide_qpos] + force / oil_stiffness
+    unloaded = layout.slide(data) + layout.slide_home + force / oil_stiffness
+    if layout.tendons:
+        model.tendon_lengthspring[layout.slide_at] = unloaded[:, None]
+    else:
+        model.qpos_spring[layout.slide_at] = unloaded
     sag = data.qfrc_bias[layout.arm_dof] / stiffness
     model.qpos_spring[layout.arm_qpos] = q + sag
     mujoco.mj_step(model, data, round(SETTLE_SECONDS / tick))
@@ -120,6 +127,8 @@ def _oil(plant: Plant, pose: FloatArray) -> tuple[FloatArray, FloatArray]:
 
 
 def _bending_dofs(model: mujoco.MjModel) -> list[int]:
+    if model.ntendon:
+        return []
     return [
         int(model.joint(f"leg{i}/bending_{axis}").dofadr[0])
         for i in range(1, LEGS + 1)

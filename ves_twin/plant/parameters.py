@@ -20,7 +20,9 @@ SCHEMA = 1
 LEGS = 6
 """Legs of the platform."""
 
-HEAD_KEYS = frozenset({"schema", "name", "base", "hydraulic_model", "parameters", "effects"})
+HEAD_KEYS = frozenset(
+    {"schema", "name", "base", "hydraulic_model", "fidelity", "parameters", "effects"}
+)
 """Keys of a plant file beside its parameters."""
 
 _KEYS = {"value", "unit", "sd", "low", "high", "grade", "source", "each"}

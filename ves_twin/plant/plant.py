@@ -5,7 +5,6 @@ from __future__ import annotations
 import hashlib
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from enum import StrEnum
 from pathlib import Path
 
 import numpy as np
@@ -15,6 +14,7 @@ from ves_twin.effects.registry import parse_effects
 from ves_twin.errors import InvalidInputError, UnknownNameError
 from ves_twin.kinematics.puma560 import Puma560
 from ves_twin.kinematics.stewart import StewartGeometry
+from ves_twin.plant.fidelity import Fidelity, check_room
 from ves_twin.plant.hydraulics import Hydraulics
 from ves_twin.plant.parameters import (
     HEAD_KEYS,
@@ -29,12 +29,6 @@ NOMINAL = "ves2"
 
 MJCF_FILES = ("frame.xml", "leg.xml", "platform.xml", "sensor.xml", "puma560.xml")
 """The parts of the rig, each a file that opens on its own in any MuJoCo viewer."""
-
-
-class Fidelity(StrEnum):
-    """How much of the rig is modelled; the signals are the same."""
-
-    FULL = "full"
 
 
 @dataclass(frozen=True)
@@ -88,6 +82,7 @@ class Plant:
         if not isinstance(effects, Mapping):
             raise InvalidInputError(f"{path}: effects", effects, "a table of effects")
         plant = replace(plant, hydraulics=Hydraulics(form)).with_values(changes)
+        plant = plant.with_fidelity(str(content.get("fidelity", plant.fidelity)))
         return plant.extended(*parse_effects(effects))
 
     def with_values(self, values: Mapping[str, object]) -> Plant:
@@ -98,7 +93,27 @@ class Plant:
         """
         if not values:
             return self
-        return replace(self, parameters=self.parameters.with_values(flat(values)))
+        plant = replace(self, parameters=self.parameters.with_values(flat(values)))
+        return plant.with_fidelity(self.fidelity)
+
+    def with_fidelity(self, fidelity: str) -> Plant:
+        """The same rig modelled in more or less detail.
+
+        Args:
+            fidelity: "full" or "fast".
+
+        Raises:
+            UnknownNameError: no such fidelity.
+            InvalidInputError: a number differs from nominal, by value or by an effect, that this
+                fidelity has no room for.
+        """
+        if fidelity not in set(Fidelity):
+            raise UnknownNameError("fidelity", fidelity, set(Fidelity))
+        chosen = Fidelity(fidelity)
+        if chosen is not Fidelity.FULL:
+            nominal = Plant.load(NOMINAL).parameters
+            check_room(chosen, self.actual.differences(nominal))
+        return replace(self, fidelity=chosen)
 
     def extended(self, *effects: Effect) -> Plant:
         """The same plant with more effects; one of the same kind and target is replaced.
@@ -107,7 +122,7 @@ class Plant:
         """
         merged = {(e.kind, e.target): e for e in (*self.effects, *effects)}
         kept = tuple(merged[key] for key in sorted(merged) if not merged[key].neutral)
-        return replace(self, effects=kept)
+        return replace(self, effects=kept).with_fidelity(self.fidelity)
 
     @property
     def actual(self) -> ParameterTable:
@@ -144,8 +159,9 @@ class Plant:
 
     @property
     def base(self) -> str:
-        """The shipped plant of the same form of hydraulics, from which `changes` count."""
-        return NOMINAL if self.hydraulics is Hydraulics.LINEAR else f"{NOMINAL}_pressure"
+        """The shipped plant of the same hydraulics and fidelity, from which `changes` count."""
+        form = "" if self.hydraulics is Hydraulics.LINEAR else "_pressure"
+        return NOMINAL + form + ("" if self.fidelity is Fidelity.FULL else "_fast")
 
     def changes(self) -> dict[str, object]:
         """Values that differ from `base`: dotted name -> plain value."""

@@ -39,9 +39,11 @@ def place_rig(
     data.qpos[at : at + 3] = geometry.home + pose[:3]
     data.qpos[at + 3 : at + 7] = quaternion_from_angles(pose[3:])
     data.qpos[layout.arm_qpos] = q
+    if layout.tendons:
+        return
     data.qpos[layout.bending_qpos] = 0.0
     home = geometry.lengths(np.zeros(6))
-    data.qpos[layout.slide_qpos] = actual.lengths(pose) - home
+    data.qpos[layout.slide_at] = actual.lengths(pose) - home
     data.qpos[layout.universal_qpos] = universal_angles(geometry, pose, actual.top).ravel()
 
 
@@ -77,7 +79,10 @@ def static_leg_forces(
     geometry: StewartGeometry,
     pose: FloatArray,
 ) -> FloatArray:
-    """Cylinder forces (6,) [N] that hold the platform and its payload at rest, legs weightless."""
+    """Cylinder forces (6,) [N] that hold the platform and its payload at rest.
+
+    Legs with bodies count as weightless; the rods' masses of the fast rig are the platform's.
+    """
     mujoco.mj_forward(model, data)
     at = layout.platform_dof
     bias = data.qfrc_bias[at : at + 6].copy()

@@ -39,9 +39,12 @@ class DrawnRig:
 
     @staticmethod
     def of(info: RecordingInfo) -> DrawnRig:
-        """The rig that a recording names; the default one, with a note, if it is not found."""
+        """The rig that a recording names; the default one, with a note, if it is not found.
+
+        A fast rig is drawn with the legs of the full one, which it is the same machine as.
+        """
         plant, note = _plant_of(info)
-        model = compile_model(assemble(plant, DRAWING_STEP))
+        model = compile_model(assemble(plant.with_fidelity("full"), DRAWING_STEP))
         return DrawnRig(model, Layout.of(model), plant.geometry, note)
 
     @property

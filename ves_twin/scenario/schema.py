@@ -26,6 +26,9 @@ from ves_twin.scenario.motions import Motion
 
 LOG_CLOCKS = ("admittance", "leg", "tick")
 
+EMULATING = ("admittance", "micro_gravity")
+"""Modes that come with the twin and emulate a system."""
+
 
 class Run(Part):
     """How long and how finely.
@@ -44,8 +47,19 @@ class Run(Part):
     seed: Annotated[int, Field(ge=0, lt=2**63)] = 0
 
 
+class Busy(Part):
+    """From `start` on, for `duration`, each admittance cycle computes `extra` longer."""
+
+    start: Annotated[Seconds, Field(ge=0)]
+    duration: Annotated[Seconds, Field(gt=0)]
+    extra: Annotated[Seconds, Field(ge=0)]
+
+
 class Platform(Part):
-    """Operating mode and admittance clock; `start` is where the platform is released."""
+    """Operating mode and admittance clock; `start` is where the platform is released.
+
+    `busy` are times at which the computer of the admittance cycle needs longer than usual.
+    """
 
     mode: Annotated[str, named("mode", PLATFORM_CONTROLLERS)]
     rate: Annotated[Hertz, Field(ge=1, le=1000)] = 80.0
@@ -53,14 +67,16 @@ class Platform(Part):
     start: Pose = ZERO_POSE
     emulated: str | None = None
     motion: Motion | None = Field(default=None, discriminator="kind")
+    busy: tuple[Busy, ...] = ()
 
     @model_validator(mode="after")
     def _mode_has_what_it_needs(self) -> Self:
-        if self.mode != "position" and self.emulated is None:
+        emulates = self.mode in EMULATING  # a mode of an installed package may take both or none
+        if emulates and self.emulated is None:
             raise ValueError(f"mode '{self.mode}' needs platform.emulated, the system to emulate")
         if self.mode == "position" and self.emulated is not None:
             raise ValueError("mode 'position' emulates nothing; leave platform.emulated out")
-        if self.mode != "position" and self.motion is not None:
+        if emulates and self.motion is not None:
             raise ValueError(f"platform.motion is for mode 'position', not '{self.mode}'")
         return self
 
@@ -135,7 +151,7 @@ class Scenario(Part):
     @property
     def has_reference(self) -> bool:
         """Whether a zero-g reference exists to compare with."""
-        return self.platform.mode == "micro_gravity"
+        return self.platform.emulated is not None and self.platform.mode != "admittance"
 
     @staticmethod
     def load(name_or_path: str, changes: Mapping[str, object] | None = None) -> Scenario:

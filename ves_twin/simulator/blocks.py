@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import dataclasses
-
 import numpy as np
 
 from ves_twin.control import arm_servo, leg_loop
@@ -45,20 +43,22 @@ NOISE = np.dtype(
 DRIVE = np.dtype([("torque_gain", np.float64, 3), ("encoder_offset", np.float64, 3)])
 """torque_gain: torque applied per torque recorded; encoder_offset: reading less the angle [rad]."""
 
-_INDICES = [(f.name, np.int64, 1) for f in dataclasses.fields(Layout)]
-_WIDTHS = {
-    "slide_qpos": 6,
-    "slide_dof": 6,
-    "universal_qpos": 12,
-    "bending_qpos": 12,
-    "arm_qpos": 3,
-    "arm_dof": 3,
-    "leg_ctrl": 6,
-    "arm_ctrl": 3,
-}
 LAYOUT = np.dtype(
-    [(n, np.int64, _WIDTHS[n]) if n in _WIDTHS else (n, np.int64) for n, _, _ in _INDICES]
+    [
+        ("slide_at", np.int64, 6),
+        ("speed_at", np.int64, 6),
+        ("slide_home", np.float64, 6),
+        ("bends", np.int64),
+        ("bending_qpos", np.int64, 12),
+        ("platform_qpos", np.int64),
+        ("arm_qpos", np.int64, 3),
+        ("arm_dof", np.int64, 3),
+        ("leg_ctrl", np.int64, 6),
+        ("arm_ctrl", np.int64, 3),
+        ("wrench_sensor", np.int64),
+    ]
 )
+"""What the loop needs of `Layout`; of bending_qpos the first `bends` are used."""
 
 PARAMETERS = np.dtype(
     [
@@ -128,8 +128,9 @@ def parameter_block(
     p = block[0]
     for name in CLOCKS.names or ():
         p["clock"][name] = getattr(clock, name)
-    for f in dataclasses.fields(Layout):
-        p["layout"][f.name] = getattr(layout, f.name)
+    for name in set(LAYOUT.names or ()) - {"bending_qpos"}:
+        p["layout"][name] = getattr(layout, name)
+    p["layout"]["bending_qpos"][: layout.bends] = layout.bending_qpos
     p["home"]["position"] = plant.geometry.home
     p["limits"]["stroke"] = table.number("leg.stroke") / 2.0
     _fill_small_devices(p, table, plant)

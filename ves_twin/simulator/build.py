@@ -55,7 +55,7 @@ def build_computers(
         home=np.array(scenario.platform.home),
         emulated=emulated_of(scenario),
         motion=script.poses if script else _motion(scenario.platform),
-        subtract_gravity=scenario.platform.mode == "micro_gravity" and gravity.subtracts,
+        subtract_gravity=scenario.platform.mode != "admittance" and gravity.subtracts,
     )
     return Computers(
         belief=belief,
@@ -114,6 +114,9 @@ def agenda_of(scenario: Scenario) -> list[Event]:
     events = []
     if scenario.platform.emulated is not None:
         events.append(Event(0.0, "released", "the platform moves as the emulated base"))
+    for busy in scenario.platform.busy:
+        message = f"cycles take {busy.extra * 1e3:.3g} ms longer for {busy.duration:.3g} s"
+        events.append(Event(busy.start, "busy", message))
     for number, move in enumerate(scenario.arm.moves, 1):
         angles = ", ".join(f"{angle:.4g}" for angle in move.to)
         events.append(Event(move.start, "arm_move", f"move {number} to {angles} rad begins"))

@@ -66,19 +66,38 @@ class Clock:
 
 
 def overrun(
-    emulated: EmulatedSystem | None, clock: Clock, parameters: ParameterTable
+    scenario: Scenario,
+    emulated: EmulatedSystem | None,
+    clock: Clock,
+    parameters: ParameterTable,
+    begun: float | None = None,
 ) -> str | None:
-    """Why the interrupt would come before the cycle has ended, or None if it does not.
+    """Why the interrupt comes before a cycle has ended, or None if it does not.
+
+    Computing time delays nothing here: set-points count as sent at the interrupt, and a cycle that
+    takes longer than its period halts the run at the next one.
+
+    Args:
+        scenario: whose computer may be busy.
+        emulated: the system whose coupling sets the computing time; none takes no time.
+        clock: periods.
+        parameters: computing times of the plant.
+        begun: when the cycle began [s]; None for the usual one.
 
     Source: thesis 2.4.2 (an overrun halts the experiment); computing times assumed.
     """
-    if emulated is None:
-        return None
-    needed = float(parameters.array("clock.cycle_time")[_CYCLE_TIME[emulated.coupling]])
+    what, needed = "cycle", 0.0
+    if emulated is not None:
+        what = f"{emulated.coupling} cycle"
+        needed = float(parameters.array("clock.cycle_time")[_CYCLE_TIME[emulated.coupling]])
+    if begun is not None:
+        what += f" begun at {begun:.3f} s"
+        needed += sum(
+            busy.extra
+            for busy in scenario.platform.busy
+            if busy.start <= begun < busy.start + busy.duration
+        )
     period = clock.admittance * clock.tick
     if needed <= period:
         return None
-    return (
-        f"a {emulated.coupling} cycle takes {needed * 1e3:.1f} ms, the interrupt comes every"
-        f" {period * 1e3:.1f} ms"
-    )
+    return f"a {what} takes {needed * 1e3:.1f} ms, the interrupt comes every {period * 1e3:.1f} ms"

@@ -32,6 +32,10 @@ def _call(typing_context: Any, address: Any, model: Any, data: Any) -> Any:
     return signature, generate
 
 
+NO_CALL = 0
+"""Address of no function."""
+
+
 @compiled
 def call_engine(address: int, model: int, data: int) -> None:
     """Call a MuJoCo function f(mjModel*, mjData*) by its address."""

@@ -28,7 +28,7 @@ from ves_twin.simulator.codes import (
     WHITE,
     WRENCH_OUT_OF_RANGE,
 )
-from ves_twin.simulator.engine import call_engine
+from ves_twin.simulator.engine import NO_CALL, call_engine
 from ves_twin.types import Block, FloatArray, Record, SingleArray
 
 
@@ -67,18 +67,18 @@ def _read_truth(p: Record, s: Record, board: Record, qpos: FloatArray) -> None:
     for i in range(6):
         board.truth_wrench[i] = s.sensor.true[i]
         board.truth_leg_force[i] = s.rod_force[i]
-    for i in range(12):
+    for i in range(p.layout.bends):
         board.truth_leg_bending[i] = qpos[p.layout.bending_qpos[i]]
 
 
 @compiled
 def _push_legs(
-    p: Record, s: Record, qpos: FloatArray, qvel: FloatArray, ctrl: FloatArray, step: float
+    p: Record, s: Record, slides: FloatArray, speeds: FloatArray, ctrl: FloatArray, step: float
 ) -> None:
     work = s.work
     for i in range(6):
-        work.slide[i] = qpos[p.layout.slide_qpos[i]]
-        work.speed[i] = qvel[p.layout.slide_dof[i]]
+        work.slide[i] = slides[p.layout.slide_at[i]] - p.layout.slide_home[i]
+        work.speed[i] = speeds[p.layout.speed_at[i]]
     move_spool(p.valve, s.valve, s.current, step)
     spool, force = s.valve.mean, s.rod_force
     if p.hydraulics == PRESSURE_FORM:
@@ -95,11 +95,11 @@ def _push_legs(
 @compiled
 def _read_and_command(
     p: Record, s: Record, board: Record, tick: int, qpos: FloatArray, qvel: FloatArray,
-    ctrl: FloatArray, fast: SingleArray, slow: SingleArray,
+    slides: FloatArray, ctrl: FloatArray, fast: SingleArray, slow: SingleArray,
 ) -> None:  # fmt: skip
     """Transducers, gauge, arm servo, and the leg loop and amplifiers when their clocks strike."""
     for i in range(6):
-        s.work.slide[i] = qpos[p.layout.slide_qpos[i]]
+        s.work.slide[i] = slides[p.layout.slide_at[i]] - p.layout.slide_home[i]
     read_lengths(p.transducer, s.work.slide, fast[LENGTH:], board.leg_length)
     board.supply_pressure[0] = s.supply.manifold + p.noise.pressure * slow[PRESSURE]
     _drive_arm(p, s, board, tick, qpos, qvel, ctrl, slow)
@@ -112,15 +112,18 @@ def _read_and_command(
 
 @compiled
 def _move_rig(
-    p: Record, s: Record, time: float, mj_step: int, model: int, data: int, qpos: FloatArray,
-    qvel: FloatArray, ctrl: FloatArray, sensordata: FloatArray, fast: SingleArray,
+    p: Record, s: Record, time: float, mj_step: int, mj_next: int, model: int, data: int,
+    slides: FloatArray, speeds: FloatArray, ctrl: FloatArray, sensordata: FloatArray,
+    fast: SingleArray,
 ) -> bool:  # fmt: skip
     """The physics of one tick, and the force sensor's sample of its start."""
     inside = True
     step = p.clock.tick / p.clock.substeps
     for k in range(p.clock.substeps):
-        _push_legs(p, s, qpos, qvel, ctrl, step)
+        _push_legs(p, s, slides, speeds, ctrl, step)
         call_engine(mj_step, model, data)
+        if mj_next != NO_CALL:
+            call_engine(mj_next, model, data)
         if k == 0:  # later sub-steps carry the forces of later instants
             for i in range(6):
                 s.work.wrench[i] = -sensordata[p.layout.wrench_sensor + i]
@@ -129,9 +132,9 @@ def _move_rig(
 
 
 @compiled
-def _verdict(p: Record, qpos: FloatArray, inside: bool) -> int:
+def _verdict(p: Record, qpos: FloatArray, slides: FloatArray, inside: bool) -> int:
     for i in range(6):
-        travel = qpos[p.layout.slide_qpos[i]]
+        travel = slides[p.layout.slide_at[i]] - p.layout.slide_home[i]
         if not abs(travel) < HUGE:
             return NOT_FINITE
         if abs(travel) > p.limits.stroke:
@@ -147,10 +150,13 @@ def run_ticks(
     start: int,
     count: int,
     mj_step: int,
+    mj_next: int,
     model: int,
     data: int,
     qpos: FloatArray,
     qvel: FloatArray,
+    slides: FloatArray,
+    speeds: FloatArray,
     ctrl: FloatArray,
     sensordata: FloatArray,
     parameters: Block,
@@ -170,11 +176,14 @@ def run_ticks(
     Args:
         start: first tick, negative while settling; nothing is logged before 0.
         count: how many ticks, not beyond the next admittance cycle.
-        mj_step: address of mj_step.
+        mj_step: address of the function that advances the physics by a step.
+        mj_next: address of one that is called after it, or NO_CALL.
         model: address of mjModel.
         data: address of mjData.
         qpos: live view of mjData.
         qvel: live view of mjData.
+        slides: live view of mjData that holds the rods' travel, see `Layout`.
+        speeds: the same for the rods' speed.
         ctrl: live view of mjData.
         sensordata: live view of mjData.
         parameters: PARAMETERS (1,).
@@ -196,18 +205,18 @@ def run_ticks(
         fast, slow = fast_normal[:, n], slow_normal[:, (start % SLOW + n) // SLOW]
         if tick % SLOW == 0:
             wander_on(p.sensor, s.sensor, slow[WANDER:])
-        _read_and_command(p, s, b, tick, qpos, qvel, ctrl, fast, slow)
+        _read_and_command(p, s, b, tick, qpos, qvel, slides, ctrl, fast, slow)
         if tick >= 0 and tick % p.clock.log == 0:
             _read_truth(p, s, b, qpos)
             log[logged, 0] = time
             log[logged, 1:] = row
             logged += 1
         inside = _move_rig(
-            p, s, time, mj_step, model, data, qpos, qvel, ctrl, sensordata, fast
+            p, s, time, mj_step, mj_next, model, data, slides, speeds, ctrl, sensordata, fast
         )  # fmt: skip
         for i in range(6):
             b.sensor_wrench[i] = s.sensor.reading[i]
-        code = _verdict(p, qpos, inside)
+        code = _verdict(p, qpos, slides, inside)
         if code != RUNNING:
             return code, n + 1, logged
     return RUNNING, count, logged

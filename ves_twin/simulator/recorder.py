@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Set
 from dataclasses import dataclass
 from time import monotonic
 from typing import Protocol
@@ -92,6 +92,7 @@ class Recorder:
         guess: pose near the first row (6,).
         references: name of the signal -> reference, empty where there is nothing to emulate.
         sink: where rows go.
+        absent: signals that the rig does not have.
     """
 
     def __init__(
@@ -101,6 +102,7 @@ class Recorder:
         guess: FloatArray,
         references: Mapping[str, ZeroGravityReference],
         sink: Sink,
+        absent: Set[str] = frozenset(),
     ) -> None:
         self._clock = clock
         self._geometry = geometry
@@ -115,7 +117,8 @@ class Recorder:
         jacobian = pose_jacobian(guess, geometry.base, geometry.top, geometry.home)
         self._at = _Buffers(0, 0, guess.copy(), np.asarray(np.linalg.inv(jacobian)))
         self._flushed = monotonic()
-        self.names = tuple(n for n in SIGNALS if n not in (IDEAL, LEG_LAG) or n in references)
+        absent = {*absent, *({IDEAL, LEG_LAG} - set(references))}
+        self.names = tuple(name for name in SIGNALS if name not in absent)
 
     @property
     def rows(self) -> int:

@@ -93,7 +93,7 @@ def replay_scenario(recording: Recording, scenario: Scenario | None = None) -> S
         )
     period = float(np.median(np.diff(recording.time))) if len(recording) > 1 else 1.0
     content["run"] |= {"duration": float(recording.time[-1]) + 0.5 * period, "noise": False}
-    content["platform"] |= {"mode": "position", "emulated": None, "motion": None}
+    content["platform"] |= {"mode": "position", "emulated": None, "motion": None, "busy": []}
     content["gravity"]["method"] = "none"
     content |= {"parameters": {}, "effects": {}}
     return Scenario.model_validate(content)

@@ -16,7 +16,7 @@ from ves_twin.scenario.schema import Legs
 from ves_twin.simulator.blocks import STATE, parameter_block
 from ves_twin.simulator.board import Board
 from ves_twin.simulator.clock import Clock
-from ves_twin.simulator.engine import address_of, handles
+from ves_twin.simulator.engine import NO_CALL, address_of, handles
 from ves_twin.simulator.loop import run_ticks
 from ves_twin.simulator.noise import NoiseStreams
 from ves_twin.types import Block, FloatArray
@@ -68,9 +68,14 @@ class Rig:
         self.board = Board()
         self.noise = noise
         self.tick = 0
-        self._step = address_of("mj_step")
-        self._handles = handles(self.model, self.data)
-        self._arrays = (self.data.qpos, self.data.qvel, self.data.ctrl, self.data.sensordata)
+        self._engine = (*_step_of(self.layout), *handles(self.model, self.data))
+        self._arrays = (
+            self.data.qpos,
+            self.data.qvel,
+            *self.layout.slide_arrays(self.data),
+            self.data.ctrl,
+            self.data.sensordata,
+        )
 
     @property
     def time(self) -> float:
@@ -91,8 +96,7 @@ class Rig:
         code, done, logged = run_ticks(
             self.tick,
             count,
-            self._step,
-            *self._handles,
+            *self._engine,
             *self._arrays,
             self.parameters,
             self.state,
@@ -117,3 +121,14 @@ class Rig:
         self.state[:] = snapshot.state
         self.board.block[:] = snapshot.board
         self.tick = snapshot.tick
+
+
+def _step_of(layout: Layout) -> tuple[int, int]:
+    """Addresses of the two functions that advance the physics by a step.
+
+    Tendon lengths belong to the last computed position, so `fast` ends a step with the position
+    stage of the next one: mj_step2, mj_step1 in place of mj_step, which is their sum.
+    """
+    if layout.tendons:
+        return address_of("mj_step2"), address_of("mj_step1")
+    return address_of("mj_step"), NO_CALL

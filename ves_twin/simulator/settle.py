@@ -76,7 +76,7 @@ def _start_states(rig: Rig, pose: FloatArray, q: FloatArray, believed: FloatArra
     geometry, layout, p, s = rig.plant.geometry, rig.layout, rig.parameters, rig.state
     place_rig(rig.data, layout, geometry, pose, q, joints_on_platform(rig.model))
     force = static_leg_forces(rig.model, rig.data, layout, geometry, pose)
-    slide = rig.data.qpos[layout.slide_qpos]
+    slide = layout.slide(rig.data)
     s["cylinder"]["column"] = slide + force / p["cylinder"]["stiffness"]
     s["supply"]["manifold"] = resting_supply(p[0]["supply"], p[0]["chambers"])
     supply = float(s["supply"]["manifold"][0])

@@ -80,6 +80,7 @@ class Simulator:
         self.outcome: Outcome | None = None
         self.events: list[Event] = []
         self._agenda = agenda_of(scenario)
+        self._emulated = emulated_of(scenario)
         clock = Clock.of(scenario, self.plant.parameters)
         self._end = clock.ticks(scenario.run.duration)
         belief = belief_of(scenario)
@@ -92,6 +93,7 @@ class Simulator:
             np.array(scenario.platform.start),
             build_references(scenario, self.plant, self.rig.parameters["servo"]),
             MemorySink() if sink is None else sink,
+            self.plant.fidelity.absent_signals,
         )
         self._settle()
 
@@ -166,9 +168,13 @@ class Simulator:
             self._left_limits(code)
             return
         self.events += settling_events(self.rig, self.scenario)
-        late = overrun(emulated_of(self.scenario), self.rig.clock, self.plant.parameters)
+        late = self._overrun(None)
         if late:
             self.end(Outcome.OVERRUN, late)
+
+    def _overrun(self, begun: float | None) -> str | None:
+        parameters = self.plant.parameters
+        return overrun(self.scenario, self._emulated, self.rig.clock, parameters, begun)
 
     def _left_limits(self, code: int) -> None:
         when = f"at {self.time:.3f} s" if self.rig.tick > 0 else "while settling"
@@ -181,7 +187,12 @@ class Simulator:
 
     def _interrupt(self) -> bool:
         """The clock interrupt of the computers; False if it ends the run."""
-        rig = self.rig
+        rig, period = self.rig, self.rig.clock.admittance
+        if self.scenario.platform.busy and rig.tick > 0:
+            late = self._overrun((rig.tick - period) * rig.clock.tick)
+            if late:
+                self.end(Outcome.OVERRUN, late)
+                return False
         outside = self.computers.cycle(rig.tick, rig.time)
         if outside:
             self.end(

@@ -1,0 +1,158 @@
+"""Installed packages add controllers by entry points; clashes and broken ones are one clear line."""
+
+import sys
+
+import numpy as np
+import pytest
+
+import ves_twin as vt
+from ves_twin.cli.main import main
+from ves_twin.control.registry import GRAVITY_COMPENSATIONS, PLATFORM_CONTROLLERS
+from ves_twin.errors import PluginError, UnknownNameError, VesTwinError
+
+SHORT = {"run.duration": 0.3, "run.settle": 0.3}
+HEAVE = '''
+import numpy as np
+from ves_twin.control.controller import PlatformController
+
+
+class Heave(PlatformController):
+    """Heaves by a centimetre with 1 Hz."""
+
+    def __init__(self, start):
+        self.start = start
+
+    @classmethod
+    def build(cls, task):
+        return cls(task.start)
+
+    def update(self, time, readings):
+        return self.start + np.array([0.0, 0.0, 0.01 * np.sin(2 * np.pi * time), 0.0, 0.0, 0.0])
+
+    def snapshot(self):
+        return None
+
+    def restore(self, snapshot):
+        pass
+
+
+class Unfinished(PlatformController):
+    pass
+
+
+number = 3
+'''
+
+
+@pytest.fixture
+def install(tmp_path, monkeypatch):
+    """Make a distribution importable: `install(package, {group: {name: target}}, module source)`."""
+
+    def build(package, groups, source=HEAVE):
+        site = tmp_path / package
+        info = site / f"{package}-1.2.dist-info"
+        info.mkdir(parents=True)
+        (info / "METADATA").write_text(f"Metadata-Version: 2.1\nName: {package}\nVersion: 1.2\n")
+        lines = []
+        for group, points in groups.items():
+            lines += [f"[{group}]", *(f"{name} = {target}" for name, target in points.items())]
+        (info / "entry_points.txt").write_text("\n".join(lines) + "\n")
+        (site / f"{package}.py").write_text(source)
+        monkeypatch.syspath_prepend(str(site))
+        monkeypatch.delitem(sys.modules, package, raising=False)
+
+    return build
+
+
+@pytest.fixture(autouse=True)
+def forget():
+    before = set(sys.modules)
+    yield
+    for name in set(sys.modules) - before:
+        if name.startswith("bobbing"):
+            del sys.modules[name]
+
+
+def heave_scenario(**changes):
+    return vt.Scenario.load("position_sine", {**SHORT, "platform.mode": "bobbing", **changes})
+
+
+def test_a_controller_of_an_installed_package_runs_a_scenario(install):
+    install("bobbing", {"ves_twin.controllers": {"bobbing": "bobbing:Heave"}})
+    assert "bobbing" in PLATFORM_CONTROLLERS
+    assert "bobbing" not in sys.modules  # loaded only when it is named
+    run = vt.simulate(heave_scenario())
+    expected = 0.01 * np.sin(2 * np.pi * run.time)[:, None] * np.eye(6)[2]
+    assert run.info.outcome == "completed"
+    np.testing.assert_allclose(run["platform.command"], expected, rtol=0, atol=1e-12)
+
+
+def test_such_a_controller_is_held_against_the_zero_g_reference_if_it_emulates(install):
+    install("bobbing", {"ves_twin.controllers": {"bobbing": "bobbing:Heave"}})
+    assert "reference.pose" not in vt.simulate(heave_scenario()).signals
+    run = vt.simulate(heave_scenario(**{"platform.emulated": "table_5_2"}))
+    assert "reference.pose" in run.signals
+
+
+def test_a_gravity_compensation_of_an_installed_package_is_found(install):
+    source = "from ves_twin.control.gravity import NoCompensation\nmake = lambda port: NoCompensation()\n"
+    install("bobbing", {"ves_twin.gravity": {"bobbing": "bobbing:make"}}, source)
+    assert not GRAVITY_COMPENSATIONS["bobbing"](None).subtracts
+
+
+def test_a_package_that_is_not_installed_is_an_unknown_mode():
+    with pytest.raises(VesTwinError, match="unknown mode 'bobbing'"):
+        heave_scenario()
+    with pytest.raises(UnknownNameError, match="did you mean 'position'"):
+        PLATFORM_CONTROLLERS["positon"]
+
+
+def test_built_in_names_need_no_package():
+    assert PLATFORM_CONTROLLERS.built_in == ("position", "admittance", "micro_gravity")
+    assert [n for n in PLATFORM_CONTROLLERS if n in PLATFORM_CONTROLLERS.built_in] == list(
+        PLATFORM_CONTROLLERS.built_in
+    )
+
+
+@pytest.mark.parametrize("name", ["position", "bobbing"])
+def test_a_name_that_two_sides_claim_is_refused(install, name):
+    install("bobbing", {"ves_twin.controllers": {name: "bobbing:Heave"}})
+    if name == "bobbing":
+        install("bobbing_too", {"ves_twin.controllers": {name: "bobbing_too:Heave"}})
+    with pytest.raises(PluginError, match=f"'{name}' is claimed by .* and by bobbing") as caught:
+        PLATFORM_CONTROLLERS[name]
+    assert "\n" not in str(caught.value)
+    assert list(PLATFORM_CONTROLLERS).count(name) == 1
+
+
+@pytest.mark.parametrize(
+    ("target", "source", "words"),
+    [
+        ("bobbing:Heave", "import no_such_module", "ModuleNotFoundError: No module named"),
+        ("bobbing:Heave", "def (", "SyntaxError"),
+        ("bobbing:Heave", "raise RuntimeError('two\\nlines')", "RuntimeError: two lines"),
+        ("bobbing:Nothing", HEAVE, "AttributeError"),
+        ("bobbing:number", HEAVE, "is not a class derived from PlatformController"),
+        ("bobbing:Unfinished", HEAVE, "lacks build, restore, snapshot, update"),
+    ],
+)
+def test_a_broken_plugin_is_one_clear_line(install, target, source, words):
+    install("bobbing", {"ves_twin.controllers": {"bobbing": target}}, source)
+    with pytest.raises(PluginError) as caught:
+        vt.Simulator(None, heave_scenario())
+    assert words in str(caught.value)
+    assert "bobbing 1.2" in str(caught.value)
+    assert "\n" not in str(caught.value)
+
+
+def test_the_command_line_ends_with_code_2_on_a_broken_plugin(install, tmp_path, capsys):
+    install("bobbing", {"ves_twin.controllers": {"bobbing": "bobbing:number"}})
+    words = ["run", "position_sine", "--set", "platform.mode=bobbing", "--out", str(tmp_path)]
+    assert main(words) == 2
+    assert capsys.readouterr().err.count("\n") == 1
+
+
+def test_info_names_the_packages_without_loading_them(install, capsys):
+    install("bobbing", {"ves_twin.controllers": {"bobbing": "bobbing:Heave"}}, "def (")
+    assert main(["info"]) == 0
+    assert "ves_twin.controllers: bobbing  bobbing 1.2 (bobbing:Heave)" in capsys.readouterr().out
