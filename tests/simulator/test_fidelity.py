@@ -22,6 +22,8 @@ AGREEMENT = {
     "beam_vertical_truth": (0.42, 0.085, 60.0, 33.0),
     "bent_beam_truth": (0.72, 0.09, 8.4, 4.5),
     "free_float": (0.75, 2.5, 2.4, 1.2),
+    "identify_fast": (0.048, 0.19, 23.0, 15.6),
+    "identify_slow": (0.022, 0.04, 9.1, 6.1),
     "position_sine": (0.021, 0.021, 9.0, 5.5),
     "release_table_5_2": (0.31, 0.81, 17.0, 11.2),
 }
