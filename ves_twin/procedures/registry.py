@@ -8,6 +8,8 @@ from pydantic import ValidationError
 
 from ves_twin.errors import UnknownNameError
 from ves_twin.procedures.coupling_map_paths import CouplingMapPaths
+from ves_twin.procedures.frequency_response import FrequencyResponseTest
+from ves_twin.procedures.positioning_error import PositioningErrorTest
 from ves_twin.procedures.pped_release import PpedRelease
 from ves_twin.procedures.procedure import Procedure
 from ves_twin.scenario.load import refusal, scenario_content
@@ -15,6 +17,8 @@ from ves_twin.scenario.load import refusal, scenario_content
 PROCEDURES: dict[str, type[Procedure]] = {
     "coupling_map_paths": CouplingMapPaths,
     "pped_release": PpedRelease,
+    "frequency_response": FrequencyResponseTest,
+    "positioning_error": PositioningErrorTest,
 }
 """Value of `procedure` in a file -> class."""
 

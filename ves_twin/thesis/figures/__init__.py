@@ -1,1 +1,1 @@
-"""The thesis's figures, each drawn by one function."""
+"""figures: the figures of the thesis, drawn anew, each with the numbers it stands for."""

@@ -1,25 +1,32 @@
-"""FigureResult: a figure that was drawn, and the numbers in it."""
+"""FigureResult: a figure of the thesis as a picture and as numbers."""
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
+
+from ves_twin.plant.plant import Plant
 
 
 @dataclass(frozen=True)
 class FigureResult:
-    """One figure of the thesis, drawn anew.
+    """What drawing a figure gave.
 
     Attributes:
         id: for instance "fig-5-12".
-        title: what it shows.
-        png: where it was drawn.
-        numbers: what it says, by name with unit.
-        notes: what to know when looking at it.
+        title: the caption of the thesis, shortened.
+        png: the picture.
+        numbers: what the picture says, by name with its unit.
+        notes: what is assumed or does not hold.
     """
 
     id: str
     title: str
     png: Path
     numbers: dict[str, float]
-    notes: tuple[str, ...]
+    notes: tuple[str, ...] = ()
+
+
+DrawFigure = Callable[[Plant, Path, bool], FigureResult]
+"""(plant, folder, quick) -> result; quick measures fewer points."""

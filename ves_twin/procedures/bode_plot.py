@@ -1,0 +1,78 @@
+"""BodePlot: gain and phase over frequency, lines of models and points of measurements."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from ves_twin.linear.response import FrequencyResponse
+from ves_twin.procedures.sine_fit import MeasuredResponse
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+WIDTH, HEIGHT, DPI = 7.0, 5.2, 110
+"""Size of a picture [inch] and its resolution."""
+
+
+def new_figure(height: float = HEIGHT) -> Figure:
+    """An empty figure of its own, drawn without a display and without pyplot's global state."""
+    from matplotlib.backends.backend_agg import FigureCanvasAgg  # slow to import
+    from matplotlib.figure import Figure
+
+    figure = Figure(figsize=(WIDTH, height), layout="constrained")
+    FigureCanvasAgg(figure)
+    return figure
+
+
+def save_figure(figure: Figure, path: Path) -> Path:
+    """Write a figure as PNG."""
+    figure.savefig(path, dpi=DPI)
+    return path
+
+
+class BodePlot:
+    """Two axes, magnitude over phase.
+
+    Args:
+        title: line above the picture.
+    """
+
+    def __init__(self, title: str) -> None:
+        self.figure = new_figure()
+        self._gain, self._phase = self.figure.subplots(2, 1, sharex=True)
+        self._gain.set_title(title, fontsize=10)
+        self._gain.set_ylabel("gain [dB]")
+        self._phase.set_ylabel("phase [deg]")
+        self._phase.set_xlabel("frequency [Hz]")
+        for axes in (self._gain, self._phase):
+            axes.set_xscale("log")
+            axes.grid(which="both", alpha=0.3)
+
+    def line(self, response: FrequencyResponse, label: str, colour: str, style: str = "-") -> None:
+        """Draw a model."""
+        self._gain.plot(response.frequency, response.decibel, style, color=colour, lw=1.2)
+        self._phase.plot(
+            response.frequency, response.degrees, style, color=colour, lw=1.2, label=label
+        )
+
+    def points(
+        self, response: MeasuredResponse, label: str | None, colour: str, marker: str = "o"
+    ) -> None:
+        """Draw a measurement."""
+        look = {"color": colour, "ls": "none", "ms": 4.5, "mfc": "none", "marker": marker}
+        self._gain.plot(response.frequency, response.decibel, **look)
+        self._phase.plot(response.frequency, response.degrees, label=label, **look)
+
+    def mark(self, decibel: float) -> None:
+        """A thin line at a level of the gain."""
+        self._gain.axhline(decibel, color="0.5", lw=0.8, ls=":")
+
+    def limit(self, lowest: float, highest: float) -> None:
+        """Bounds of the gain [dB]."""
+        self._gain.set_ylim(lowest, highest)
+
+    def save(self, path: Path) -> Path:
+        """Write the picture as PNG."""
+        self._phase.legend(fontsize=7, loc="lower left")
+        return save_figure(self.figure, path)
