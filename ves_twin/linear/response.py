@@ -102,7 +102,7 @@ def bandwidth(system: StateSpace) -> float:
         return float(np.abs(system(np.exp(2j * np.pi * hertz * system.dt)))) - HALF_POWER
 
     grid = np.geomspace(0.01, 0.45 / system.dt, 2000)
-    below = np.flatnonzero([excess(f) < 0.0 for f in grid])
+    below = np.flatnonzero(np.abs(frequency_response(system, grid).gain) < HALF_POWER)
     if not len(below) or below[0] == 0:
         return float("nan")
     return float(brentq(excess, grid[below[0] - 1], grid[below[0]]))

@@ -1,1 +1,1 @@
-"""figures: the figures of the thesis, drawn anew, each with the numbers it stands for."""
+"""The thesis's figures, each drawn by one function."""

@@ -20,7 +20,7 @@ from ves_twin.scenario.schema import Legs
 from ves_twin.thesis.figures.figure import FigureResult
 
 FREQUENCIES = (0.5, 1.0, 2.0, 3.0, 4.0, 5.0, 7.0, 10.0, 15.0, 20.0)
-QUICK = (1.0, 3.0, 5.0)
+QUICK = (1.0, 5.0)
 DENSE = np.geomspace(0.2, 40.0, 400)
 COMPARED_UP_TO = 5.0
 """Linear and measured responses are compared up to here [Hz]."""
@@ -54,7 +54,9 @@ def draw_figure_5_2(plant: Plant, folder: Path, quick: bool) -> FigureResult:
     """Closed loop without filter at low and high gain, at the leg cycle of that time."""
     ticks = {"clock.leg_ticks": OLD_LEG_TICKS}
     cases = {f"K1 = {k1}": LegSettings.of_counts(k1, 0, FilterPlace.NONE) for k1 in (LOW, HIGH)}
-    plot = BodePlot("Figure 5-2: original closed loop, no filter (lines: linear model)")
+    plot = BodePlot(
+        "Figure 5-2: closed loop without filter (lines: linear; o, x: simulation, both hydraulics)"
+    )
     numbers: dict[str, float] = {}
     for n, (name, settings) in enumerate(cases.items()):
         _draw_case(plot, plant.with_values(ticks), name, settings, f"C{n}", quick, numbers)
@@ -71,7 +73,9 @@ def draw_figure_5_2(plant: Plant, folder: Path, quick: bool) -> FigureResult:
 
 def draw_figure_5_12(plant: Plant, folder: Path, quick: bool) -> FigureResult:
     """Closed loop with the filter on the error, K2 = 30000, K1 from 3000 to 30000."""
-    plot = BodePlot("Figure 5-12: closed loop with filter on the error, K2 = 30000")
+    plot = BodePlot(
+        "Figure 5-12: filter on the error, K2 = 30000 (lines: linear; o, x: simulation)"
+    )
     numbers: dict[str, float] = {}
     for n, k1 in enumerate(GAINS):
         settings = LegSettings.of_counts(k1, K2, FilterPlace.ERROR)

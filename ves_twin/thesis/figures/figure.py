@@ -1,32 +1,25 @@
-"""FigureResult: a figure of the thesis as a picture and as numbers."""
+"""FigureResult: a figure that was drawn, and the numbers in it."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
-
-from ves_twin.plant.plant import Plant
 
 
 @dataclass(frozen=True)
 class FigureResult:
-    """What drawing a figure gave.
+    """One figure of the thesis, drawn anew.
 
     Attributes:
         id: for instance "fig-5-12".
-        title: the caption of the thesis, shortened.
-        png: the picture.
-        numbers: what the picture says, by name with its unit.
-        notes: what is assumed or does not hold.
+        title: what it shows.
+        png: where it was drawn.
+        numbers: what it says, by name with unit.
+        notes: what to know when looking at it.
     """
 
     id: str
     title: str
     png: Path
     numbers: dict[str, float]
-    notes: tuple[str, ...] = ()
-
-
-DrawFigure = Callable[[Plant, Path, bool], FigureResult]
-"""(plant, folder, quick) -> result; quick measures fewer points."""
+    notes: tuple[str, ...]

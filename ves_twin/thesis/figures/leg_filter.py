@@ -41,7 +41,7 @@ def draw_figure_5_5(plant: Plant, folder: Path, quick: bool) -> FigureResult:
     """The filter as designed, and as measured through the running leg controllers."""
     frequency = QUICK if quick else FREQUENCIES
     settings = LegSettings.of_counts(HIGH, 0, FilterPlace.ERROR)
-    sweep = sweep_platform(plant, legs_of(settings), frequency, SweepOptions(held=True))
+    sweep = sweep_platform(plant, legs_of(settings), frequency, SweepOptions(periods=6, held=True))
     system = section(plant.parameters)
     model = frequency_response(system, np.array(frequency))
     plot = BodePlot("Figure 5-5: leg filter, designed and measured with the platform held")

@@ -67,7 +67,7 @@ def _draw(plant: Plant, folder: Path, quick: bool, name: str, place: FilterPlace
     axes.set_xlabel("real part [1/s]")
     axes.set_ylabel("imaginary part [rad/s]")
     axes.grid(alpha=0.3)
-    axes.legend(fontsize=7, loc="upper left")
+    axes.legend(fontsize=7, loc="center left")
     axes.set_title(f"Figure {name[4:]}: poles in heave, filter on {place.value}", fontsize=10)
     png = save_figure(figure, folder / f"{name}.png")
     note = "model of 0.3 Hz and 5 % damping, K2 = 0; of the simulation the strongest pole"
