@@ -6,7 +6,7 @@ PYTHON ?= $(shell for p in python3.12 python3.11 python3 python; do \
 BIN := .venv/bin
 PIP := $(BIN)/python -m pip install --quiet --disable-pip-version-check
 
-.PHONY: demo test check fast types lint layers bench figures fidelity picture clean
+.PHONY: demo test check fast types lint layers bench figures fidelity scorecard picture clean
 
 demo: .venv/.run
 	$(BIN)/ves-twin run beam_horizontal_truth --out runs/demo
@@ -34,6 +34,10 @@ bench: .venv/.dev
 
 picture: .venv/.dev
 	$(BIN)/python benchmarks/picture.py docs/run.png
+
+scorecard: .venv/.run
+	$(BIN)/ves-twin reproduce --out runs/scorecard
+	cp runs/scorecard/thesis-scorecard.md docs/thesis-scorecard.md
 
 figures: .venv/.dev
 	$(BIN)/python -m pytest -n 0 --figures docs/figures.md \

@@ -10,10 +10,16 @@ from collections.abc import Sequence
 from typing import NoReturn
 
 from ves_twin import __version__
-from ves_twin.cli import info, run, scenarios, view
+from ves_twin.cli import info, reproduce, run, scenarios, view
 from ves_twin.errors import UnknownNameError, VesTwinError, one_line
 
-COMMANDS = {"scenarios": scenarios, "run": run, "view": view, "info": info}
+COMMANDS = {
+    "scenarios": scenarios,
+    "run": run,
+    "reproduce": reproduce,
+    "view": view,
+    "info": info,
+}
 """Name -> module with SUMMARY, add_arguments(parser) and execute(arguments) -> exit code."""
 
 DONE, BAD_INPUT, ENDED_EARLY, INTERRUPTED = 0, 2, 3, 130

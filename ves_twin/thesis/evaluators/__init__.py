@@ -1,0 +1,1 @@
+"""What the twin gives for each claim, a file per chapter."""

@@ -1,0 +1,120 @@
+"""LegResponse: frequency response of the leg loops, measured in the full simulation.
+
+The platform follows a small sine in Z under position control; the phasors of commanded length,
+measured length and valve command over whole periods give the loop closed and open.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ves_twin.thesis.context import Context
+from ves_twin.types import FloatArray
+
+AMPLITUDE = 1e-3
+"""Sine in Z [m]: small against the stroke, large against transducer counts."""
+
+FADE, PERIODS, SHORTEST = 0.5, 4, 1.0
+"""The sine grows over FADE s; the fit takes PERIODS periods, at least SHORTEST s."""
+
+HALF_POWER = 1.0 / np.sqrt(2.0)
+HIGHEST = 24.0
+"""Highest frequency tried [Hz], well below half the rate of the commands."""
+
+
+@dataclass(frozen=True)
+class LegSettings:
+    """Settings of the leg loops: gain [1/s], rate gain [1], what the section filters."""
+
+    gain: float
+    rate_gain: float = 0.0
+    filter: str = "none"
+
+
+@dataclass(frozen=True)
+class LegResponse:
+    """Response at one frequency, mean of the six legs.
+
+    Attributes:
+        frequency: of the sine [Hz].
+        closed: measured length over commanded length.
+        opened: measured length over valve command [m].
+        command: command of the simulation.
+    """
+
+    frequency: float
+    closed: complex
+    opened: complex
+    command: str
+
+
+@dataclass(frozen=True)
+class Bandwidth:
+    """Lowest frequency [Hz] at which the closed loop is down by 3 dB; nan if there is none."""
+
+    frequency: float
+    runs: tuple[str, ...]
+
+
+def leg_response(context: Context, legs: LegSettings, frequency: float) -> LegResponse:
+    """Response of the legs at a frequency [Hz]."""
+    frequency = float(f"{frequency:.4g}")
+    length = max(SHORTEST, PERIODS / frequency)
+    duration = round(FADE + 0.5 + length, 4)  # half a second for the transient of the fade
+    changes: dict[str, object] = {
+        "run.duration": duration,
+        "run.settle": 0.5,
+        "run.noise": False,
+        "run.log": "leg",
+        "platform.motion.amplitude": [0.0, 0.0, AMPLITUDE, 0.0, 0.0, 0.0],
+        "platform.motion.frequency": [frequency] * 6,
+        "platform.motion.fade": FADE,
+        "legs.gain": legs.gain,
+        "legs.rate_gain": legs.rate_gain,
+        "legs.filter": legs.filter,
+    }
+    run = context.run("position_sine", changes)
+    last = run.recording.window(duration - round(length * frequency) / frequency, np.inf)
+    phasors = {
+        name: _phasors(last.time, last[name], frequency)
+        for name in ("leg.command", "leg.length", "valve.command")
+    }
+    closed = phasors["leg.length"] / phasors["leg.command"]
+    opened = phasors["leg.length"] / phasors["valve.command"]
+    return LegResponse(frequency, complex(np.mean(closed)), complex(np.mean(opened)), run.command)
+
+
+def bandwidth(context: Context, legs: LegSettings) -> Bandwidth:
+    """Bandwidth of the closed leg loop: octaves upwards, then secants on the log of frequency."""
+    low = leg_response(context, legs, 0.25)
+    runs = [low.command]
+    while True:
+        high = leg_response(context, legs, 2.0 * low.frequency)
+        runs.append(high.command)
+        if abs(high.closed) < HALF_POWER:
+            break
+        if high.frequency >= HIGHEST:
+            return Bandwidth(float("nan"), tuple(runs))
+        low = high
+    for _ in range(2 if context.quick else 4):
+        middle = leg_response(context, legs, _crossing(low, high))
+        runs.append(middle.command)
+        low, high = (middle, high) if abs(middle.closed) >= HALF_POWER else (low, middle)
+    return Bandwidth(_crossing(low, high), tuple(runs))
+
+
+def _crossing(low: LegResponse, high: LegResponse) -> float:
+    """Frequency of -3 dB between two points: linear in log magnitude over log frequency."""
+    above, below = (np.log(abs(r.closed) / HALF_POWER) for r in (low, high))
+    share = above / (above - below)
+    return float(low.frequency * (high.frequency / low.frequency) ** share)
+
+
+def _phasors(time: FloatArray, values: FloatArray, frequency: float) -> np.ndarray:
+    """Complex amplitude of each column by least squares on sine, cosine, mean and trend."""
+    angle = 2.0 * np.pi * frequency * time
+    basis = np.column_stack([np.cos(angle), np.sin(angle), np.ones_like(time), time - time[0]])
+    fit, *_ = np.linalg.lstsq(basis, values, rcond=None)
+    return np.asarray(fit[0] - 1j * fit[1])
