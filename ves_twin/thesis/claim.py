@@ -73,13 +73,16 @@ class Claim:
         return self.kind is not Kind.INPUT and not self.calibrated_on
 
 
-def load_claims() -> dict[str, Claim]:
+def load_claims(name_or_path: str = "claims") -> dict[str, Claim]:
     """Every claim by id, in the order of the thesis.
+
+    Args:
+        name_or_path: a file of models/thesis/, or a path to one.
 
     Raises:
         VesTwinError: the file is missing, or holds something that is no claim.
     """
-    path = find_resource("claims file", "models/thesis", "claims")
+    path = find_resource("claims file", "models/thesis", name_or_path)
     content, _ = read_toml("claims file", path)
     check_schema(content, path, SCHEMA)
     return {name: _claim(name, entry, path) for name, entry in content.items() if name != "schema"}

@@ -123,13 +123,13 @@ def _chapter(card: Scorecard, chapter: str) -> list[str]:
             lines.append(f"- {verdict.value.capitalize()}: {same}: {note}.")
     if lines[-1]:
         lines.append("")
-    return lines + _folded_inputs([row for row in rows if _is_input(row) and row.values])
+    return lines + _folded_inputs([row for row in rows if _is_input(row) and value_words(row)])
 
 
 def _folded_inputs(rows: list[Row]) -> list[str]:
     if not rows:
         return []
-    title = f"<details><summary>{len(rows)} inputs: {_ids(rows)}</summary>"
+    title = f"<details><summary>Inputs: {_ids(rows)}</summary>"
     return [title, "", HEAD, *(_table_row(row) for row in rows), "", "</details>", ""]
 
 

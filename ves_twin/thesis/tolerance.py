@@ -24,6 +24,9 @@ class Comparison(StrEnum):
     EVENT = "event"
 
 
+_DEVIATIONS = (Comparison.EXACT, Comparison.ABSOLUTE, Comparison.RELATIVE)
+
+
 @dataclass(frozen=True)
 class Tolerance:
     """One requirement; limits are a single number for all values or one for each.
@@ -58,6 +61,8 @@ class Tolerance:
             return False
         bounds = self._bounds(np.asarray(expected, dtype=float))
         if bounds is None or any(b.size not in (1, found.size) for b in bounds):
+            return False
+        if self.kind in _DEVIATIONS and len(expected) != found.size:
             return False
         return bool(np.all(found >= bounds[0]) and np.all(found <= bounds[1]))
 

@@ -28,7 +28,7 @@ def predicted_words(row: Row) -> str:
 def thesis_words(claim: Claim) -> str:
     """The printed value with its unit, and what the errata make of it."""
     words = claim.printed
-    if claim.value and _single(claim.unit) and not words.endswith(claim.unit):
+    if _single(claim.unit) and words[-1].isdigit():
         words += f" {claim.unit}"
     if claim.corrected:
         right = "" if len(claim.corrected) > LONGEST else f" {_list(claim.corrected)}"
