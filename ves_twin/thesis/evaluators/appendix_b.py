@@ -7,10 +7,12 @@ from collections.abc import Mapping
 import mujoco
 import numpy as np
 
+from ves_twin.planning.puma import puma_chain
+from ves_twin.planning.virtual_manipulator import VirtualManipulator
 from ves_twin.plant.assembly import JOINTS, assemble_fixed_arm, compile_model
 from ves_twin.thesis.claim import Claim
 from ves_twin.thesis.context import Context
-from ves_twin.thesis.evaluation import Answer, Evaluation, NotBuilt
+from ves_twin.thesis.evaluation import Answer, Evaluation
 from ves_twin.types import FloatArray
 
 LINKS = ("link0", "link1", "link2", "link3")
@@ -82,12 +84,23 @@ def _jacobians(context: Context, claim: Claim) -> Evaluation:
     return Evaluation((worst,), note="tip, 50 poses; minus signs lost in the print (E-29)")
 
 
+def _virtual(context: Context, claim: Claim) -> Evaluation:
+    chain = puma_chain(context.plant)
+    frames = context.plant.arm.transforms(np.zeros(3))[:, :3, :3]
+    to_tip, to_base = (
+        make(chain).links for make in (VirtualManipulator.to_endpoint, VirtualManipulator.to_base)
+    )
+    values = (to_tip[0, 2], (frames[0].T @ to_tip[1])[2], (frames[2].T @ to_base[3])[0])
+    note = "body-consistent lengths: R1 = d1 - r0z = 0.389 m, and 93.7 kg (E-41)"
+    return Evaluation(tuple(map(float, values)), note=note)
+
+
 APPENDIX_B: Mapping[str, Answer] = {
     "C107": _lengths,
     "C108": _masses,
     "C109": _centres,
     "C110": _inertias,
     "C111": _jacobians,
-    "C112": NotBuilt("the virtual manipulator (B.5, B.6)"),
+    "C112": _virtual,
 }
 """Claim -> answer."""

@@ -116,7 +116,7 @@ def _overrun(context: Context, claim: Claim) -> Evaluation:
 
 
 def _terms(context: Context, claim: Claim) -> Evaluation:
-    phi, gamma = EmulatedSystem.load("beam_horizontal_thesis").discretise(1.0 / 80.0)
+    phi, gamma = EmulatedSystem.load("beam_bent_thesis").discretise(1.0 / 80.0)
     full = np.hstack([phi, gamma])
     state = np.random.default_rng(2).normal(size=18)
     sparse = sum(full[:, j] * state[j] * (full[:, j] != 0.0) for j in range(18))
@@ -125,7 +125,8 @@ def _terms(context: Context, claim: Claim) -> Evaluation:
     return Evaluation(
         (share,),
         holds=same,
-        note="straight beam, Phi and Gamma: its two bending planes couple only X-Y pairs of axes",
+        note="bent beam, Phi and Gamma; without the zeros the step is the same; a straight beam"
+        " uses 28 %",
     )
 
 
