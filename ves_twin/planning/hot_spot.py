@@ -17,7 +17,7 @@ from ves_twin.planning.timed_path import rounded
 from ves_twin.types import FloatArray
 
 REACH = 3
-"""Steps of the grid go up to this many cells along each axis: headings 16 deg apart or less."""
+"""A step goes up to this many cells along each axis: headings in a plane 18 deg apart or less."""
 
 
 def hot_spot_path(
