@@ -87,7 +87,7 @@ def test_a_figure_is_drawn_with_its_numbers(capsys, tmp_path, one_figure):
     ("arguments", "says"),
     [
         (["C0722"], "did you mean 'C072'"),
-        (["fig-5-98"], "did you mean 'fig-5-99'"),
+        (["fig-5-999"], "did you mean 'fig-5-99'"),
         (["C072", "--plant", "ves3"], "did you mean 'ves2'"),
         (["--models", "right"], "thesis"),
         (["--qick"], "did you mean '--quick'"),

@@ -38,7 +38,7 @@ def heave_cosines(plant: Plant) -> FloatArray:
     return np.asarray(plant.geometry.jacobian(np.zeros(6))[:, 2])
 
 
-def hydraulic_stage(plant: Plant, load: float) -> StateSpace:
+def hydraulic_stage(plant: Plant, load: float, leg: int = 0) -> StateSpace:
     """From the held amplifier output, -1 to 1, to rod length, speed and acceleration.
 
     The spool lags, x' = (c - x) / lag. In the linear form it moves an oil column,
@@ -49,6 +49,7 @@ def hydraulic_stage(plant: Plant, load: float) -> StateSpace:
     Args:
         plant: numbers, and the form of the hydraulics.
         load: mass that the leg moves [kg].
+        leg: whose valve and oil, 0 to 5; legs differ only where the plant says so.
 
     Returns:
         A continuous system with one input and outputs LENGTH [m], SPEED, ACCELERATION.
@@ -58,45 +59,47 @@ def hydraulic_stage(plant: Plant, load: float) -> StateSpace:
     from control import StateSpace  # slow to import
 
     build = _oil_column if plant.hydraulics is Hydraulics.LINEAR else _chambers
-    a, b = build(plant, load)
+    a, b = build(plant, load, leg)
     c = np.zeros((3, len(a)))
     c[LENGTH, -2] = c[SPEED, -1] = 1.0
     c[ACCELERATION] = a[-1]
     return StateSpace(a, b[:, None], c, np.zeros((3, 1)))
 
 
-def _oil_column(plant: Plant, load: float) -> tuple[FloatArray, FloatArray]:
+def _oil_column(plant: Plant, load: float, leg: int) -> tuple[FloatArray, FloatArray]:
     """States: spool, column, length, speed."""
-    number = plant.parameters.number
-    stiffness, damping = number("hydraulics.oil_stiffness"), number("hydraulics.oil_damping")
+    array = plant.parameters.array
+    stiffness, damping = (array(f"hydraulics.oil_{n}")[leg] for n in ("stiffness", "damping"))
     a, b = np.zeros((4, 4)), np.zeros(4)
-    _lag(a, b, number("hydraulics.valve_lag"))
-    a[1, 0] = number("hydraulics.full_speed")
+    _lag(a, b, array("hydraulics.valve_lag")[leg])
+    gain = array("hydraulics.valve_gain")[leg]
+    a[1, 0] = gain * plant.parameters.number("hydraulics.full_speed")
     a[2, 3] = 1.0
     a[3, 1:] = np.array([stiffness, -stiffness, -damping]) / load
     return a, b
 
 
-def _chambers(plant: Plant, load: float) -> tuple[FloatArray, FloatArray]:
+def _chambers(plant: Plant, load: float, leg: int) -> tuple[FloatArray, FloatArray]:
     """States: spool, pressures of piston and annulus, length, speed."""
-    number = plant.parameters.number
+    array = plant.parameters.array
     block = np.zeros(1, chambers.PARAMETERS)
     fill_chambers(block[0], plant.parameters)
     p = block[0]
     area = np.array(p["area"])
-    volume = p["dead_volume"] + area * p["half_stroke"]
-    leak, null = p["leakage"], p["conductance"]
-    flow = number("hydraulics.full_speed") * area * [1.0, -1.0]
+    volume = p["dead_volume"][leg] + area * p["half_stroke"]
+    leak, null = p["leakage"][leg], p["conductance"]
+    speed = array("hydraulics.valve_gain")[leg] * plant.parameters.number("hydraulics.full_speed")
+    flow = speed * area * [1.0, -1.0]
     pressures = np.array([[-null[0] - leak, leak], [leak, -null[1] - leak]])
     a, b = np.zeros((5, 5)), np.zeros(5)
-    _lag(a, b, number("hydraulics.valve_lag"))
-    per_volume = p["bulk_modulus"] / volume
+    _lag(a, b, array("hydraulics.valve_lag")[leg])
+    per_volume = p["bulk_modulus"][leg] / volume
     a[1:3, 0] = per_volume * flow
     a[1:3, 1:3] = per_volume[:, None] * pressures
     a[1:3, 4] = per_volume * area * [-1.0, 1.0]
     a[3, 4] = 1.0
     a[4, 1:3] = area * [1.0, -1.0] / load
-    a[4, 4] = -p["viscous"] / load
+    a[4, 4] = -p["viscous"][leg] / load
     return a, b
 
 
