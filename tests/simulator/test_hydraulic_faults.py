@@ -136,7 +136,7 @@ def test_droop_at_rest_is_that_of_the_flow_that_holds_the_load(droop, figure):
     flow += np.sum(conductance[0] * (chamber[:, 0] - shares[0] * pressure))
     assert np.all(force > 0.0)
     name = f"droop at rest, {droop:g} Pa s/m^3: lost pressure off the closed form"
-    figure(name, abs(1e7 - pressure - droop * flow) / (1e7 - pressure) * 100, 0.2, "%")
+    figure(name, abs(1e7 - pressure - droop * flow) / (1e7 - pressure) * 100, 0.01, "%")
 
 
 def test_the_recorded_supply_pressure_falls_while_the_legs_move():
