@@ -38,7 +38,7 @@ def score_sentence(card: Scorecard) -> str:
     """The headline in words."""
     score = card.score
     counts = ", ".join(
-        f"{score[v]} {'differ' if v is Verdict.DIFFERS else v}"
+        f"{score[v]} {'differ' if v is Verdict.DIFFERS and score[v] != 1 else v}"
         for v in Verdict
         if v is not Verdict.INPUT
     )

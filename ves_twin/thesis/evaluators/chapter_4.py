@@ -8,6 +8,7 @@ import mujoco
 import numpy as np
 
 from ves_twin.control.emulated import EmulatedSystem
+from ves_twin.errors import UnknownNameError
 from ves_twin.planning.flexible_base import (
     HIGH_GAINS,
     PPED_GAINS,
@@ -17,11 +18,15 @@ from ves_twin.planning.flexible_base import (
 from ves_twin.planning.pped import damping_estimator, strain_energy_integral
 from ves_twin.planning.puma import puma_chain
 from ves_twin.plant.assembly import JOINTS, assemble_free_arm, compile_model
+from ves_twin.procedures.coupling_map_paths import CouplingMapPaths
+from ves_twin.procedures.registry import load_procedure
 from ves_twin.thesis.claim import Claim
 from ves_twin.thesis.context import Context, Models
 from ves_twin.thesis.evaluation import Answer, Evaluation, NotBuilt
 
-PATHS = NotBuilt("the coupling map and its two joint paths (4.2)")
+PATHS = "coupling_map_paths"
+"""Procedure of the good and the bad path (4.2)."""
+
 POSE = (45.0, 0.0, 0.0)
 """Joint angles [deg] about which the PPED gains are chosen (4.3.2)."""
 
@@ -62,6 +67,19 @@ def _arm_on_base(context: Context, gains: JointGains) -> FlexibleBaseArm:
 
 def _both(context: Context) -> tuple[FlexibleBaseArm, FlexibleBaseArm]:
     return _arm_on_base(context, PPED_GAINS), _arm_on_base(context, HIGH_GAINS)
+
+
+def _paths(context: Context, claim: Claim) -> Evaluation:
+    procedure = load_procedure(PATHS)
+    if not isinstance(procedure, CouplingMapPaths):
+        raise UnknownNameError("procedure", PATHS, ())
+    runs = procedure.runs(context.plant)
+    good, bad = (float(np.max(runs[name].energy)) for name in ("good", "bad"))
+    return Evaluation(
+        (good / bad,),
+        note=f"peaks of {good:.2f} and {bad:.2f} J in zero gravity; the thesis's paths are lost",
+        runs=(f"ves-twin run {PATHS}",),
+    )
 
 
 def _pose(context: Context, claim: Claim) -> Evaluation:
@@ -112,7 +130,9 @@ def _energy(context: Context, claim: Claim) -> Evaluation:
 
 
 CHAPTER_4: Mapping[str, Answer] = {
-    **dict.fromkeys(("C057", "C058", "C059"), PATHS),
+    "C057": _paths,
+    "C058": NotBuilt("the good path on the rig without gravity compensation (4.2)"),
+    "C059": NotBuilt("the slope of the coupling lines on the faces of joint 1 (4.2)"),
     "C060": _base_mass,
     "C061": _order,
     "C062": _pose,
