@@ -25,7 +25,14 @@ def frozen(values) -> np.ndarray:
 def belief() -> Belief:
     plant = Plant.load("ves2")
     position = plant.parameters.array("sensor.position")
-    return Belief(plant.geometry, plant.arm, frozen(position), leg_travel=0.242, full_speed=0.5)
+    return Belief(
+        plant.geometry,
+        plant.arm,
+        frozen(position),
+        leg_travel=0.242,
+        full_speed=0.5,
+        gravity=plant.gravity_model,
+    )
 
 
 @pytest.fixture

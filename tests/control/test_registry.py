@@ -5,7 +5,7 @@ import copy
 import numpy as np
 import pytest
 
-from ves_twin.control.gravity import GravityCompensation
+from ves_twin.control.gravity import GravityCompensation, GravityTask
 from ves_twin.control.registry import GRAVITY_COMPENSATIONS, PLATFORM_CONTROLLERS
 
 PERIOD = 1.0 / 80.0
@@ -21,11 +21,19 @@ class KnownGravity:
 
 
 @pytest.fixture
-def series(readings):
-    """40 cycles of readings that look like a moving arm."""
+def series(readings, belief):
+    """40 cycles of readings that look like a moving arm on a moving platform."""
     rng = np.random.default_rng(14)
+    poses = np.cumsum(rng.normal(size=(40, 6)), axis=0) * 0.002
     wrenches = np.cumsum(rng.normal(size=(40, 6)), axis=0)
-    return [readings(wrench_in_sensor=w, arm_q=rng.normal(size=3)) for w in wrenches]
+    return [
+        readings(
+            wrench_in_sensor=wrench,
+            arm_q=rng.normal(size=3),
+            leg_length=belief.geometry.lengths(pose),
+        )
+        for wrench, pose in zip(wrenches, poses, strict=True)
+    ]
 
 
 @pytest.fixture(params=sorted(PLATFORM_CONTROLLERS))
@@ -34,8 +42,8 @@ def controller(request):
 
 
 @pytest.fixture(params=sorted(GRAVITY_COMPENSATIONS))
-def compensation(request) -> GravityCompensation:
-    return GRAVITY_COMPENSATIONS[request.param](KnownGravity())
+def compensation(request, belief) -> GravityCompensation:
+    return GRAVITY_COMPENSATIONS[request.param](GravityTask(belief, KnownGravity()))
 
 
 def commands(built, series, first=0):
@@ -114,6 +122,6 @@ def test_a_compensation_that_does_not_subtract_estimates_nothing(compensation, s
     assert compensation.subtracts == bool(np.any(estimates(compensation, series)))
 
 
-def test_the_truth_is_what_the_port_says(series):
-    truth = GRAVITY_COMPENSATIONS["truth"](KnownGravity())
+def test_the_truth_is_what_the_port_says(series, belief):
+    truth = GRAVITY_COMPENSATIONS["truth"](GravityTask(belief, KnownGravity()))
     np.testing.assert_array_equal(truth.wrench(0.0, series[0]), KnownGravity.wrench)

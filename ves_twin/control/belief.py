@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from ves_twin.gravity_model.gravity_model import GravityModel
 from ves_twin.kinematics.puma560 import Puma560
 from ves_twin.kinematics.stewart import StewartGeometry
 from ves_twin.types import FloatArray
@@ -19,6 +20,7 @@ class Belief:
         sensor_position: origin of the sensor frame s in the top frame t [m] (3,).
         leg_travel: travel from home that commands may use, stroke less margin [m].
         full_speed: rod speed at full valve opening [m/s].
+        gravity: M_total and P of the payload.
     """
 
     geometry: StewartGeometry
@@ -26,3 +28,4 @@ class Belief:
     sensor_position: FloatArray
     leg_travel: float
     full_speed: float
+    gravity: GravityModel

@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 import abc
+from dataclasses import dataclass
 from typing import Protocol, final
 
 import numpy as np
 
+from ves_twin.control.belief import Belief
 from ves_twin.control.readings import Readings
+from ves_twin.kinematics.wrenches import top_to_sensor
 from ves_twin.types import FloatArray
 
 
@@ -17,6 +20,14 @@ class TruthPort(Protocol):
     def gravity_in_sensor(self) -> FloatArray:
         """True gravity wrench of the payload, sensor axes [N, N m] (6,)."""
         ...
+
+
+@dataclass(frozen=True)
+class GravityTask:
+    """What a compensation is told when it is built: the belief; the truth for tests alone."""
+
+    belief: Belief
+    truth: TruthPort
 
 
 class GravityCompensation(abc.ABC):
@@ -68,3 +79,32 @@ class TruthCompensation(_Stateless):
     def wrench(self, time: float, readings: Readings) -> FloatArray:
         """The true gravity wrench, as the sensor's ideal axes would read it."""
         return self._port.gravity_in_sensor()
+
+
+@final
+class ModelCompensation(GravityCompensation):
+    """The Model Method: M_total and P with measured joints and measured platform orientation.
+
+    The orientation is that of the pose which has the measured leg lengths.
+
+    Source: thesis 3.4, eqs 3.3, 3.9, D.1.
+    """
+
+    def __init__(self, belief: Belief) -> None:
+        self._geometry, self._model = belief.geometry, belief.gravity
+        self._position = np.array(belief.sensor_position)
+        self._pose = np.zeros(6)
+
+    def wrench(self, time: float, readings: Readings) -> FloatArray:
+        """Predicted gravity wrench at the measured joints and platform pose."""
+        self._pose = self._geometry.pose(readings.leg_length, self._pose)
+        in_top = self._model.wrench_in_top(readings.arm_q[None, :], self._pose[None, 3:])
+        return np.asarray(top_to_sensor(in_top[0], self._position))
+
+    def snapshot(self) -> object:
+        """The pose from which the next solution starts (6,)."""
+        return self._pose.copy()
+
+    def restore(self, snapshot: object) -> None:
+        """Set the pose from which the next solution starts."""
+        self._pose = np.array(snapshot, dtype=float)

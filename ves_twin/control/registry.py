@@ -8,9 +8,10 @@ from ves_twin.control.admittance import AdmittanceController
 from ves_twin.control.controller import PlatformController
 from ves_twin.control.gravity import (
     GravityCompensation,
+    GravityTask,
+    ModelCompensation,
     NoCompensation,
     TruthCompensation,
-    TruthPort,
 )
 from ves_twin.control.position import PositionController
 from ves_twin.plugins import Registry, lacks
@@ -26,12 +27,13 @@ PLATFORM_CONTROLLERS: Registry[type[PlatformController]] = Registry(
 )
 """Operating mode (thesis 2.2) -> controller; the last two differ in the gravity estimate."""
 
-GRAVITY_COMPENSATIONS: Registry[Callable[[TruthPort], GravityCompensation]] = Registry(
+GRAVITY_COMPENSATIONS: Registry[Callable[[GravityTask], GravityCompensation]] = Registry(
     "ves_twin.gravity",
     {
-        "none": lambda port: NoCompensation(),
-        "truth": TruthCompensation,
+        "none": lambda task: NoCompensation(),
+        "truth": lambda task: TruthCompensation(task.truth),
+        "model": lambda task: ModelCompensation(task.belief),
     },
     lambda loaded: None if callable(loaded) else "cannot be called",
 )
-"""Method -> compensation, given the truth port that only the test method opens."""
+"""Method -> compensation, given the belief and the truth port that only the test method opens."""

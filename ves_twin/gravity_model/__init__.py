@@ -1,1 +1,1 @@
-"""gravity_model: the wrench that gravity puts on the sensor, and its identification."""
+"""gravity_model: the wrench of gravity for any serial arm, and its identification."""

@@ -6,6 +6,7 @@ import mujoco
 import numpy as np
 
 from ves_twin.errors import InvalidInputError, one_line
+from ves_twin.gravity_model.gravity_model import gravity_in_top
 from ves_twin.kinematics.stewart import StewartGeometry
 from ves_twin.plant.arm_part import arm_part
 from ves_twin.plant.fidelity import Fidelity
@@ -43,7 +44,7 @@ def assemble(plant: Plant, timestep: float) -> mujoco.MjSpec:
     spec = _part("frame.xml")
     spec.modelname = plant.name
     spec.option.timestep = timestep
-    spec.option.gravity = [0.0, 0.0, -parameters.number("gravity")]
+    spec.option.gravity = _gravity(parameters)
     if plant.fidelity is Fidelity.FULL:
         _attach_legs(spec, parameters, geometry)
     platform = _platform(_part("platform.xml"), parameters, geometry.top)
@@ -114,6 +115,12 @@ def assemble_fixed_arm(plant: Plant) -> mujoco.MjSpec:
     spec.option.gravity = [0.0, 0.0, -plant.parameters.number("gravity")]
     spec.option.disableflags |= int(mujoco.mjtDisableBit.mjDSBL_CONTACT)
     return spec
+
+
+def _gravity(parameters: ParameterTable) -> FloatArray:
+    """Acceleration of gravity in the rig's axes, which a base that is not level turns (3,)."""
+    level = np.array([[*parameters.array("platform.level"), 0.0]])
+    return np.asarray(gravity_in_top(level, parameters.number("gravity"))[0])
 
 
 def _part(file: str) -> mujoco.MjSpec:

@@ -12,6 +12,8 @@ import numpy as np
 from ves_twin.effects.effect import Effect
 from ves_twin.effects.registry import parse_effects
 from ves_twin.errors import InvalidInputError, UnknownNameError
+from ves_twin.gravity_model.chain import SerialChain
+from ves_twin.gravity_model.gravity_model import GravityModel
 from ves_twin.kinematics.puma560 import Puma560
 from ves_twin.kinematics.stewart import StewartGeometry
 from ves_twin.plant.fidelity import Fidelity, check_room
@@ -156,6 +158,24 @@ class Plant:
     def arm(self) -> Puma560:
         """Kinematics of the arm."""
         return Puma560(**{k: self.parameters.number(f"arm.{k}") for k in _ARM_LENGTHS})
+
+    @property
+    def gravity_model(self) -> GravityModel:
+        """M_total and P of the arm's own masses."""
+        array = self.parameters.array
+        return GravityModel.of(
+            SerialChain.of_puma560(self.arm),
+            array("arm.mass"),
+            array("arm.com"),
+            self.parameters.number("gravity"),
+        )
+
+    @property
+    def sensor_identity(self) -> str:
+        """What stands for the serial number of the force sensor: a hash of gains and ranges."""
+        names = ("sensor.crosstalk", "sensor.range", "sensor.resolution")
+        digest = hashlib.sha256(b"".join(self.parameters.array(name).tobytes() for name in names))
+        return digest.hexdigest()[:12]
 
     @property
     def base(self) -> str:

@@ -11,6 +11,8 @@ from ves_twin.procedures.coupling_map_paths import CouplingMapPaths
 from ves_twin.procedures.frequency_response import FrequencyResponseTest
 from ves_twin.procedures.positioning_error import PositioningErrorTest
 from ves_twin.procedures.pped_release import PpedRelease
+from ves_twin.procedures.calibrate_poses import CalibratePoses
+from ves_twin.procedures.frozen_droop import FrozenDroop
 from ves_twin.procedures.procedure import Procedure
 from ves_twin.scenario.load import refusal, scenario_content
 
@@ -19,6 +21,8 @@ PROCEDURES: dict[str, type[Procedure]] = {
     "pped_release": PpedRelease,
     "frequency_response": FrequencyResponseTest,
     "positioning_error": PositioningErrorTest,
+    "calibrate_poses": CalibratePoses,
+    "frozen_droop": FrozenDroop,
 }
 """Value of `procedure` in a file -> class."""
 

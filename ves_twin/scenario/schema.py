@@ -86,12 +86,20 @@ class Gravity(Part):
 
     The estimate comes from another computer through shared memory, one cycle late (thesis 2.4.2).
     That is also nearly the delay of the force sensor's 20 Hz low-pass, so a fresher estimate is
-    a worse one: it runs ahead of the reading that it is taken off.
+    a worse one: it runs ahead of the reading that it is taken off. Method `model` predicts from
+    the masses of the belief, or from the calibration in `file`, whose matrix C the sensor then has.
     """
 
     method: Annotated[str, named("gravity method", GRAVITY_COMPENSATIONS)] = "none"
     age: Annotated[int, Field(ge=0, le=50)] = 1
     zero: bool = True
+    file: str | None = None
+
+    @model_validator(mode="after")
+    def _file_is_for_the_model(self) -> Self:
+        if self.file is not None and self.method != "model":
+            raise ValueError(f"gravity.file is for method 'model', not '{self.method}'")
+        return self
 
 
 class Legs(Part):

@@ -135,7 +135,7 @@ def parameter_block(
     p["limits"]["stroke"] = table.number("leg.stroke") / 2.0
     _fill_small_devices(p, table, plant)
     _fill_legs(p["legs"], legs, clock, belief)
-    _fill_sensor(p["sensor"], table, clock.tick)
+    fill_sensor(p["sensor"], table, clock.tick)
     servo = p["servo"]
     for name in ("stiffness", "damping", "integral"):
         servo[name] = table.array(f"servo.{name}")
@@ -175,7 +175,8 @@ def _fill_legs(p: np.void, legs: Legs, clock: Clock, belief: Belief) -> None:
     p["full_speed"] = belief.full_speed
 
 
-def _fill_sensor(p: np.void, table: ParameterTable, tick: float) -> None:
+def fill_sensor(p: np.void, table: ParameterTable, tick: float) -> None:
+    """Write the force sensor's PARAMETERS for a sampling time [s]."""
     from scipy.signal import butter, lfilter  # slow to import
 
     corner = table.number("sensor.corner")
@@ -185,7 +186,9 @@ def _fill_sensor(p: np.void, table: ParameterTable, tick: float) -> None:
         )
     numerator, denominator = butter(2, corner, fs=1.0 / tick)
     impulse = lfilter(numerator, denominator, np.eye(1, int(1.0 / tick))[0])
-    p["gain"] = np.eye(6)
+    full_scale = table.array("sensor.range")
+    share = table.array("sensor.crosstalk")
+    p["gain"] = np.eye(6) + share * np.outer(full_scale, 1.0 / full_scale)
     p["calibration"] = np.eye(6)
     p["offset"] = table.array("sensor.offset")
     p["drift"] = table.array("sensor.drift")

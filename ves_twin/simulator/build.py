@@ -2,15 +2,18 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
 from ves_twin.control.belief import Belief
 from ves_twin.control.controller import ControlTask
 from ves_twin.control.emulated import EmulatedSystem
-from ves_twin.control.gravity import GravityCompensation
+from ves_twin.control.gravity import GravityCompensation, GravityTask
 from ves_twin.control.motion import ArmMotion, Move, PlatformMotion
 from ves_twin.control.played import Script
 from ves_twin.control.registry import GRAVITY_COMPENSATIONS, PLATFORM_CONTROLLERS
+from ves_twin.gravity_model.calibration import GravityCalibration
 from ves_twin.plant.plant import Plant
 from ves_twin.plant.statics import check_reach
 from ves_twin.recording.recording import Event
@@ -33,6 +36,7 @@ def belief_of(scenario: Scenario) -> Belief:
         sensor_position=plant.parameters.array("sensor.position"),
         leg_travel=number("leg.stroke") / 2.0 - number("leg.margin"),
         full_speed=number("hydraulics.full_speed"),
+        gravity=plant.gravity_model,
     )
 
 
@@ -43,10 +47,12 @@ def build_computers(
 
     Raises:
         UnreachableError: the start pose is outside the legs' travel.
+        InvalidInputError: a gravity calibration of another sensor or arm.
     """
     start = np.array(scenario.platform.start)
     check_reach(belief.geometry, start, belief.leg_travel, "platform.start")
-    gravity = script.gravity if script else _gravity(scenario, rig)
+    belief = _calibrated(scenario, belief, rig)
+    gravity = script.gravity if script else _gravity(scenario, belief, rig)
     period = rig.clock.admittance * rig.clock.tick
     task = ControlTask(
         belief=belief,
@@ -69,9 +75,20 @@ def build_computers(
     )
 
 
-def _gravity(scenario: Scenario, rig: Rig) -> GravityCompensation:
+def _gravity(scenario: Scenario, belief: Belief, rig: Rig) -> GravityCompensation:
     port = GravityTruth(rig.model, rig.data, rig.layout)
-    return GRAVITY_COMPENSATIONS[scenario.gravity.method](port)
+    return GRAVITY_COMPENSATIONS[scenario.gravity.method](GravityTask(belief, port))
+
+
+def _calibrated(scenario: Scenario, belief: Belief, rig: Rig) -> Belief:
+    """Load calibration matrix and P vector (Appendix E, step 8), where the scenario names them."""
+    if scenario.gravity.file is None:
+        return belief
+    calibration = GravityCalibration.load(scenario.gravity.file)
+    calibration.check(rig.plant.sensor_identity, belief.gravity.basis)
+    rig.parameters["sensor"]["calibration"] = calibration.matrix
+    rig.state["sensor"]["zero"] = calibration.zero
+    return replace(belief, gravity=calibration.model(belief.gravity.basis))
 
 
 def build_references(

@@ -1,8 +1,9 @@
-"""settle: the rig stands under control before t = 0, everything switched on, then is zeroed."""
+"""settle and stand: the rig stands under control, everything switched on, then is zeroed."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -26,6 +27,23 @@ STILL = 1e-4
 transducers' noise alone makes it move."""
 
 
+@dataclass(frozen=True)
+class Standing:
+    """Means over the last part of a stand.
+
+    Attributes:
+        code: of `ves_twin.simulator.codes`; anything but RUNNING: it could not stand.
+        signal: of the force sensor, as it comes from the electronics [N, N m] (6,).
+        leg_length: measured [m] (6,).
+        arm_q: measured [rad] (3,).
+    """
+
+    code: int
+    signal: FloatArray
+    leg_length: FloatArray
+    arm_q: FloatArray
+
+
 def settle(rig: Rig, computers: Computers, scenario: Scenario, log: FloatArray) -> int:
     """Place the rig at its start and let it stand for `run.settle` until t = 0; zero the sensor.
 
@@ -43,21 +61,49 @@ def settle(rig: Rig, computers: Computers, scenario: Scenario, log: FloatArray) 
     averaged = min(cycles, int(ZEROING_SECONDS / cycle_time) + 1)
     pose = np.array(scenario.platform.start)
     rig.tick = -cycles * rig.clock.admittance
-    _start_states(rig, pose, np.array(scenario.arm.start), computers.lengths(pose))
+    stood = stand(rig, computers, pose, np.array(scenario.arm.start), (cycles, averaged), log)
+    if stood.code != RUNNING:
+        return stood.code
+    computers.estimate_gravity(rig.time)
+    if scenario.gravity.zero:
+        _zero(rig, stood.signal)
+    return RUNNING
+
+
+def stand(
+    rig: Rig,
+    computers: Computers,
+    pose: FloatArray,
+    q: FloatArray,
+    cycles: tuple[int, int],
+    log: FloatArray,
+) -> Standing:
+    """Place the rig at a pose and let it stand there under control, from the rig's tick on.
+
+    Args:
+        rig: the rig, its tick at an interrupt.
+        computers: send the pose at every interrupt; their arm motion must stay at q.
+        pose: platform pose from home [m, rad] (6,).
+        q: joint angles [rad] (3,).
+        cycles: how many cycles, and how many of the last ones are averaged.
+        log: buffer of at least one row, overwritten.
+    """
+    number, averaged = cycles
+    _start_states(rig, pose, q, computers.lengths(pose))
     computers.start_arm(rig.time)
-    total = np.zeros(6)
-    for cycle in range(cycles):
+    total = np.zeros(15)
+    for cycle in range(number):
         computers.estimate_gravity(rig.time)
         computers.send(rig.tick, rig.time, pose)
         code, _ = rig.run(rig.clock.admittance, log, 0)
         if code != RUNNING:
-            return code
-        if cycle >= cycles - averaged:
-            total += rig.state["sensor"]["signal"][0]
-    computers.estimate_gravity(rig.time)
-    if scenario.gravity.zero:
-        _zero(rig, total / averaged)
-    return RUNNING
+            return Standing(code, *(np.full(n, np.nan) for n in (6, 6, 3)))
+        if cycle >= number - averaged:
+            total[:6] += rig.state["sensor"]["signal"][0]
+            total[6:12] += rig.board["leg.length"]
+            total[12:] += rig.board["arm.q"]
+    total /= averaged
+    return Standing(RUNNING, total[:6], total[6:12], total[12:])
 
 
 def settling_events(rig: Rig, scenario: Scenario) -> Iterator[Event]:
@@ -84,6 +130,7 @@ def _start_states(rig: Rig, pose: FloatArray, q: FloatArray, believed: FloatArra
     s["rod_force"] = force
     s["servo"]["integral"] = rig.data.qfrc_bias[layout.arm_dof]
     rig.board["leg.length"][:] = believed
+    rig.board["arm.q"][:] = q
     start_legs(p[0]["legs"], s[0]["legs"], believed)
     wrench = GravityTruth(rig.model, rig.data, layout).gravity_in_sensor()
     _, slow = rig.noise.window(rig.tick - SLOW, 1)

@@ -1,0 +1,81 @@
+"""frozen_droop: how far a frozen platform sinks and tilts, its valves at null, in a given time."""
+
+from __future__ import annotations
+
+import mujoco
+import numpy as np
+
+from ves_twin.errors import InvalidInputError
+from ves_twin.kinematics.stewart import pose_jacobian
+from ves_twin.plant.assembly import assemble, compile_model
+from ves_twin.plant.hydraulics import fill_chambers
+from ves_twin.plant.layout import Layout
+from ves_twin.plant.physics import chambers
+from ves_twin.plant.plant import Plant
+from ves_twin.plant.statics import place_rig, static_leg_forces
+from ves_twin.types import FloatArray
+
+_STEPS = 8
+"""Runge-Kutta steps over the time; twice as many change a droop of 0.5 deg by less than 1e-6."""
+
+
+def creep_speed(p: np.void, force: FloatArray) -> FloatArray:
+    """Speed [m/s] (6,) of rods that carry forces (6,) [N] with the spools at null.
+
+    The steady state of `push_rods_by_pressure` without spool: what leaks through the null of the
+    valve and past the piston lets the rod move,
+
+        c1 (n1 - p1) - cl (p1 - p2) = A1 v,  c2 (n2 - p2) + cl (p1 - p2) = -A2 v,
+        A1 p1 - A2 p2 - b v = F.
+
+    Args:
+        p: one record of `chambers.PARAMETERS`.
+        force: forces of the cylinders, pushing the platform up positive [N] (6,).
+    """
+    (a1, a2), (c1, c2), (n1, n2) = p["area"], p["conductance"], p["null"]
+    leak, viscous = p["leakage"], p["viscous"]
+    system = np.array(
+        [[c1 + leak, -leak, a1], [leak, -(c2 + leak), a2], [a1, -a2, -viscous]], dtype=float
+    )
+    if not np.linalg.matrix_rank(system) == 3:
+        raise InvalidInputError(
+            "chamber", "no leakage at all", "a leak that lets frozen legs creep"
+        )
+    right = np.array([np.full(6, c1 * n1), np.full(6, -c2 * n2), force])
+    return np.asarray(np.linalg.solve(system, right)[2])
+
+
+def frozen_droop(plant: Plant, pose: FloatArray, q: FloatArray, seconds: float) -> FloatArray:
+    """Pose [m, rad] (6,) that a platform frozen at `pose` has after a time, arm at rest at q.
+
+    Creep is slow: the leg forces are those of statics all the way.
+
+    Args:
+        plant: the world, its chambers and masses.
+        pose: pose at which the platform was frozen [m, rad] (6,).
+        q: joint angles [rad] (3,).
+        seconds: since then [s].
+
+    Raises:
+        UnreachableError: it creeps into a singular pose.
+    """
+    model = compile_model(assemble(plant, plant.parameters.number("clock.tick")))
+    data, layout, geometry = mujoco.MjData(model), Layout.of(model), plant.geometry
+    block = np.zeros(1, chambers.PARAMETERS)
+    fill_chambers(block[0], plant.parameters)
+
+    def rate(at: FloatArray) -> FloatArray:
+        place_rig(data, layout, geometry, at, q)
+        force = static_leg_forces(model, data, layout, geometry, at)
+        jacobian = pose_jacobian(at, geometry.base, geometry.top, geometry.home)
+        return np.asarray(np.linalg.solve(jacobian, creep_speed(block[0], force)))
+
+    step = seconds / _STEPS
+    at = np.array(pose, dtype=float)
+    for _ in range(_STEPS):
+        k1 = rate(at)
+        k2 = rate(at + 0.5 * step * k1)
+        k3 = rate(at + 0.5 * step * k2)
+        k4 = rate(at + step * k3)
+        at = at + step / 6.0 * (k1 + 2.0 * k2 + 2.0 * k3 + k4)
+    return at
