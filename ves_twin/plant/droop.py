@@ -26,7 +26,9 @@ def creep_speed(p: np.void, force: FloatArray) -> FloatArray:
     valve and past the piston lets the rod move,
 
         c1 (n1 - p1) - cl (p1 - p2) = A1 v,  c2 (n2 - p2) + cl (p1 - p2) = -A2 v,
-        A1 p1 - A2 p2 - b v = F.
+        A1 p1 - A2 p2 - b v = F,
+
+    c the null conductances, cl the piston leakage, n the pressures at null without load.
 
     Args:
         p: one record of `chambers.PARAMETERS`.
@@ -45,15 +47,20 @@ def creep_speed(p: np.void, force: FloatArray) -> FloatArray:
     return np.asarray(np.linalg.solve(system, right)[2])
 
 
-def frozen_droop(plant: Plant, pose: FloatArray, q: FloatArray, seconds: float) -> FloatArray:
+def frozen_droop(
+    plant: Plant, pose: FloatArray, q: FloatArray, spool: FloatArray, seconds: float
+) -> FloatArray:
     """Pose [m, rad] (6,) that a platform frozen at `pose` has after a time, arm at rest at q.
 
-    Creep is slow: the leg forces are those of statics all the way.
+    Creep is slow: the leg forces are those of statics all the way. Creep under load is linear in
+    the wrench of the payload, so that by itself it would hide in a calibration matrix; where the
+    spools come to rest differs from one freeze to the next.
 
     Args:
         plant: the world, its chambers and masses.
         pose: pose at which the platform was frozen [m, rad] (6,).
         q: joint angles [rad] (3,).
+        spool: where the spools came to rest, -1 to 1 of full opening (6,).
         seconds: since then [s].
 
     Raises:
@@ -63,12 +70,13 @@ def frozen_droop(plant: Plant, pose: FloatArray, q: FloatArray, seconds: float) 
     data, layout, geometry = mujoco.MjData(model), Layout.of(model), plant.geometry
     block = np.zeros(1, chambers.PARAMETERS)
     fill_chambers(block[0], plant.parameters)
+    bias = plant.parameters.number("hydraulics.full_speed") * spool
 
     def rate(at: FloatArray) -> FloatArray:
         place_rig(data, layout, geometry, at, q)
         force = static_leg_forces(model, data, layout, geometry, at)
         jacobian = pose_jacobian(at, geometry.base, geometry.top, geometry.home)
-        return np.asarray(np.linalg.solve(jacobian, creep_speed(block[0], force)))
+        return np.asarray(np.linalg.solve(jacobian, creep_speed(block[0], force) + bias))
 
     step = seconds / _STEPS
     at = np.array(pose, dtype=float)

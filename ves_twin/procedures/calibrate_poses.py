@@ -17,7 +17,7 @@ from ves_twin.gravity_model.poses import conditioning
 from ves_twin.plant.plant import Plant
 from ves_twin.procedures.gravity_report import Calibrated, account_of, write_report
 from ves_twin.procedures.held_poses import HeldPosesProcedure
-from ves_twin.procedures.procedure import Account, Conduct
+from ves_twin.procedures.procedure import Account, Conduct, part_of
 from ves_twin.scenario.fields import named, si
 from ves_twin.simulator.build import belief_of
 from ves_twin.types import FloatArray
@@ -83,15 +83,13 @@ class CalibratePoses(HeldPosesProcedure):
             return self.read(plant, poses, q, seed, conduct.progress)
         if len(poses) < 2:
             raise InvalidInputError("poses.count", len(poses), "at least 2 for pin = 'weight'")
-        bare = self.read(
-            plant, poses[::2], q[::2], seed, lambda share, what: conduct.progress(share / 2, what)
-        )
+        bare = self.read(plant, poses[::2], q[::2], seed, part_of(conduct.progress, 0, 2))
         loaded = self.read(
             plant,
             poses[1::2],
             q[1::2],
             seed,
-            lambda share, what: conduct.progress(0.5 + share / 2, what),
+            part_of(conduct.progress, 1, 2),
             self.weight,
             len(bare),
         )

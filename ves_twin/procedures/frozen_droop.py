@@ -1,4 +1,4 @@
-"""FrozenDroop: what a calibration reaches on a frozen platform, and what a tilted base hides."""
+"""FrozenDroop: what a calibration reaches on a frozen platform, and what hides a tilted base."""
 
 from __future__ import annotations
 
@@ -11,57 +11,54 @@ from ves_twin.gravity_model.alternate import Pass, alternate
 from ves_twin.gravity_model.observations import Observations
 from ves_twin.gravity_model.sensitivity import AXES
 from ves_twin.plant.droop import frozen_droop
-from ves_twin.plant.plant import Plant
 from ves_twin.procedures.held_poses import HeldPosesProcedure
-from ves_twin.procedures.procedure import Account, Conduct
+from ves_twin.procedures.procedure import Account, Conduct, part_of
 from ves_twin.scenario.fields import Seconds, si
 from ves_twin.simulator.build import belief_of
 from ves_twin.simulator.outcome import Outcome
 from ves_twin.types import FloatArray
 
-CONDITIONS = ("position control", "frozen", "tilted base")
+CONDITIONS = ("position control", "frozen", "tilted base", "same, no turn")
 
 
 class FrozenDroop(HeldPosesProcedure):
-    """Thesis 3.4.5: the same poses and passes under three conditions.
+    """Thesis 3.4.5: the same joint angles and passes under four conditions.
 
     Position control: the platform is where its legs say. Frozen: no command to the valves for
-    `frozen` seconds; what leaks past pistons and through the valves' null lets it sink and tilt
-    under its load, while it is taken to be where it was frozen. Tilted base: position control on
-    a base that is off the level by `level`, unknown to the computers. The thesis does not say why
-    its platform moved; creep through the null is the cause assumed here, `frozen` sets its size.
+    `frozen` seconds; the load, what leaks through the valves' null, and spools that came to rest
+    within `null_sd` of full opening let it sink and tilt, while it is taken to be where it was
+    frozen. Tilted base: position control on a base off the level by `level` about X, unknown to
+    the computers; once with the poses as they are, once without their turn about Z. The thesis
+    does not say why its platform moved; the cause and its size are assumed.
     """
 
-    frozen: Annotated[Seconds, Field(gt=0, le=1000)] = 6.0
+    frozen: Annotated[Seconds, Field(gt=0, le=1000)] = 5.0
+    null_sd: Annotated[float, Field(ge=0, le=0.1)] = 0.0008
     level: Annotated[float, si("rad"), Field(ge=0, le=0.05)] = 0.008726646259971648
     passes: Annotated[int, Field(ge=1, le=50)] = 5
 
     def carry_out(self, conduct: Conduct) -> Account:
-        """Hold, alternate, write `passes.csv`; the account compares the three."""
+        """Hold, alternate, write `passes.csv`; the account compares the conditions."""
         plant, seed = self.world(conduct)
         belief = belief_of(self.scenario)
         poses, q = self.poses.choose(belief, plant.parameters.array("sensor.range"), seed)
+        spool = self.null_sd * np.random.default_rng(seed).normal(size=(len(q), 6))
         drooped = np.array(
-            [frozen_droop(plant, pose, at, self.frozen) for pose, at in zip(poses, q, strict=True)]
+            [frozen_droop(plant, *row, self.frozen) for row in zip(poses, q, spool, strict=True)]
         )
         tilted = plant.with_values({"platform.level": [self.level, 0.0]})
-        worlds = ((plant, poses), (plant, drooped), (tilted, poses))
+        unturned = poses * [1.0, 1.0, 1.0, 1.0, 1.0, 0.0]
+        worlds = ((plant, poses), (plant, drooped), (tilted, poses), (tilted, unturned))
         fitted: dict[str, tuple[Pass, ...]] = {}
         for k, (name, (world, true)) in enumerate(zip(CONDITIONS, worlds, strict=True)):
-            seen = self.read(
-                world,
-                true,
-                q,
-                seed,
-                lambda share, what, k=k: conduct.progress((k + share) / 3, what),
-            )  # type: ignore[misc]
+            seen = self.read(world, true, q, seed, part_of(conduct.progress, k, len(worlds)))
             taken = poses[:, 3:] if name == "frozen" else seen.angles
             seen = Observations.unloaded(seen.q, taken, seen.signal)
             basis, position = belief.gravity.basis, belief.sensor_position
             fitted[name] = alternate(seen, basis, position, belief.gravity.gravity, self.passes)
-        droop = np.max(np.abs(drooped[:, 3:] - poses[:, 3:]), axis=1)
+        droop = drooped - poses
         _write_passes(fitted, conduct)
-        return _account(fitted, droop, np.max(np.abs(drooped[:, 2] - poses[:, 2])), self.level)
+        return _account(fitted, droop, self.level)
 
 
 def _write_passes(fitted: dict[str, tuple[Pass, ...]], conduct: Conduct) -> None:
@@ -72,21 +69,17 @@ def _write_passes(fitted: dict[str, tuple[Pass, ...]], conduct: Conduct) -> None
     (conduct.folder / "passes.csv").write_text("\n".join(lines) + "\n", encoding="utf-8")
 
 
-def _account(
-    fitted: dict[str, tuple[Pass, ...]], droop: FloatArray, sunk: float, level: float
-) -> Account:
+def _account(fitted: dict[str, tuple[Pass, ...]], droop: FloatArray, level: float) -> Account:
+    angles = np.degrees(droop[:, 3:])
+    worst, usual = float(np.max(np.abs(angles))), float(np.sqrt(np.mean(angles**2)))
     lines = [
-        f"  frozen: angles off by up to {np.degrees(np.max(droop)):.2f} deg, rms"
-        f" {np.degrees(np.sqrt(np.mean(droop**2))):.2f} deg, different at each pose; sunk by up to"
-        f" {1e3 * sunk:.1f} mm",
-        f"  tilted base: off by {np.degrees(level):.2f} deg at every pose",
+        f"  frozen: angles off by up to {worst:.2f} deg, rms {usual:.2f} deg, different at each"
+        f" pose; sunk by up to {-1e3 * np.min(droop[:, 2]):.1f} mm",
+        f"  tilted base: off by {np.degrees(level):.2f} deg about X at every pose",
         "",
         f"  {'error after the passes':<28}" + "".join(f"{axis:>9}" for axis in AXES),
     ]
-    values: dict[str, JsonValue] = {
-        "droop_max_deg": float(np.degrees(np.max(droop))),
-        "droop_rms_deg": float(np.degrees(np.sqrt(np.mean(droop**2)))),
-    }
+    values: dict[str, JsonValue] = {"droop_max_deg": worst, "droop_rms_deg": usual}
     for name, passes in fitted.items():
         rms, peak = passes[-1].rms, np.max(np.abs(passes[-1].error), axis=0)
         lines.append(f"  {name + ', rms':<28}" + "".join(f"{v:9.3f}" for v in rms))
@@ -103,10 +96,10 @@ def _account(
 
 
 def _hiding(fitted: dict[str, tuple[Pass, ...]], values: dict[str, JsonValue]) -> list[str]:
-    """How far C and its constant moved to take the tilt in, at the mean signal."""
-    level, tilted = fitted["position control"][-1], fitted["tilted base"][-1]
-    weight = np.array([0.0, 0.0, 919.2, 0.0, 0.0, 0.0])
+    """How much of the tilt C and its constant took in, at the arm's weight."""
+    level, tilted = fitted["position control"][-1], fitted["same, no turn"][-1]
+    weight = np.array([0.0, 0.0, level.model.total_mass * level.model.gravity, 0.0, 0.0, 0.0])
     moved = (tilted.calibration - level.calibration) @ weight + tilted.constant - level.constant
     values["tilt_taken_in_by_C"] = moved.tolist()
     text = ", ".join(f"{v:.2f}" for v in moved[:3])
-    return [f"  tilted base: C and its constant took in {text} N (Fx, Fy, Fz) at the arm's weight"]
+    return [f"  without turn C and its constant take in {text} N (Fx, Fy, Fz) of the tilt"]

@@ -118,7 +118,7 @@ def _hidden(result: Calibrated) -> list[str]:
     lines += [f"    {name}" for name in result.found.hidden]
     advice = {
         "gain_prior": "  pinned by the prior on the gain (gain_sd); a known weight does without",
-        "none": "  not pinned: no interval for what they touch; pin = 'gain_prior' or 'weight' helps",
+        "none": "  not pinned: no interval for what they touch (pin = gain_prior or weight)",
     }
     return [*lines, advice[result.pin]]
 

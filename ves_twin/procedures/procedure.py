@@ -20,6 +20,11 @@ Progress = Callable[[float, str], None]
 """Called with the share done, 0 to 1, and what is being done."""
 
 
+def part_of(progress: Progress, number: int, parts: int) -> Progress:
+    """The progress of part `number`, counted from 0, of a number of equal parts."""
+    return lambda share, what: progress((number + share) / parts, what)
+
+
 @dataclass(frozen=True)
 class Conduct:
     """How a procedure is carried out: where its files go, in which world, with which seed.

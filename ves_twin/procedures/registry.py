@@ -14,6 +14,8 @@ from ves_twin.procedures.pped_release import PpedRelease
 from ves_twin.procedures.calibrate_poses import CalibratePoses
 from ves_twin.procedures.frozen_droop import FrozenDroop
 from ves_twin.procedures.procedure import Procedure
+from ves_twin.procedures.sensor_drift import SensorDrift
+from ves_twin.procedures.verify_gravity import VerifyGravity
 from ves_twin.scenario.load import refusal, scenario_content
 
 PROCEDURES: dict[str, type[Procedure]] = {
@@ -23,6 +25,8 @@ PROCEDURES: dict[str, type[Procedure]] = {
     "positioning_error": PositioningErrorTest,
     "calibrate_poses": CalibratePoses,
     "frozen_droop": FrozenDroop,
+    "sensor_drift": SensorDrift,
+    "verify_gravity": VerifyGravity,
 }
 """Value of `procedure` in a file -> class."""
 
