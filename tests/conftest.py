@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 
 import pytest
+
+# threads of small matrix products wait for each other where workers share the cores
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 import ves_twin as vt
 

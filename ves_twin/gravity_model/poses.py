@@ -18,7 +18,7 @@ CANDIDATES = 400
 """Reachable random poses from which the optimised choices are made."""
 
 _SWEEPS = 3
-"""Sweeps of exchanges; a fourth gained less than 0.1 in log det."""
+"""Sweeps of exchanges over all poses; the first one brings most."""
 
 
 class Choice(StrEnum):
@@ -113,7 +113,9 @@ def conditioning(
     rows = _information_rows(model, sensor_position, full_scale, q, angles)
     values = np.linalg.eigvalsh(np.einsum("nij,nik->jk", rows, rows))
     return Conditioning(
-        float(np.linalg.cond(stacked)), float(np.sum(np.log(values))), float(values[0])
+        float(np.linalg.cond(stacked)),
+        float(np.sum(np.log(np.maximum(values, 1e-300)))),
+        float(values[0]),
     )
 
 

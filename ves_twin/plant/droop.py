@@ -52,7 +52,8 @@ def frozen_droop(
 ) -> FloatArray:
     """Pose [m, rad] (6,) that a platform frozen at `pose` has after a time, arm at rest at q.
 
-    Creep is slow: the leg forces are those of statics all the way. Creep under load is linear in
+    Creep is slow: the leg forces are those of statics all the way; the legs' own weight, which
+    makes the full rig sink 14 % faster, is left out. Creep under load is linear in
     the wrench of the payload, so that by itself it would hide in a calibration matrix; where the
     spools come to rest differs from one freeze to the next.
 
