@@ -189,7 +189,7 @@ def _picture(run: Recording, plant: Plant, conduct: Conduct) -> None:
         above, below = grid[0, column], grid[1, column]
         for i in range(first, first + 3):
             lift = measured[0, i] if i == 2 else 0.0  # the weight would hide the rest
-            label = f"{AXES[i]} less {lift:.0f} N" if lift else AXES[i]
+            label = f"{AXES[i]} {-lift:+.0f} N" if lift else AXES[i]
             above.plot(run.time, measured[:, i] - lift, lw=0.8, label=label)
             above.plot(run.time, predicted[:, i] - lift, "k--", lw=0.6)
             below.plot(run.time, measured[:, i] - predicted[:, i], lw=0.6)
