@@ -1,0 +1,1 @@
+"""Benches: small plants beside VES II that the diagnosis is tried on."""

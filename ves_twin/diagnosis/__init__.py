@@ -1,0 +1,1 @@
+"""Diagnosis: what a simulation gets wrong, from measured data. Knows no plant, only `Forward`."""

@@ -1,0 +1,180 @@
+"""Bank: the change each hypothesis makes at finite sizes, kept for a plant and its programmes."""
+
+from __future__ import annotations
+
+import hashlib
+import os
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from ves_twin.diagnosis.forward import Hypothesis
+from ves_twin.diagnosis.linearise import Linearisation, linearise
+from ves_twin.diagnosis.runs import Progress, Runs, silent
+from ves_twin.errors import FileAccessError
+from ves_twin.types import FloatArray, IntArray, SingleArray
+
+STRAIGHT = 4.0
+"""Size of a linear signature in commissioning sd; scaled, it reaches from 1.4 to 11."""
+
+SCHEMA = 1
+"""Version of the cached file; another one is built anew."""
+
+
+@dataclass(frozen=True)
+class Bank:
+    """Signatures s_k = f(e_k) - f(0) at finite sizes, and the linearisation at nominal.
+
+    Derivatives at nominal would miss friction, deadband and everything one-sided.
+
+    Attributes:
+        base: prediction and nuisance columns where nothing departs.
+        hypotheses: the library.
+        owner: hypothesis of each entry (entries,).
+        sizes: departure of the hypothesis's parameters of each entry.
+        signatures: change of the channels (entries, rows, c).
+    """
+
+    base: Linearisation
+    hypotheses: tuple[Hypothesis, ...]
+    owner: IntArray
+    sizes: tuple[FloatArray, ...]
+    signatures: SingleArray
+
+    def entries(self, hypothesis: int) -> IntArray:
+        """Entries of one hypothesis."""
+        return np.flatnonzero(self.owner == hypothesis)
+
+    def without(self, labels: tuple[str, ...]) -> Bank:
+        """The bank with some causes left out, by effect or by effect@target."""
+        kept = [
+            i
+            for i, h in enumerate(self.hypotheses)
+            if h.effect not in labels and h.label not in labels
+        ]
+        rows = np.flatnonzero(np.isin(self.owner, kept))
+        owner = np.searchsorted(np.array(kept, int), self.owner[rows])
+        hypotheses = tuple(self.hypotheses[i] for i in kept)
+        sizes = tuple(self.sizes[i] for i in rows)
+        return Bank(self.base, hypotheses, owner, sizes, self.signatures[rows])
+
+
+def build_bank(
+    runs: Runs,
+    point: FloatArray | None = None,
+    hypotheses: tuple[Hypothesis, ...] | None = None,
+    progress: Progress = silent,
+) -> Bank:
+    """Simulate every hypothesis at its finite sizes.
+
+    Args:
+        runs: of which plant and programmes.
+        point: departures to start from; nominal if None. At a fitted first cause this is the
+            bank that looks for a second one.
+        hypotheses: the library; that of the forward if None.
+        progress: told how far it is.
+
+    Returns:
+        The bank, without entries that bounds leave near the starting point or that diverge.
+    """
+    start = runs.origin if point is None else point
+    library = runs.forward.hypotheses if hypotheses is None else hypotheses
+    base = linearise(runs, start, progress)
+    shifts, owner, sizes = [], [], []
+    for h, hypothesis in enumerate(library):
+        where = runs.indices(hypothesis)
+        for departure in hypothesis.departures():
+            shift = runs.depart(start, where, start[where] + departure)
+            moved = shift[where] - start[where]
+            if np.any(np.abs(moved) > 0.5 * np.abs(departure)):
+                shifts.append(shift)
+                owner.append(h)
+                sizes.append(moved)
+    stacks = runs.many(shifts, progress, "signatures") - base.prediction
+    kept = np.flatnonzero(np.all(np.isfinite(stacks), axis=(1, 2)))
+    straight, straight_owner, straight_sizes = _straight(base, library)
+    return Bank(
+        base,
+        library,
+        np.array([*(owner[i] for i in kept), *straight_owner], int),
+        (*(sizes[i] for i in kept), *straight_sizes),
+        np.concatenate([stacks[kept], straight]),
+    )
+
+
+def _straight(
+    base: Linearisation, library: tuple[Hypothesis, ...]
+) -> tuple[SingleArray, list[int], list[FloatArray]]:
+    """Linear signatures of causes that are commissioning parameters too.
+
+    Where a tolerance bends the prediction by more than noise, the finite signature holds what its
+    own nuisance column cannot explain, though a strong commissioning error would bend as well. A
+    record corrected for that is linear, and only the column itself fits it.
+    """
+    runs = base.runs
+    found, owner, sizes = [base.columns[:0]], [], []
+    for h, hypothesis in enumerate(library):
+        rows = np.flatnonzero(np.isin(runs.nuisances, runs.indices(hypothesis)))
+        if len(hypothesis.parameters) == 1 and len(rows) == 1:
+            for sign in hypothesis.signs:
+                found.append(np.float32(sign * STRAIGHT) * base.columns[rows])
+                owner.append(h)
+                sizes.append(sign * STRAIGHT * runs.sd[runs.nuisances[rows]])
+    return np.concatenate(found), owner, sizes
+
+
+def cached_bank(runs: Runs, folder: Path | None, build: Callable[[], Bank]) -> Bank:
+    """The bank of a plant and its programmes from a file, built and written where there is none.
+
+    Raises:
+        FileAccessError: the folder cannot be written.
+    """
+    if folder is None:
+        return build()
+    path = folder / f"bank-{bank_key(runs)}.npz"
+    if path.is_file():
+        return _read(path, runs)
+    bank = build()
+    write_arrays(
+        path,
+        prediction=bank.base.prediction,
+        columns=bank.base.columns,
+        owner=bank.owner,
+        sizes=np.concatenate(bank.sizes),
+        signatures=bank.signatures,
+    )
+    return bank
+
+
+def bank_key(runs: Runs, more: bytes = b"") -> str:
+    """Hash of the forward's identity, the programmes, the channels and whatever else counts."""
+    parts = [str(SCHEMA), runs.forward.identity, *(p.identity for p in runs.programmes)]
+    parts += [str(column) for column in runs.columns]
+    return hashlib.sha256("/".join(parts).encode() + more).hexdigest()[:16]
+
+
+def write_arrays(path: Path, **arrays: np.ndarray[Any, Any]) -> None:
+    """Write a file whole or not at all, also when two programs write it at once.
+
+    Raises:
+        FileAccessError: the folder cannot be written.
+    """
+    unfinished = path.with_name(f".{path.stem}-{os.getpid()}.npz")
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        np.savez(unfinished, **arrays)  # type: ignore[arg-type]
+        unfinished.replace(path)
+    except OSError as error:
+        raise FileAccessError(f"cannot write {path}: {error.strerror}") from None
+
+
+def _read(path: Path, runs: Runs) -> Bank:
+    with np.load(path) as content:
+        owner = content["owner"]
+        widths = [len(runs.forward.hypotheses[i].parameters) for i in owner]
+        sizes = tuple(np.split(content["sizes"], np.cumsum(widths)[:-1]))
+        base = Linearisation(runs, runs.origin, content["prediction"], content["columns"])
+        return Bank(base, runs.forward.hypotheses, owner, sizes, content["signatures"])

@@ -1,0 +1,129 @@
+"""diagnose: from recordings to a verdict."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+from ves_twin.diagnosis.bank import build_bank, cached_bank
+from ves_twin.diagnosis.compose import Findings, compose
+from ves_twin.diagnosis.explain import Explanation, explain
+from ves_twin.diagnosis.forward import Forward, Programme
+from ves_twin.diagnosis.gain import Gain, held_out_gain
+from ves_twin.diagnosis.next_experiment import separations
+from ves_twin.diagnosis.noise import Whitening, whitening_declared, whitening_measured
+from ves_twin.diagnosis.null import assess, cached_thresholds
+from ves_twin.diagnosis.observe import observe
+from ves_twin.diagnosis.runs import Progress, Runs, silent
+from ves_twin.diagnosis.settings import Settings
+from ves_twin.diagnosis.tolerances import FEWEST, naming_limit, tolerance_scale
+from ves_twin.diagnosis.verdict import Basis, Kind, Proposal, Verdict
+from ves_twin.errors import UnknownNameError
+from ves_twin.recording.recording import Recording
+
+
+def diagnose(
+    forward: Forward,
+    recordings: Sequence[Recording],
+    *,
+    held_out: Sequence[Recording] = (),
+    commissioning: Sequence[Recording] = (),
+    standstill: Recording | None = None,
+    next_programmes: Sequence[Programme] = (),
+    exclude: Sequence[str] = (),
+    settings: Settings | None = None,
+    progress: Progress = silent,
+) -> Verdict:
+    """Name what a plant's simulation gets wrong, or say that nothing is, or that it is not known.
+
+    Residuals in units of noise, with commissioning tolerances marginalised; a bank of finite
+    signatures ranks the causes, the full forward fits the best of them, what is left must be noise.
+
+    Args:
+        forward: the plant, its tolerances and its library of causes.
+        recordings: what was measured; all of them together are one record.
+        held_out: other recordings, on which the gain of an extension is measured.
+        commissioning: of independent rigs in order, or of re-mountings of this one; five or more
+            tell how true the declared tolerances are.
+        standstill: tells the noise; the declared one is taken without it.
+        next_programmes: candidates for the next experiment where causes cannot be told apart.
+        exclude: causes that are not considered, by effect or effect@target.
+        settings: how sure, how many.
+        progress: told what is being done.
+
+    Raises:
+        InvalidInputError: recordings that cannot be compared.
+        UnknownNameError: a signal that is not recorded, or an unknown cause in `exclude`.
+    """
+    chosen = settings or Settings()
+    known = {h.effect for h in forward.hypotheses} | {h.label for h in forward.hypotheses}
+    for name in exclude:
+        if name not in known:
+            raise UnknownNameError("cause", name, known)
+    seen = observe(forward, recordings, chosen.workers)
+    whitening = _whitening(seen.runs, standstill)
+    built = cached_bank(seen.runs, chosen.cache, lambda: build_bank(seen.runs, progress=progress))
+    bank = built.without(tuple(exclude))
+    limits = cached_thresholds(bank, whitening, chosen, progress)
+    first = assess(seen.measured, bank, whitening, limits.effect, limits.misfit)
+    scale = _scale(forward, commissioning)
+    basis = Basis(
+        noise="declared" if standstill is None else "measured",
+        tolerances="declared" if scale is None else "measured",
+        held_out="measured" if held_out else "none",
+    )
+    findings = Findings(seen, first, limits, chosen, naming_limit(bank, scale), scale)
+    if not first.exceeds(limits.effect, limits.misfit):
+        return compose(findings, Kind.NOTHING, basis, tuple(exclude))
+    found = explain(first, limits, chosen, progress)
+    gain = _gain(forward, held_out, standstill, found, chosen) if found and held_out else None
+    kind = _kind(found, gain)
+    proposals = _next(seen.runs, found, next_programmes) if kind is Kind.AMBIGUOUS else ()
+    findings = replace(findings, found=found, gain=gain, proposals=proposals)
+    return compose(findings, kind, basis, tuple(exclude))
+
+
+def _whitening(runs: Runs, standstill: Recording | None) -> Whitening:
+    return whitening_declared(runs) if standstill is None else whitening_measured(runs, standstill)
+
+
+def _scale(forward: Forward, commissioning: Sequence[Recording]) -> float | None:
+    if len(commissioning) < FEWEST:
+        return None
+    rigs = [observe(forward, [recording]) for recording in commissioning]
+    return tolerance_scale([(rig.runs, rig.measured) for rig in rigs])
+
+
+def _gain(
+    forward: Forward,
+    held_out: Sequence[Recording],
+    standstill: Recording | None,
+    found: Explanation,
+    settings: Settings,
+) -> Gain:
+    seen = observe(forward, held_out, settings.workers)
+    whitening = _whitening(seen.runs, standstill)
+    nominal, best = found.commissioning, found.best
+    return held_out_gain(
+        seen.runs, seen.measured, whitening, nominal, best, settings.confidence, settings.seed
+    )
+
+
+def _kind(found: Explanation | None, gain: Gain | None) -> Kind:
+    if found is None:
+        return Kind.UNKNOWN
+    if not found.adequate:
+        alone = len(found.chosen) == 1 and gain is not None and gain.passed
+        return Kind.PARTIAL if alone else Kind.UNKNOWN
+    if len(found.chosen) > 1:
+        return Kind.AMBIGUOUS
+    return Kind.NAMED if len(found.best.causes) == 1 else Kind.SEVERAL
+
+
+def _next(
+    runs: Runs, found: Explanation | None, programmes: Sequence[Programme]
+) -> tuple[Proposal, ...]:
+    if found is None:
+        return ()
+    ranked = separations(runs, found.chosen, programmes)
+    return tuple(Proposal(s.programme.name, s.chi2) for s in ranked)

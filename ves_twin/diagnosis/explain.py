@@ -1,0 +1,236 @@
+"""explain: fit the suspects with the full forward, one alone or two together, and judge them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from ves_twin.diagnosis.adequacy import Cell, cells, misfit
+from ves_twin.diagnosis.bank import build_bank
+from ves_twin.diagnosis.forward import Hypothesis
+from ves_twin.diagnosis.null import Assessment, Thresholds
+from ves_twin.diagnosis.probability import probabilities
+from ves_twin.diagnosis.refine import Evidence, Fit, bare_residual, refine, residual_about
+from ves_twin.diagnosis.runs import Progress, silent
+from ves_twin.diagnosis.screen import Screen, Suspect
+from ves_twin.diagnosis.settings import Settings
+from ves_twin.types import FloatArray
+
+HOPELESS = 4.0
+"""A fit with this many times the chi^2 of the best is not worth new nuisance columns."""
+
+PAIRS = 6
+"""Pairs of causes that are fitted with the full forward."""
+
+
+@dataclass(frozen=True)
+class Explanation:
+    """What the library makes of a record that is not in order.
+
+    Attributes:
+        evidence: with the whitening that the best fit's residual shows.
+        commissioning: fit of commissioning errors alone.
+        fits: by rising chi^2.
+        chosen: those that are as good as the best, given its allowance, the best first.
+        weights: probability of each of them, given the library.
+        adequate: whether what the best leaves is noise.
+        score: largest cell score it leaves.
+        second: best score of a further cause beside it.
+        before, after: cells without and with it.
+    """
+
+    evidence: Evidence
+    commissioning: Fit
+    fits: tuple[Fit, ...]
+    chosen: tuple[Fit, ...]
+    weights: tuple[float, ...]
+    adequate: bool
+    score: float
+    second: float
+    before: tuple[Cell, ...]
+    after: tuple[Cell, ...]
+
+    @property
+    def best(self) -> Fit:
+        """The most probable one."""
+        return self.chosen[0]
+
+
+@dataclass(frozen=True)
+class _Desk:
+    """What both stages work with."""
+
+    first: Assessment
+    thresholds: Thresholds
+    settings: Settings
+    progress: Progress
+
+
+def explain(
+    first: Assessment, thresholds: Thresholds, settings: Settings, progress: Progress = silent
+) -> Explanation | None:
+    """Single causes, then pairs where no single one leaves noise.
+
+    Args:
+        first: the record before any cause, over a threshold.
+        thresholds: what noise and commissioning errors do.
+        settings: how many and how much.
+        progress: told how far it is.
+
+    Returns:
+        The best explanation, adequate or not; None if the library is empty or fits nothing.
+    """
+    desk = _Desk(first, thresholds, settings, progress)
+    single = _singles(desk)
+    if single is None or single.adequate:
+        return single
+    return _pairs(desk, single) or single
+
+
+def _singles(desk: _Desk) -> Explanation | None:
+    first, settings = desk.first, desk.settings
+    fits = []
+    for n, suspect in enumerate(first.suspects[: settings.candidates]):
+        desk.progress(n / settings.candidates, "fitting single causes")
+        hypothesis = first.screen.bank.hypotheses[suspect.hypothesis]
+        tried = [
+            _fit(first.evidence, (hypothesis,), [sizes], desk, 0)
+            for sizes in _starts(first, suspect)
+        ]
+        fits.append(min(tried, key=lambda fit: fit.chi2))
+    if not fits:
+        return None
+    best = min(fit.chi2 for fit in fits)
+    again = [
+        _again(first.evidence, fit, settings.rounds) for fit in fits if fit.chi2 < HOPELESS * best
+    ]
+    return _judge(desk, again)
+
+
+def _starts(first: Assessment, suspect: Suspect) -> list[FloatArray]:
+    """The screen's scaled size, and the unscaled size of the bank nearest to the record."""
+    rows = first.screen.bank.entries(suspect.hypothesis)
+    match = first.screen.projected[:, rows].T @ first.z
+    nearest = rows[np.argmax(2.0 * match - first.screen.power[rows])]
+    other = first.screen.bank.sizes[nearest]
+    apart = np.any(np.abs(other - suspect.sizes) > 0.3 * np.abs(suspect.sizes))
+    return [suspect.sizes, other] if apart else [suspect.sizes]
+
+
+def _fit(
+    evidence: Evidence,
+    causes: tuple[Hypothesis, ...],
+    sizes: list[FloatArray],
+    desk: _Desk,
+    rounds: int,
+) -> Fit:
+    runs = evidence.runs
+    shift = runs.origin
+    for cause, size in zip(causes, sizes, strict=True):
+        shift = runs.depart(shift, runs.indices(cause), size)
+    return refine(evidence, causes, shift, desk.first.screen.bank.base, rounds)
+
+
+def _again(evidence: Evidence, fit: Fit, rounds: int) -> Fit:
+    return refine(evidence, fit.causes, fit.shift, fit.local, rounds)
+
+
+def _judge(desk: _Desk, fits: list[Fit]) -> Explanation:
+    """Whiten by what the best fit leaves, fit again, weigh the rivals, test what is left."""
+    first, settings = desk.first, desk.settings
+    runs = first.evidence.runs
+    leader = min(fits, key=lambda fit: fit.chi2)
+    declared = first.screen.whitening
+    plain = replace(declared, colour=0.0 * declared.colour, level=0.0 * declared.level + 1.0)
+    own = plain.adapted(plain.apply(bare_residual(first.evidence, leader)))
+    evidence = Evidence(runs, first.evidence.measured, own)
+    commissioning = _commissioning(desk, evidence, leader)
+    near = HOPELESS * leader.chi2
+    ranked = [_again(evidence, fit, 0) for fit in fits if fit.chi2 < near]
+    ranked.sort(key=lambda fit: fit.chi2)
+    best = ranked[0]
+    allowance = settings.model_error**2 * max(commissioning.chi2 - best.chi2, 0.0)
+    chosen, weights = probabilities(ranked, allowance, settings.odds)
+    before = cells(own, commissioning.residual)
+    after = cells(own, chosen[0].residual)
+    score = misfit(after, before, settings.model_error)
+    second = _second(desk, evidence, chosen[0], allowance)
+    limit = desk.thresholds.effect + allowance
+    return Explanation(
+        evidence=evidence,
+        commissioning=commissioning,
+        fits=tuple(ranked),
+        chosen=tuple(chosen),
+        weights=tuple(weights),
+        adequate=score < desk.thresholds.misfit and second < limit,
+        score=score,
+        second=second,
+        before=tuple(before),
+        after=tuple(after),
+    )
+
+
+def _commissioning(desk: _Desk, evidence: Evidence, leader: Fit) -> Fit:
+    """The best fit without a cause, from nominal, from the first look, and beside the leader.
+
+    Beside the leader: what it moves, where commissioning may have moved it too, stays.
+    """
+    first, runs = desk.first, evidence.runs
+    starts = [runs.origin, np.where(runs.sd > 0.0, leader.shift, 0.0)]
+    if first.commissioning is not None:
+        starts.append(first.commissioning.shift)
+    base = first.screen.bank.base
+    tried = [refine(evidence, (), start, base) for start in starts]
+    best = min(tried, key=lambda fit: fit.chi2)
+    return refine(evidence, (), best.shift, best.local, desk.settings.rounds)
+
+
+def _second(desk: _Desk, evidence: Evidence, fit: Fit, allowance: float) -> float:
+    """Best score of a further cause beside a fit: by the nominal bank, then by one at the fit."""
+    bank = desk.first.screen.bank
+    z = residual_about(evidence, fit, bank.base)
+    suspects = Screen(bank, evidence.whitening, fit.free).suspects(z)
+    score = suspects[0].score if suspects else 0.0
+    if score < desk.thresholds.effect + allowance:
+        return score
+    return max((s.score for s in _suspects_at(desk, evidence, fit)[1]), default=0.0)
+
+
+def _suspects_at(
+    desk: _Desk, evidence: Evidence, fit: Fit
+) -> tuple[tuple[Hypothesis, ...], list[Suspect]]:
+    """Further causes as a bank linearised at a fit sees them."""
+    bank = desk.first.screen.bank
+    rest = tuple(h for h in bank.hypotheses if h not in fit.causes)
+    local = build_bank(evidence.runs, fit.shift, rest, desk.progress)
+    z = residual_about(evidence, fit, local.base)
+    return rest, Screen(local, evidence.whitening, fit.free).suspects(z)
+
+
+def _pairs(desk: _Desk, single: Explanation) -> Explanation | None:
+    """Pairs from the bank in closed form, and second causes beside the two best single ones."""
+    first, library = desk.first, desk.first.screen.bank.hypotheses
+    starts: dict[frozenset[str], tuple[tuple[Hypothesis, ...], list[FloatArray]]] = {}
+
+    def propose(causes: tuple[Hypothesis, ...], sizes: list[FloatArray]) -> None:
+        starts.setdefault(frozenset(h.label for h in causes), (causes, sizes))
+
+    for fit in single.fits[:2]:
+        rest, suspects = _suspects_at(desk, single.evidence, fit)
+        for suspect in suspects[: PAIRS // 3]:
+            if suspect.score > 0.0:
+                propose((*fit.causes, rest[suspect.hypothesis]), [fit.sizes, suspect.sizes])
+    for one, two in first.screen.pairs(first.z, PAIRS):
+        propose((library[one.hypothesis], library[two.hypothesis]), [one.sizes, two.sizes])
+    fits = []
+    for n, (causes, sizes) in enumerate(list(starts.values())[:PAIRS]):
+        desk.progress(n / PAIRS, "fitting pairs of causes")
+        fits.append(_fit(single.evidence, causes, sizes, desk, desk.settings.rounds))
+    if not fits:
+        return None
+    double = _judge(desk, fits)
+    fall = single.best.chi2 - double.best.chi2
+    explained = max(double.commissioning.chi2 - double.best.chi2, 0.0)
+    least = desk.thresholds.effect + desk.settings.model_error**2 * explained
+    return double if double.adequate and fall > least else None

@@ -1,0 +1,140 @@
+"""held_out_gain: does the extended model predict recordings that it has not seen better?"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ves_twin.diagnosis.linearise import linearise
+from ves_twin.diagnosis.metric import Metric
+from ves_twin.diagnosis.noise import Whitening
+from ves_twin.diagnosis.refine import Fit
+from ves_twin.diagnosis.runs import Runs
+from ves_twin.types import FloatArray, IntArray, SingleArray
+
+BLOCK_SECONDS = 0.5
+"""Length of the stretches of time that are drawn again: longer than a residual remembers."""
+
+DRAWS = 2000
+"""Resamples of the stretches."""
+
+INVISIBLE = 0.02
+"""Excess of mean z^2 over noise below which the held-out recording does not show the effect."""
+
+
+@dataclass(frozen=True)
+class Gain:
+    """Share of the excess error that an extension takes away on held-out recordings.
+
+    Attributes:
+        share: (before - after) / (before - floor), the floor of mean z^2 being 1; None where the
+            nominal model has no excess to take away.
+        low, high: interval over stretches of time.
+        before, after: mean z^2 of the nominal and of the extended model, each with its
+            commissioning errors tuned on the first recordings.
+    """
+
+    share: float | None
+    low: float | None
+    high: float | None
+    before: float
+    after: float
+
+    @property
+    def passed(self) -> bool:
+        """The gate for writing an extended plant: the whole interval is a gain."""
+        return self.low is not None and self.low > 0.0
+
+
+def held_out_gain(
+    runs: Runs,
+    measured: SingleArray,
+    whitening: Whitening,
+    nominal: Fit,
+    extended: Fit,
+    confidence: float = 0.90,
+    seed: int = 0,
+) -> Gain:
+    """Predict held-out recordings by both models and compare.
+
+    Each model carries over what the first recordings told of its nuisances, mean and covariance;
+    those that are new in each recording have their prior. z' (I + N N')^-1 z is then chi^2 with as
+    many degrees of freedom as samples, if the model is right.
+
+    Args:
+        runs: of the held-out recordings.
+        measured: their channels (rows, c).
+        whitening: their noise.
+        nominal: fit of commissioning errors alone to the first recordings.
+        extended: fit of the causes to them.
+        confidence: of the interval.
+        seed: of the resampling.
+    """
+    left = _energies(runs, measured, whitening, extended)
+    own = whitening.adapted(left[1])
+    after = _energies(runs, measured, own, extended)[0]
+    before = _energies(runs, measured, own, nominal)[0]
+    lengths = _stretches(runs, own)
+    rng = np.random.default_rng(seed)
+    drawn = rng.integers(0, len(lengths), (DRAWS, len(lengths)))
+    a, b, n = after[drawn].sum(1), before[drawn].sum(1), lengths[drawn].sum(1)
+    mean_before, mean_after = before.sum() / lengths.sum(), after.sum() / lengths.sum()
+    excess = mean_before - 1.0
+    if excess < INVISIBLE:
+        return Gain(None, None, None, float(mean_before), float(mean_after))
+    shares = (b - a) / n / excess
+    tail = 0.5 * (1.0 - confidence)
+    low, high = np.quantile(shares, [tail, 1.0 - tail])
+    share = (mean_before - mean_after) / excess
+    return Gain(float(share), float(low), float(high), float(mean_before), float(mean_after))
+
+
+def _energies(
+    runs: Runs, measured: SingleArray, whitening: Whitening, fit: Fit
+) -> tuple[FloatArray, FloatArray]:
+    """Contribution of each stretch of time to the predictive chi^2, and the residual left."""
+    there = fit.local.runs
+    shared = [n for n, i in enumerate(fit.active) if there.coordinates[i].recording == -1]
+    names = [axis.parameter.name for axis in runs.coordinates]
+    carried = np.array(
+        [names.index(there.coordinates[fit.active[n]].parameter.name) for n in shared], int
+    )
+    point = runs.origin
+    point[carried] = fit.shift[fit.active[shared]]
+    new = np.array([i for i in runs.nuisances if runs.coordinates[i].recording != -1], int)
+    covariance = fit.posterior[np.ix_(shared, shared)]
+    sd = np.sqrt(np.maximum(np.diag(covariance), 1e-30))
+    spreads = np.concatenate([sd, runs.sd[new]])
+    local = linearise(runs, point, axes=(np.concatenate([carried, new]), spreads))
+    columns = whitening.apply(local.columns).T
+    count = len(shared)
+    values, vectors = np.linalg.eigh(covariance / np.outer(sd, sd))
+    root = vectors * np.sqrt(np.maximum(values, 0.0))
+    columns = np.concatenate([columns[:, :count] @ root, columns[:, count:]], axis=1)
+    z = whitening.apply(measured - local.prediction)
+    left = Metric(columns).project(z)
+    parts = [
+        np.add.reduceat(np.sum(block, axis=1), _starts(runs, k, len(block)))
+        for k, block in enumerate(whitening.blocks(z * left))
+    ]
+    return np.concatenate(parts), left
+
+
+def _starts(runs: Runs, k: int, rows: int) -> IntArray:
+    stride = max(1, round(BLOCK_SECONDS / runs.grids[k].step))
+    return np.arange(0, max(rows - stride // 2, 1), stride, dtype=np.int64)
+
+
+def _stretches(runs: Runs, whitening: Whitening) -> FloatArray:
+    """Samples in each stretch."""
+    ones = np.ones(len(whitening.apply(np.zeros(_rows(runs), np.float32))))
+    parts = [
+        np.add.reduceat(np.sum(block, axis=1), _starts(runs, k, len(block)))
+        for k, block in enumerate(whitening.blocks(ones))
+    ]
+    return np.concatenate(parts)
+
+
+def _rows(runs: Runs) -> tuple[int, int]:
+    return runs.slices[-1].stop, len(runs.columns)

@@ -1,0 +1,64 @@
+"""separations: which next programme would tell the rivals apart."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from ves_twin.diagnosis.forward import Programme
+from ves_twin.diagnosis.linearise import linearise
+from ves_twin.diagnosis.metric import Metric
+from ves_twin.diagnosis.noise import whitening_declared
+from ves_twin.diagnosis.refine import Fit
+from ves_twin.diagnosis.runs import Runs
+from ves_twin.types import FloatArray
+
+
+@dataclass(frozen=True)
+class Separation:
+    """A programme and the chi^2 by which it is expected to part the two likest rivals."""
+
+    programme: Programme
+    chi2: float
+
+
+def separations(
+    there: Runs, rivals: Sequence[Fit], programmes: Sequence[Programme]
+) -> list[Separation]:
+    """Candidate programmes by falling separation of the rivals.
+
+    For rivals i and j the separation is min over a of |s_i - a s_j|^2 with the nuisances
+    marginalised: what rival j, at whatever size, leaves unexplained of rival i.
+
+    Args:
+        there: runs in which the rivals were fitted.
+        rivals: their fits.
+        programmes: what could be fed in next.
+    """
+    found = []
+    for programme in programmes:
+        runs = Runs(there.forward, (programme,), there.columns, there.workers)
+        base = linearise(runs, runs.origin)
+        whitening = whitening_declared(runs)
+        metric = Metric(whitening.apply(base.columns).T)
+        shifts = [_carry(there, fit, runs) for fit in rivals]
+        changes = whitening.apply(runs.many(shifts) - base.prediction).T
+        found.append(Separation(programme, _closest(changes.T @ metric.project(changes))))
+    return sorted(found, key=lambda separation: -separation.chi2)
+
+
+def _carry(there: Runs, fit: Fit, runs: Runs) -> FloatArray:
+    """A cause's departures alone, on the axes of other runs."""
+    names = [axis.parameter.name for axis in runs.coordinates]
+    free = fit.active[: len(fit.sizes)]
+    where = np.array([names.index(there.coordinates[i].parameter.name) for i in free], int)
+    return runs.depart(runs.origin, where, fit.sizes)
+
+
+def _closest(gram: FloatArray) -> float:
+    power = np.maximum(np.diag(gram), 1e-12)
+    apart = power[:, None] - gram**2 / power
+    np.fill_diagonal(apart, np.inf)
+    return float(np.max([np.min(apart), 0.0]))

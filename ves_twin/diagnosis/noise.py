@@ -1,0 +1,187 @@
+"""Whitening: residuals in units of measurement noise, white in time and across channels."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.linalg import solve_toeplitz
+from scipy.signal import lfilter
+
+from ves_twin.diagnosis.runs import Runs
+from ves_twin.errors import InvalidInputError
+from ves_twin.recording.recording import Recording
+from ves_twin.types import FloatArray, SingleArray
+
+ORDER = 8
+"""Order of the autoregression, as in the study behind the method (AR(8))."""
+
+FLOOR_FROM = 0.3
+"""Share of the Nyquist rate above which a residual is taken as noise: 15 Hz of 50 Hz."""
+
+LEVEL_RANGE = (0.4, 2.5)
+"""Limits of the noise power that a record may claim for itself, against the declared one."""
+
+COLOURS = np.linspace(-0.3, 0.45, 31)
+"""Lag-one colours that are tried when a record's own noise is fitted."""
+
+
+@dataclass(frozen=True)
+class Whitening:
+    """z = C A(q) r: an autoregression for each channel, then C across the channels.
+
+    A noise e with autocovariance g obeys sum_j a_j e[t - j] = w[t] (Yule-Walker), so A(q) e is
+    white with covariance S, and C = chol(S)^-1 makes it unit and uncorrelated.
+
+    Attributes:
+        runs: whose rows are whitened.
+        filters: a_0 = 1, a_1 ... of each recording and channel (recordings, c, ORDER + 1).
+        mixing: C of each recording (recordings, c, c).
+        colour: lag-one coefficient left in each recording and whitened channel (recordings, c).
+        level: sd of what is then left (recordings, c).
+    """
+
+    runs: Runs
+    filters: FloatArray
+    mixing: FloatArray
+    colour: FloatArray
+    level: FloatArray
+
+    def apply(self, stack: SingleArray) -> FloatArray:
+        """Whitened rows, flattened: (..., rows, c) -> (..., samples)."""
+        if stack.size == 0:
+            count = sum(s.stop - s.start - ORDER - 1 for s in self.runs.slices)
+            return np.zeros((*stack.shape[:-2], count * self.mixing.shape[1]))
+        parts = []
+        for k, rows in enumerate(self.runs.slices):
+            piece = self._one(k, stack[..., rows, :])
+            parts.append(piece.reshape(*piece.shape[:-2], -1))
+        return np.concatenate(parts, axis=-1)
+
+    def blocks(self, z: FloatArray) -> list[FloatArray]:
+        """Whitened samples by recording: (samples,) -> (rows, c) each."""
+        width, start, parts = self.mixing.shape[1], 0, []
+        for rows in self.runs.slices:
+            count = (rows.stop - rows.start - ORDER - 1) * width
+            parts.append(z[start : start + count].reshape(-1, width))
+            start += count
+        return parts
+
+    def times(self) -> list[FloatArray]:
+        """Times [s] of the whitened rows of each recording."""
+        return [time[ORDER + 1 :] for time in self.runs.times]
+
+    def adapted(self, z: FloatArray) -> Whitening:
+        """With level and lag-one colour as this record shows them above FLOOR_FROM (Whittle fit).
+
+        Minimises mean(I/(s g)) + log s + mean(log g) over s and g = |1 - rho e^-iw|^-2. A median
+        would resist lines better, but costs a fifth of the precision.
+
+        Args:
+            z: whitened residual of this record.
+        """
+        colour, level = self.colour.copy(), self.level.copy()
+        for k, block in enumerate(self.blocks(z)):
+            power, angle = _periodogram(block)
+            shapes = 1.0 / np.abs(1.0 - COLOURS[:, None] * np.exp(-1j * angle)) ** 2
+            scale = np.mean(power[None] / shapes[:, :, None], axis=1)
+            cost = np.log(scale) + np.mean(np.log(shapes), axis=1)[:, None]
+            best = np.argmin(cost, axis=0)
+            colour[k] = np.clip(self.colour[k] + COLOURS[best], COLOURS[0], COLOURS[-1])
+            found = np.sqrt(scale[best, np.arange(len(best))]) * self.level[k]
+            low, high = np.sqrt(LEVEL_RANGE)
+            level[k] = np.clip(found, low, high)
+        return Whitening(self.runs, self.filters, self.mixing, colour, level)
+
+    def draw(self, rng: np.random.Generator, level: float, colour: float) -> SingleArray:
+        """Noise (rows, c) that this whitening takes as unit white, but for a level and a colour."""
+        parts = []
+        for k, rows in enumerate(self.runs.slices):
+            count = rows.stop - rows.start + 50
+            white = level * rng.standard_normal((count, self.mixing.shape[1]))
+            tinted = lfilter([1.0], [1.0, -colour], white, axis=0)
+            mixed = np.linalg.solve(self.mixing[k], tinted.T).T
+            shaped = [lfilter([1.0], a, mixed[:, c]) for c, a in enumerate(self.filters[k])]
+            parts.append(np.stack(shaped, axis=1)[50:])
+        return np.concatenate(parts).astype(np.float32)
+
+    def _one(self, k: int, rows: SingleArray) -> FloatArray:
+        shaped = np.stack(
+            [lfilter(a, [1.0], rows[..., c], axis=-1) for c, a in enumerate(self.filters[k])],
+            axis=-1,
+        )
+        white = shaped[..., ORDER:, :] @ self.mixing[k].T
+        return np.asarray((white[..., 1:, :] - self.colour[k] * white[..., :-1, :]) / self.level[k])
+
+
+def whitening_declared(runs: Runs) -> Whitening:
+    """Whitening from the declared white noise of each channel, as the analysis grid shapes it."""
+    channels = [runs.forward.channels[c] for c in runs.columns]
+    covariances = [
+        np.array([grid.autocovariance(channel.sd, ORDER) for channel in channels])
+        for grid in runs.grids
+    ]
+    return _whitening(runs, covariances, [np.eye(len(channels))] * len(runs.grids))
+
+
+def whitening_measured(runs: Runs, standstill: Recording) -> Whitening:
+    """Whitening learnt from a recording of the rig standing still.
+
+    Args:
+        runs: whose rows will be whitened; all recordings must share the standstill's period.
+        standstill: nothing moves in it, so what it shows beyond a slow line is noise.
+
+    Raises:
+        InvalidInputError: shorter than 20 rows of the grid for each coefficient, or another rate.
+    """
+    channels = [runs.forward.channels[c] for c in runs.columns]
+    rows = np.stack([standstill[c.signal][:, c.column] for c in channels], axis=1)
+    grid = runs.grids[0]
+    period = float(np.mean(np.diff(standstill.time)))
+    if any(abs(g.period / period - 1.0) > 0.01 for g in runs.grids):
+        raise InvalidInputError("standstill period [s]", period, f"{grid.period} as recorded")
+    noise = grid.reduce(rows)
+    count = len(noise)
+    if count < 20 * ORDER:
+        raise InvalidInputError("standstill rows on the grid", count, f"at least {20 * ORDER}")
+    line = np.vander(np.linspace(-1.0, 1.0, count), 2)
+    noise = noise - line @ np.linalg.lstsq(line, noise, rcond=None)[0]
+    products = [noise[: count - j].T @ noise[j:] / count for j in range(ORDER + 1)]
+    covariance = np.array([np.diag(p) for p in products]).T
+    filters = _filters(covariance)
+    inner = np.stack([lfilter(a, [1.0], noise[:, c])[ORDER:] for c, a in enumerate(filters)])
+    correlation = np.atleast_2d(np.corrcoef(inner))
+    copies = len(runs.grids)
+    return _whitening(runs, [covariance] * copies, [correlation] * copies)
+
+
+def _whitening(
+    runs: Runs, covariances: Sequence[FloatArray], correlations: Sequence[FloatArray]
+) -> Whitening:
+    filters, mixing = [], []
+    for covariance, correlation in zip(covariances, correlations, strict=True):
+        a = _filters(covariance)
+        sd = np.sqrt(np.sum(a * covariance, axis=1))
+        filters.append(a)
+        mixing.append(np.linalg.inv(np.linalg.cholesky(correlation * np.outer(sd, sd))))
+    shape = (len(filters), len(runs.columns))
+    return Whitening(runs, np.array(filters), np.array(mixing), np.zeros(shape), np.ones(shape))
+
+
+def _filters(covariance: FloatArray) -> FloatArray:
+    """Yule-Walker: autocovariances (c, ORDER + 1) -> prediction-error filters (c, ORDER + 1)."""
+    rows = []
+    for g in covariance:
+        column = g.copy()
+        column[0] *= 1.0 + 1e-6  # a pure line would make the system singular
+        rows.append(np.concatenate([[1.0], solve_toeplitz(column[:-1], -column[1:])]))
+    return np.array(rows)
+
+
+def _periodogram(block: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Power (f, c) and angle [rad a sample] (f,) of the part that is taken as noise."""
+    spectrum = np.abs(np.fft.rfft(block, axis=0)) ** 2 / len(block)
+    angle = np.linspace(0.0, np.pi, len(spectrum))
+    kept = (angle > FLOOR_FROM * np.pi) & (angle < 0.98 * np.pi)
+    return np.asarray(spectrum[kept]), np.asarray(angle[kept])

@@ -1,0 +1,41 @@
+"""probabilities: how sure one cause is against its rivals, given the library."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ves_twin.diagnosis.refine import Fit
+
+
+def probabilities(fits: list[Fit], allowance: float, odds: float) -> tuple[list[Fit], list[float]]:
+    """The fits that cannot be ruled out, most probable first, with their probabilities.
+
+    By Laplace's method the evidence of a fit is exp(-chi^2 / 2) times, for each free parameter,
+    sqrt(2 pi) sd p(size); the prior p is log-uniform in size between the hypothesis's smallest and
+    largest, equal over its signs. Hypotheses are equally probable before the record. Differences
+    of chi^2 within what the model may be wrong by count as none.
+
+    Args:
+        fits: rivals, of equal numbers of causes.
+        allowance: chi^2 that the model's own error is worth.
+        odds: a fit less probable than the best by more than this is dropped.
+    """
+    least = min(fit.chi2 for fit in fits)
+    logs = np.array([-0.5 * max(fit.chi2 - least - allowance, 0.0) + _occam(fit) for fit in fits])
+    # among equals within the allowance the smaller chi^2 goes first
+    order = sorted(range(len(fits)), key=lambda i: (-round(float(logs[i]), 1), fits[i].chi2))
+    kept = [i for i in order if logs[i] > logs[order[0]] - np.log(odds)]
+    weights = np.exp(logs[kept] - logs[kept[0]])
+    return [fits[i] for i in kept], [float(w) for w in weights / np.sum(weights)]
+
+
+def _occam(fit: Fit) -> float:
+    """Ln of prior density times width of the likelihood, over the free parameters."""
+    total, n = 0.0, 0
+    for cause in fit.causes:
+        for smallest, largest in zip(cause.smallest, cause.largest, strict=True):
+            size = float(np.clip(abs(fit.sizes[n]), smallest, largest))
+            prior = 1.0 / (size * np.log(largest / smallest) * len(cause.signs))
+            total += float(np.log(np.sqrt(2.0 * np.pi * fit.covariance[n, n]) * prior))
+            n += 1
+    return total

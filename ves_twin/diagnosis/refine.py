@@ -1,0 +1,259 @@
+"""refine: the most probable size of a cause, together with the nuisances, by the full forward."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ves_twin.diagnosis.forward import Hypothesis
+from ves_twin.diagnosis.linearise import Linearisation, linearise
+from ves_twin.diagnosis.noise import Whitening
+from ves_twin.diagnosis.runs import Runs
+from ves_twin.types import FloatArray, IntArray, SingleArray
+
+ITERATIONS = 12
+"""Steps at most from one linearisation."""
+
+FARTHEST = 8.0
+"""Nuisances are held within this many commissioning sd: beyond, it is no commissioning error."""
+
+CONVERGED = 0.02
+"""Fall of chi^2 that is not worth another run; names turn on differences of 9 and more."""
+
+NEAR = 0.3
+"""Commissioning sd within which nuisance columns are taken to hold; absent parameters: 6 %."""
+
+HALVINGS = (1.0, 0.4, 0.1)
+"""Shares of a step that are tried until chi^2 falls."""
+
+
+@dataclass(frozen=True)
+class Evidence:
+    """What was measured, on the analysis grid (rows, c), and how its noise is whitened."""
+
+    runs: Runs
+    measured: SingleArray
+    whitening: Whitening
+
+
+@dataclass(frozen=True)
+class Fit:
+    """The most probable point under one set of causes.
+
+    chi^2 = |W (y - f(x) - delta c)|^2 + sum (nu / sd)^2 + delta^2, the causes' own parameters free.
+
+    Attributes:
+        causes: what was free, none for commissioning errors alone.
+        shift: departures there (coordinates,).
+        step_share: delta, in units of the discretisation column.
+        sizes: departures of the free parameters, cause by cause.
+        covariance: of the fault's share of them: what is measured plus the commissioning variance.
+        active: coordinates that were fitted, the free ones first (k,).
+        posterior: covariance of those departures given the record (k, k).
+        chi2: at that point.
+        residual: whitened, nuisances and causes taken off (samples,).
+        free: whitened direction of each free parameter (samples, k).
+        local: linearisation that was used last.
+        prediction: channels at that point (rows, c), without the discretisation share.
+    """
+
+    causes: tuple[Hypothesis, ...]
+    shift: FloatArray
+    step_share: float
+    sizes: FloatArray
+    covariance: FloatArray
+    active: IntArray
+    posterior: FloatArray
+    chi2: float
+    residual: FloatArray
+    free: FloatArray
+    local: Linearisation
+    prediction: SingleArray
+
+
+@dataclass(frozen=True)
+class _Point:
+    shift: FloatArray
+    delta: float
+    prediction: SingleArray
+    residual: FloatArray
+    chi2: float
+
+
+class _Search:
+    """Gauss-Newton in whitened space; the Jacobian follows the runs it makes anyway (Broyden).
+
+    J has a column for each free parameter, for one sd of each nuisance, and for delta. After a
+    move m that changed the prediction by c instead of J m it becomes J + (c - J m) m' / m'm, so
+    columns that no longer hold turn right without a run of their own.
+
+    Source: Broyden 1965, the good update.
+    """
+
+    def __init__(self, evidence: Evidence, free: IntArray, local: Linearisation) -> None:
+        runs = evidence.runs
+        self.evidence, self.runs, self.free, self.local = evidence, runs, free, local
+        kept = np.flatnonzero(~np.isin(runs.nuisances, free))
+        self.nuisances = runs.nuisances[kept]
+        picked = local.columns[[*kept, len(runs.nuisances)]]
+        self.columns = evidence.whitening.apply(picked).T
+        self.low = runs.low.copy()
+        self.high = runs.high.copy()
+        reach = FARTHEST * runs.sd[self.nuisances]
+        self.low[self.nuisances] = np.maximum(self.low[self.nuisances], -reach)
+        self.high[self.nuisances] = np.minimum(self.high[self.nuisances], reach)
+        self.unit = np.ones(len(free) + len(self.nuisances) + 1)
+        self.unit[len(free) : -1] = runs.sd[self.nuisances]
+
+    def at(self, shift: FloatArray, delta: float) -> _Point:
+        prediction = self.runs.one(shift)
+        if not np.all(np.isfinite(prediction)):
+            return _Point(shift, delta, prediction, np.zeros(0), np.inf)
+        difference = self.evidence.measured - prediction
+        residual = self.evidence.whitening.apply(
+            difference - np.float32(delta) * self.local.columns[-1]
+        )
+        pull = shift[self.nuisances] / self.runs.sd[self.nuisances]
+        chi2 = float(residual @ residual + pull @ pull + delta**2)
+        return _Point(shift, delta, prediction, residual, chi2)
+
+    def jacobian(self, point: _Point) -> FloatArray:
+        """Columns at a point: free parameters by a step of 4 %, nuisances as they were given."""
+        columns = []
+        for n, i in enumerate(self.free):
+            step = 0.04 * abs(point.shift[i]) + 1e-3 * self.runs.sd[i]
+            step = max(step, 1e-5 * (self.high[i] - self.low[i]))
+            if point.shift[i] + step > self.high[i]:
+                step = -step
+            moved = point.shift.copy()
+            moved[i] += step
+            change = self.runs.one(moved) - point.prediction
+            self.unit[n] = abs(step)
+            columns.append(self.evidence.whitening.apply(change) * np.sign(step))
+        free = np.array(columns).reshape(-1, len(point.residual)).T
+        return np.concatenate([free, self.columns], axis=1)
+
+    def hessian(self, jacobian: FloatArray) -> FloatArray:
+        prior = np.ones(len(self.unit))
+        prior[: len(self.free)] = 0.0
+        return np.asarray(jacobian.T @ jacobian + np.diag(prior))
+
+    def run(self, point: _Point) -> tuple[_Point, FloatArray]:
+        if not np.isfinite(point.chi2):
+            return point, np.zeros((0, len(self.unit)))
+        jacobian = self.jacobian(point)
+        for _ in range(ITERATIONS):
+            found = self._step(point, jacobian)
+            fall = point.chi2 - found.chi2
+            point = found
+            if fall < CONVERGED + 1e-6 * point.chi2:
+                break
+        return point, jacobian
+
+    def _step(self, point: _Point, jacobian: FloatArray) -> _Point:
+        """The next point, or the same one if none is better; updates the Jacobian in place."""
+        axes = np.concatenate([self.free, self.nuisances])
+        for share in HALVINGS:
+            here = np.append(point.shift[axes], point.delta) / self.unit
+            prior = np.where(np.arange(len(here)) < len(self.free), 0.0, here)
+            hessian = self.hessian(jacobian)
+            scale = 1.0 / np.sqrt(np.maximum(np.diag(hessian), 1e-30))
+            scaled = hessian * np.outer(scale, scale) + 1e-10 * np.eye(len(scale))
+            gradient = jacobian.T @ point.residual - prior
+            there = here + share * scale * np.linalg.solve(scaled, scale * gradient)
+            shift = point.shift.copy()
+            shift[axes] = (there * self.unit)[:-1]
+            trial = self.at(np.clip(shift, self.low, self.high), float(there[-1]))
+            if not np.isfinite(trial.chi2):
+                continue
+            move = np.append(trial.shift[axes], trial.delta) / self.unit - here
+            size = float(move @ move)
+            if size > 1e-12:
+                surprise = point.residual - trial.residual - jacobian @ move
+                jacobian += np.outer(surprise, move / size)
+            if trial.chi2 < point.chi2:
+                return trial
+        return point
+
+
+def refine(
+    evidence: Evidence,
+    causes: tuple[Hypothesis, ...],
+    shift: FloatArray,
+    local: Linearisation,
+    rounds: int = 0,
+) -> Fit:
+    """Fit causes and nuisances with the full forward.
+
+    Args:
+        evidence: what was measured.
+        causes: whose parameters are free; none fits commissioning errors alone.
+        shift: departures to start from (coordinates,).
+        local: nuisance columns to use.
+        rounds: how often at most the nuisance columns are computed anew at the fit; ends when
+            it has stayed within NEAR of where they were computed.
+    """
+    runs = evidence.runs
+    free = (
+        np.concatenate([runs.indices(h) for h in causes]).astype(int)
+        if causes
+        else np.zeros(0, int)
+    )
+    search = _Search(evidence, free, local)
+    start = np.clip(shift, search.low, search.high)
+    point, jacobian = search.run(search.at(start, 0.0))
+    for _ in range(rounds):
+        if _near(runs, search, point.shift):
+            break
+        search = _Search(evidence, free, linearise(runs, point.shift))
+        point, jacobian = search.run(search.at(point.shift, point.delta))
+    hessian = search.hessian(jacobian)
+    spread = np.diag(1.0 / np.sqrt(np.maximum(np.diag(hessian), 1e-30)))
+    inverse = spread @ np.linalg.pinv(spread @ hessian @ spread, hermitian=True) @ spread
+    posterior = inverse[:-1, :-1] * np.outer(search.unit[:-1], search.unit[:-1])
+    count = len(free)
+    return Fit(
+        causes=causes,
+        shift=point.shift,
+        step_share=point.delta,
+        sizes=point.shift[free],
+        covariance=posterior[:count, :count] + np.diag(runs.sd[free] ** 2),
+        active=np.concatenate([free, search.nuisances]),
+        posterior=posterior,
+        chi2=point.chi2,
+        residual=point.residual,
+        free=jacobian[:, :count],
+        local=search.local,
+        prediction=point.prediction,
+    )
+
+
+def _near(runs: Runs, search: _Search, shift: FloatArray) -> bool:
+    """Whether a point is where the nuisance columns were computed, as far as they can tell."""
+    moved = np.abs(shift - search.local.point)
+    scale = np.where(runs.sd > 0.0, runs.sd, 0.2 * np.abs(shift) + 1e-12)
+    return bool(np.all(moved <= NEAR * scale))
+
+
+def bare_residual(evidence: Evidence, fit: Fit) -> SingleArray:
+    """Measured less predicted (rows, c), the discretisation share taken off, not whitened."""
+    share = np.float32(fit.step_share) * fit.local.columns[-1]
+    return np.asarray(evidence.measured - fit.prediction - share)
+
+
+def residual_about(evidence: Evidence, fit: Fit, base: Linearisation) -> FloatArray:
+    """Whitened residual as a linear model about a base would have it, for a screen.
+
+    W (y - f(x)) + N nu: what the full forward says at the fitted nuisances, carried back along the
+    base's columns to where their prior has its mean. Second-order terms of strong nuisances, which
+    the projection cannot see, are then gone.
+
+    Source: the correction y' = y - (f(nu) - f(0) - J nu).
+    """
+    runs = evidence.runs
+    pull = fit.shift[runs.nuisances] / runs.sd[runs.nuisances]
+    for cause in fit.causes:
+        pull[np.isin(runs.nuisances, runs.indices(cause))] = 0.0
+    back = np.tensordot(pull.astype(np.float32), base.columns[:-1], axes=1)
+    return evidence.whitening.apply(evidence.measured - fit.prediction + back)

@@ -1,0 +1,153 @@
+"""Runs: predictions of a forward on the analysis grid, for all recordings together."""
+
+from __future__ import annotations
+
+import multiprocessing
+from collections.abc import Callable, Iterator, Sequence
+from concurrent.futures import ProcessPoolExecutor
+from dataclasses import dataclass, replace
+from functools import cached_property
+from itertools import pairwise
+
+import numpy as np
+
+from ves_twin.diagnosis.forward import Forward, Hypothesis, Parameter, Programme
+from ves_twin.diagnosis.grid import AnalysisGrid
+from ves_twin.types import FloatArray, IntArray, SingleArray
+
+Progress = Callable[[float, str], None]
+"""Called with the share done, 0 to 1, and what is being done."""
+
+
+def silent(share: float, what: str) -> None:
+    """Progress that tells nobody."""
+
+
+@dataclass(frozen=True)
+class Coordinate:
+    """One axis of the space of departures: a parameter, in one recording or in all (-1)."""
+
+    parameter: Parameter
+    recording: int = -1
+
+
+@dataclass(frozen=True)
+class Runs:
+    """Predictions of all recordings, stacked by rows, from one vector of departures.
+
+    A departure is a value minus its nominal, one for each coordinate; a parameter that is drawn
+    anew for each recording has a coordinate for each.
+
+    Attributes:
+        forward: the plant.
+        programmes: what was fed in, one for each recording.
+        columns: channels of the forward that were recorded.
+        workers: processes; 1 computes here.
+    """
+
+    forward: Forward
+    programmes: tuple[Programme, ...]
+    columns: tuple[int, ...]
+    workers: int = 1
+
+    @cached_property
+    def coordinates(self) -> tuple[Coordinate, ...]:
+        """The axes of the space of departures."""
+        axes = []
+        for parameter in self.forward.parameters:
+            copies = range(len(self.programmes)) if parameter.per_recording else (-1,)
+            axes += [Coordinate(parameter, k) for k in copies]
+        return tuple(axes)
+
+    @cached_property
+    def sd(self) -> FloatArray:
+        """Commissioning sd of each coordinate."""
+        return np.array([axis.parameter.sd for axis in self.coordinates])
+
+    @cached_property
+    def nuisances(self) -> IntArray:
+        """Coordinates with a commissioning sd."""
+        return np.flatnonzero(self.sd > 0.0)
+
+    @cached_property
+    def low(self) -> FloatArray:
+        """Lower bound of each departure."""
+        return np.array([a.parameter.low - a.parameter.nominal for a in self.coordinates])
+
+    @cached_property
+    def high(self) -> FloatArray:
+        """Upper bound of each departure."""
+        return np.array([a.parameter.high - a.parameter.nominal for a in self.coordinates])
+
+    @cached_property
+    def grids(self) -> tuple[AnalysisGrid, ...]:
+        """Analysis grid of each recording."""
+        return tuple(AnalysisGrid.of(programme.period) for programme in self.programmes)
+
+    @cached_property
+    def times(self) -> tuple[FloatArray, ...]:
+        """Times of the grid's rows of each recording [s]."""
+        pairs = zip(self.grids, self.programmes, strict=True)
+        return tuple(grid.times(programme.time) for grid, programme in pairs)
+
+    @cached_property
+    def slices(self) -> tuple[slice, ...]:
+        """Rows of each recording in the stack."""
+        ends = np.cumsum([0, *(len(time) for time in self.times)])
+        return tuple(slice(int(a), int(b)) for a, b in pairwise(ends))
+
+    @property
+    def origin(self) -> FloatArray:
+        """No departure."""
+        return np.zeros(len(self.coordinates))
+
+    def indices(self, hypothesis: Hypothesis) -> IntArray:
+        """Coordinates that a hypothesis moves."""
+        names = [axis.parameter.name for axis in self.coordinates]
+        return np.array([names.index(name) for name in hypothesis.parameters])
+
+    def depart(self, base: FloatArray, where: IntArray, sizes: FloatArray) -> FloatArray:
+        """Departures with some coordinates set, held within bounds."""
+        shift = base.copy()
+        shift[where] = sizes
+        return np.clip(shift, self.low, self.high)
+
+    def one(self, shift: FloatArray, refined: bool = False) -> SingleArray:
+        """Prediction (rows, channels) at a vector of departures."""
+        stacks = []
+        for k, (programme, grid) in enumerate(zip(self.programmes, self.grids, strict=True)):
+            values = {
+                axis.parameter.name: axis.parameter.nominal + float(shift[i])
+                for i, axis in enumerate(self.coordinates)
+                if axis.recording in (-1, k)
+            }
+            rows = self.forward.simulate(programme, values, refined)
+            stacks.append(grid.reduce(rows[:, list(self.columns)]))
+        return np.concatenate(stacks)
+
+    def many(
+        self, shifts: Sequence[FloatArray], progress: Progress = silent, what: str = ""
+    ) -> SingleArray:
+        """Predictions (k, rows, channels) at many departures, by `workers` processes."""
+        return np.stack(list(self._each(shifts, progress, what))) if len(shifts) else self._none()
+
+    def _none(self) -> SingleArray:
+        rows = sum(len(time) for time in self.times)
+        return np.zeros((0, rows, len(self.columns)), np.float32)
+
+    def _each(
+        self, shifts: Sequence[FloatArray], progress: Progress, what: str
+    ) -> Iterator[SingleArray]:
+        total = len(shifts)
+        if self.workers == 1 or total == 1:
+            for i, shift in enumerate(shifts):
+                progress(i / total, what)
+                yield self.one(shift)
+            return
+        context = multiprocessing.get_context("spawn")
+        alone = replace(self, workers=1)
+        with ProcessPoolExecutor(self.workers, mp_context=context) as pool:
+            chunk = max(1, total // (8 * self.workers))
+            for i, stack in enumerate(pool.map(alone.one, shifts, chunksize=chunk)):
+                progress(i / total, what)
+                yield stack

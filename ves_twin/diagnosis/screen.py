@@ -1,0 +1,126 @@
+"""Screen: rank the hypotheses by what the best scaled signature would explain."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from ves_twin.diagnosis.bank import Bank
+from ves_twin.diagnosis.metric import Metric
+from ves_twin.diagnosis.noise import Whitening
+from ves_twin.types import FloatArray
+
+AMPLITUDE = (0.35, 2.8)
+"""How far a signature may be scaled: beyond, the size next to it in the bank is nearer."""
+
+
+@dataclass(frozen=True)
+class Suspect:
+    """A hypothesis as the screen sees it.
+
+    Attributes:
+        hypothesis: number in the bank's library.
+        score: chi^2 that its best scaled signature takes away.
+        sizes: the departure that does.
+        entry: which entry of the bank that was.
+    """
+
+    hypothesis: int
+    score: float
+    sizes: FloatArray
+    entry: int
+
+
+@dataclass(frozen=True)
+class Screen:
+    """The bank as one record's noise and nuisances see it.
+
+    Attributes:
+        bank: the signatures.
+        whitening: of this record.
+        extra: whitened directions that are free besides the nuisances (samples, k): the
+            parameters of a cause that is fitted already.
+    """
+
+    bank: Bank
+    whitening: Whitening
+    extra: FloatArray | None = None
+
+    @cached_property
+    def metric(self) -> Metric:
+        """Nuisances of the bank's base, and the extra directions with no prior to speak of."""
+        columns = self.whitening.apply(self.bank.base.columns).T
+        if self.extra is not None:
+            norm = np.linalg.norm(self.extra, axis=0)
+            columns = np.concatenate([columns, 1e3 * self.extra / np.maximum(norm, 1e-9)], axis=1)
+        return Metric(columns)
+
+    @cached_property
+    def signatures(self) -> FloatArray:
+        """Whitened signatures (samples, entries)."""
+        return self.whitening.apply(self.bank.signatures).T
+
+    @cached_property
+    def projected(self) -> FloatArray:
+        """Signatures after the nuisances took what they can (samples, entries)."""
+        return self.metric.project(self.signatures)
+
+    @cached_property
+    def gram(self) -> FloatArray:
+        """<s_j, s_k> (entries, entries)."""
+        return np.asarray(self.signatures.T @ self.projected)
+
+    @cached_property
+    def power(self) -> FloatArray:
+        """d^2 of each entry: its size in sigma, squared."""
+        return np.maximum(np.diag(self.gram), 1e-12)
+
+    def suspects(self, z: FloatArray) -> list[Suspect]:
+        """Every hypothesis at its best size, by falling score.
+
+        The score is max over a of 2 a <s, z> - a^2 <s, s>, a within AMPLITUDE.
+
+        Args:
+            z: whitened residual about the bank's base (samples,).
+        """
+        match = self.projected.T @ z
+        amplitude = np.clip(match / self.power, *AMPLITUDE)
+        score = 2.0 * amplitude * match - amplitude**2 * self.power
+        best = []
+        for h in range(len(self.bank.hypotheses)):
+            rows = self.bank.entries(h)
+            if len(rows):
+                k = int(rows[np.argmax(score[rows])])
+                sizes = amplitude[k] * self.bank.sizes[k]
+                best.append(Suspect(h, float(score[k]), sizes, k))
+        return sorted(best, key=lambda suspect: -suspect.score)
+
+    def pairs(self, z: FloatArray, count: int) -> list[tuple[Suspect, Suspect]]:
+        """The best pairs of hypotheses, by closed-form fit of every two signatures.
+
+        Args:
+            z: whitened residual about the bank's base.
+            count: how many pairs, each pair of hypotheses once.
+        """
+        match, g = self.projected.T @ z, self.gram
+        p = self.power
+        det = p[:, None] * p - g**2
+        det = np.where(det < 1e-3 * p[:, None] * p, np.inf, det)
+        a = (p * match[:, None] - g * match) / det
+        score = a * match[:, None] + a.T * match
+        low, high = AMPLITUDE
+        bad = (a < low) | (a > high) | (self.bank.owner[:, None] == self.bank.owner)
+        score = np.triu(np.where(bad | bad.T, -np.inf, score), 1)
+        found: dict[tuple[int, int], tuple[Suspect, Suspect]] = {}
+        for flat in np.argsort(-score, axis=None):
+            i, j = divmod(int(flat), len(p))
+            if score[i, j] <= 0.0 or len(found) == count:
+                break
+            key = (int(self.bank.owner[i]), int(self.bank.owner[j]))
+            if key not in found:
+                first = Suspect(key[0], float(score[i, j]), a[i, j] * self.bank.sizes[i], i)
+                second = Suspect(key[1], float(score[i, j]), a[j, i] * self.bank.sizes[j], j)
+                found[key] = (first, second)
+        return list(found.values())

@@ -1,0 +1,36 @@
+"""Settings: the few numbers a diagnosis is run with."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+
+
+@dataclass(frozen=True)
+class Settings:
+    """How sure, how many, how much is allowed.
+
+    Attributes:
+        alpha: probability that a rig with nothing wrong passes a threshold.
+        nulls: rigs of the null distribution.
+        candidates: hypotheses that are fitted with the full forward.
+        rounds: linearisations at most at a fit.
+        model_error: relative error that the simulated change due to a cause may have. Of a cause
+            that explains chi^2, its square times that may stay, in each cell and in any score.
+        odds: a rival less probable than the best by more than this is not named beside it.
+        confidence: of intervals.
+        workers: processes.
+        cache: folder for banks and thresholds; none if None.
+        seed: of the null distribution.
+    """
+
+    alpha: float = 0.002
+    nulls: int = 100
+    candidates: int = 6
+    rounds: int = 3
+    model_error: float = 0.02
+    odds: float = 100.0
+    confidence: float = 0.90
+    workers: int = 1
+    cache: Path | None = None
+    seed: int = 0

@@ -1,0 +1,79 @@
+"""tolerance_scale: how far rigs really are from nominal, in declared commissioning sd."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from scipy.optimize import brentq
+from scipy.stats import chi2, norm
+
+from ves_twin.diagnosis.bank import Bank
+from ves_twin.diagnosis.linearise import linearise
+from ves_twin.diagnosis.noise import whitening_declared
+from ves_twin.diagnosis.refine import Evidence, bare_residual, refine, residual_about
+from ves_twin.diagnosis.runs import Runs
+from ves_twin.types import FloatArray, SingleArray
+
+VISIBLE = 3.0
+"""A direction counts if one declared sd of it shows with this variance in noise units."""
+
+UNKNOWN_SCALE = 2.5
+"""Scale that is assumed without commissioning recordings (notes on the remedy: kappa = 9.6)."""
+
+FEWEST = 5
+"""Commissioning rigs from which the scale is trusted."""
+
+ALPHA = 0.01
+"""Probability that any of the tolerances of a rig in order passes kappa."""
+
+
+def tolerance_scale(rigs: Sequence[tuple[Runs, SingleArray]]) -> float:
+    """Scale s of the nuisances' spread, from recordings of rigs that are in order.
+
+    With N'N = V L V' and c = V' N' z, c_i^2 / L_i has mean 1 + s^2 L_i; s makes the median of
+    c_i^2 / (L_i (1 + s^2 L_i)) that of chi^2 with one degree of freedom. The median stands what
+    likelihood does not: a few directions in which the model itself is wrong.
+
+    Args:
+        rigs: runs and measured channels of independent rigs or re-mountings.
+    """
+    ratios = [_directions(runs, measured) for runs, measured in rigs]
+    squares = np.concatenate([a for a, _ in ratios])
+    weights = np.concatenate([b for _, b in ratios])
+    goal = float(chi2.median(1))
+
+    def excess(scale: float) -> float:
+        return float(np.median(squares / (1.0 + scale**2 * weights))) - goal
+
+    if excess(1e-3) < 0.0:
+        return 0.0
+    return float(brentq(excess, 1e-3, 1e3))
+
+
+def _directions(runs: Runs, measured: SingleArray) -> tuple[FloatArray, FloatArray]:
+    base = linearise(runs, runs.origin)
+    whitening = whitening_declared(runs)
+    evidence = Evidence(runs, measured, whitening)
+    fit = refine(evidence, (), runs.origin, base)
+    own = whitening.adapted(whitening.apply(bare_residual(evidence, fit)))
+    z = residual_about(Evidence(runs, measured, own), fit, base)
+    columns = own.apply(base.columns[:-1]).T
+    weights, vectors = np.linalg.eigh(columns.T @ columns)
+    kept = weights > VISIBLE
+    along = (vectors.T @ (columns.T @ z))[kept] ** 2 / weights[kept]
+    return along, weights[kept]
+
+
+def naming_limit(bank: Bank, scale: float | None) -> float:
+    """kappa: declared sd beyond which a departure is called a fault, and no commissioning error.
+
+    kappa = s z(1 - alpha / 2 m), m nuisances.
+
+    Args:
+        bank: whose nuisances are counted.
+        scale: of the tolerances, at least 1 is taken; UNKNOWN_SCALE if None.
+    """
+    count = max(len(bank.base.runs.nuisances), 1)
+    factor = UNKNOWN_SCALE if scale is None else max(scale, 1.0)
+    return factor * float(norm.isf(ALPHA / (2.0 * count)))

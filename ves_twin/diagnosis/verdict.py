@@ -1,0 +1,190 @@
+"""Verdict: what a diagnosis says, as it stands in verdict.json."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass, field
+from enum import StrEnum
+from pathlib import Path
+
+from ves_twin.diagnosis.gain import Gain
+from ves_twin.diagnosis.leftover import Leftover
+from ves_twin.errors import FileAccessError
+
+SCHEMA = 1
+"""Version of verdict.json; fields are added without a new one, never changed."""
+
+
+class Kind(StrEnum):
+    """The six answers.
+
+    several: two or more causes together explain it. partial: a cause that beats all rivals on
+    held-out data while something unexplained remains.
+    """
+
+    NOTHING = "nothing"
+    NAMED = "named"
+    AMBIGUOUS = "ambiguous"
+    SEVERAL = "several"
+    PARTIAL = "partial"
+    UNKNOWN = "unknown"
+
+
+@dataclass(frozen=True)
+class Estimate:
+    """A parameter's value and interval; the interval is of the fault's share of the departure.
+
+    `nominal` is the model's value; value - nominal holds the commissioning error too.
+    """
+
+    value: float
+    low: float
+    high: float
+    unit: str
+    nominal: float
+
+    @property
+    def words(self) -> str:
+        """The value with its unit, nominal and interval."""
+        span = f"{self.low:.4g} to {self.high:.4g}"
+        return f"{self.value:.4g} {self.unit} (nominal {self.nominal:.4g}; {span})"
+
+
+@dataclass(frozen=True)
+class Cause:
+    """One named cause.
+
+    Attributes:
+        effect, target: what and where.
+        parameters: name -> estimate.
+        probability: given the library and that one of its causes, or pairs, is at work.
+        firm: False where a commissioning error of `sigmas` declared sd is not excluded.
+        sigmas: largest departure in declared sd; None if it is no commissioning parameter.
+    """
+
+    effect: str
+    target: str
+    parameters: Mapping[str, Estimate]
+    probability: float
+    firm: bool
+    sigmas: float | None
+
+
+@dataclass(frozen=True)
+class ChannelError:
+    """Rms error of a channel before and after, in noise sigma (whitened) and in its unit."""
+
+    before: float
+    after: float
+    before_si: float
+    after_si: float
+    unit: str
+
+
+@dataclass(frozen=True)
+class Basis:
+    """On what the verdict rests: each measured, declared or none."""
+
+    noise: str
+    tolerances: str
+    held_out: str
+
+
+@dataclass(frozen=True)
+class Findable:
+    """Smallest size of a cause that would have been found; None: nothing can be said about it."""
+
+    value: float | None
+    unit: str
+
+
+@dataclass(frozen=True)
+class Proposal:
+    """A next programme with the chi^2 by which it should part the rivals."""
+
+    programme: str
+    separation: float
+
+
+@dataclass(frozen=True)
+class Statistics:
+    """The figures the verdict was taken on, each beside its threshold."""
+
+    effect: float
+    effect_threshold: float
+    misfit: float
+    misfit_threshold: float
+    misfit_after: float | None = None
+    second_effect: float | None = None
+    naming_limit: float | None = None
+    tolerance_scale: float | None = None
+
+
+@dataclass(frozen=True)
+class Verdict:
+    """What was found, how sure it is, and what it rests on.
+
+    `alternatives` are numbers of `causes`: each alternative explains the record by itself, by one
+    cause or by two together; one alternative unless ambiguous.
+    """
+
+    verdict: Kind
+    basis: Basis
+    statistics: Statistics
+    causes: tuple[Cause, ...] = ()
+    alternatives: tuple[tuple[int, ...], ...] = ()
+    residuals: Mapping[str, ChannelError] = field(default_factory=dict)
+    gain: Gain | None = None
+    leftover: Leftover | None = None
+    suspect: str = ""
+    smallest_findable: Mapping[str, Findable] = field(default_factory=dict)
+    twins: tuple[tuple[str, str, float], ...] = ()
+    next_experiment: tuple[Proposal, ...] = ()
+    unseen: tuple[str, ...] = ()
+    excluded: tuple[str, ...] = ()
+    schema: int = SCHEMA
+
+    def to_dict(self) -> dict[str, object]:
+        """Plain values for JSON."""
+        return asdict(self)
+
+    def to_json(self) -> str:
+        """The text of verdict.json."""
+        return json.dumps(self.to_dict(), indent=2, allow_nan=False)
+
+    def save(self, path: Path) -> None:
+        """Write verdict.json.
+
+        Raises:
+            FileAccessError: not writable.
+        """
+        try:
+            path.write_text(self.to_json() + "\n", encoding="utf-8")
+        except OSError as error:
+            raise FileAccessError(f"cannot write {path}: {error.strerror}") from None
+
+    @property
+    def words(self) -> str:
+        """The verdict in one sentence."""
+        match self.verdict:
+            case Kind.NOTHING:
+                return "Nothing beyond noise and commissioning tolerances."
+            case Kind.UNKNOWN:
+                hint = f"; the nearest of its causes is {self.suspect}" if self.suspect else ""
+                return f"Something is wrong that the library does not explain{hint}."
+            case Kind.AMBIGUOUS:
+                names = [" with ".join(self._name(i) for i in a) for a in self.alternatives]
+                return f"One of these, and this recording cannot tell which: {'; '.join(names)}."
+            case Kind.PARTIAL:
+                return f"{self._name(0)} is part of it; something more stays unexplained."
+            case _:
+                return f"{' and '.join(self._name(i) for i in range(len(self.causes)))}."
+
+    def _name(self, number: int) -> str:
+        cause = self.causes[number]
+        sizes = ", ".join(f"{name} = {p.words}" for name, p in cause.parameters.items())
+        text = f"{cause.effect} at {cause.target}: {sizes}"
+        if cause.firm:
+            return text
+        return f"{text}, {cause.sigmas:.1f} declared sigmas off: fault or commissioning error"
