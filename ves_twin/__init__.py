@@ -46,6 +46,8 @@ __all__ = [
 
 
 def __getattr__(name: str) -> object:
+    if name == "effects":
+        return importlib.import_module("ves_twin.effects")
     if name not in _HOMES:
         raise AttributeError(f"module 'ves_twin' has no attribute '{name}'")
     value = getattr(importlib.import_module(_HOMES[name]), name)

@@ -119,7 +119,7 @@ def test_channels_are_signals_that_a_diagnosis_may_read(kind):
         assert SIGNALS[channel].role is not Role.TRUTH
     assert EFFECTS[kind].source
     for m in EFFECTS[kind].magnitudes:
-        assert 0.0 < m.sd <= m.smallest < m.largest
+        assert 0.0 <= m.sd <= m.smallest < m.largest
 
 
 def test_effects_travel_through_a_table_and_back():

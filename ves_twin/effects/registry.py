@@ -4,11 +4,30 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 
-from ves_twin.effects import arm, force_sensor, geometry, payload, transducer
+from ves_twin.effects import (
+    arm,
+    cylinder,
+    force_sensor,
+    geometry,
+    payload,
+    supply,
+    transducer,
+    valve,
+)
 from ves_twin.effects.effect import Effect
 from ves_twin.errors import InvalidInputError, UnknownNameError
 
 _KINDS: tuple[type[Effect], ...] = (
+    valve.ValveNull,
+    valve.ValveGain,
+    valve.ValveDeadband,
+    valve.ValveLag,
+    cylinder.CoulombFriction,
+    cylinder.CylinderViscous,
+    cylinder.PistonLeakage,
+    cylinder.OilAir,
+    supply.SupplyPressure,
+    supply.SupplyDroop,
     transducer.LengthOffset,
     transducer.LengthScale,
     geometry.AnchorPosition,

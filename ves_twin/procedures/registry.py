@@ -7,12 +7,12 @@ from collections.abc import Mapping
 from pydantic import ValidationError
 
 from ves_twin.errors import UnknownNameError
+from ves_twin.procedures.calibrate_poses import CalibratePoses
 from ves_twin.procedures.coupling_map_paths import CouplingMapPaths
 from ves_twin.procedures.frequency_response import FrequencyResponseTest
+from ves_twin.procedures.frozen_droop import FrozenDroop
 from ves_twin.procedures.positioning_error import PositioningErrorTest
 from ves_twin.procedures.pped_release import PpedRelease
-from ves_twin.procedures.calibrate_poses import CalibratePoses
-from ves_twin.procedures.frozen_droop import FrozenDroop
 from ves_twin.procedures.procedure import Procedure
 from ves_twin.procedures.sensor_drift import SensorDrift
 from ves_twin.procedures.verify_gravity import VerifyGravity
