@@ -26,10 +26,6 @@ _XML = """
     </body>
   </worldbody>
   <actuator><motor name="torque" joint="hinge"/></actuator>
-  <sensor>
-    <jointpos name="angle" joint="hinge"/>
-    <jointvel name="rate" joint="hinge"/>
-  </sensor>
 </mujoco>
 """
 
@@ -121,7 +117,7 @@ class Pendulum:
     def simulate(
         self, programme: Programme, values: Mapping[str, float], refined: bool = False
     ) -> FloatArray:
-        """Angle [rad] and rate [rad/s] at each row, one step after its torque (n, 2)."""
+        """Angle [rad] and rate [rad/s] at each row, whose torque holds from then on (n, 2)."""
         value = {p.name: p.nominal for p in self.parameters} | dict(values)
         asked = programme.drive["joint.torque"][:, 0]
         torque = value["drive.gain"] * _delayed(asked, value.get("command.delay", 0.0))
@@ -132,11 +128,11 @@ class Pendulum:
         state = np.zeros(mujoco.mj_stateSize(model, mujoco.mjtState.mjSTATE_FULLPHYSICS))
         state[1], state[2] = value["start.angle"], value["start.rate"]
         control = np.repeat(torque, steps)[None, :, None]
-        _, rows = rollout.rollout(
+        path, _ = rollout.rollout(
             model, mujoco.MjData(model), initial_state=state[None], control=control
         )
-        read = rows[0][steps - 1 :: steps]
-        read = np.stack([_delayed(column, value["sensor.delay"]) for column in read.T], axis=1)
+        rows = np.concatenate([state[None], path[0][steps - 1 :: steps][:-1]])[:, 1:3]
+        read = np.stack([_delayed(column, value["sensor.delay"]) for column in rows.T], axis=1)
         read[:, 0] += value["encoder.bias"]
         return np.asarray(read)
 

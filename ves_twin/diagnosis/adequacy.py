@@ -8,7 +8,7 @@ from itertools import pairwise
 import numpy as np
 from scipy.stats import norm
 
-from ves_twin.diagnosis.noise import Whitening
+from ves_twin.diagnosis.whitening import Whitening
 from ves_twin.types import FloatArray
 
 BANDS = 12

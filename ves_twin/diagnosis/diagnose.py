@@ -11,13 +11,13 @@ from ves_twin.diagnosis.explain import Explanation, explain
 from ves_twin.diagnosis.forward import Forward, Programme
 from ves_twin.diagnosis.gain import Gain, held_out_gain
 from ves_twin.diagnosis.next_experiment import separations
-from ves_twin.diagnosis.noise import Whitening, whitening_declared, whitening_measured
 from ves_twin.diagnosis.null import assess, cached_thresholds
 from ves_twin.diagnosis.observe import observe
 from ves_twin.diagnosis.runs import Progress, Runs, silent
 from ves_twin.diagnosis.settings import Settings
 from ves_twin.diagnosis.tolerances import FEWEST, naming_limit, tolerance_scale
 from ves_twin.diagnosis.verdict import Basis, Kind, Proposal, Verdict
+from ves_twin.diagnosis.whitening import Whitening, whitening_declared, whitening_measured
 from ves_twin.errors import UnknownNameError
 from ves_twin.recording.recording import Recording
 

@@ -8,9 +8,9 @@ import numpy as np
 
 from ves_twin.diagnosis.linearise import linearise
 from ves_twin.diagnosis.metric import Metric
-from ves_twin.diagnosis.noise import Whitening
 from ves_twin.diagnosis.refine import Fit
 from ves_twin.diagnosis.runs import Runs
+from ves_twin.diagnosis.whitening import Whitening
 from ves_twin.types import FloatArray, IntArray, SingleArray
 
 BLOCK_SECONDS = 0.5

@@ -8,8 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from ves_twin.diagnosis.adequacy import Cell
-from ves_twin.diagnosis.noise import ORDER
 from ves_twin.diagnosis.refine import Evidence
+from ves_twin.diagnosis.whitening import ORDER
 from ves_twin.types import FloatArray
 
 LOUDEST = 6
@@ -61,7 +61,7 @@ def describe(
     """
     runs = evidence.runs
     names = [runs.forward.channels[c].name for c in runs.columns]
-    total = sum(max(c.energy - c.freedom, 0.0) for c in found if c.kind == "band")
+    total = sum(max(c.energy - c.freedom, 0.0) for c in found if c.kind == "time")
     loud = sorted((c for c in found if c.score() > threshold), key=lambda c: -c.score())
     told = [
         Loud(

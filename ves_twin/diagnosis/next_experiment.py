@@ -10,9 +10,9 @@ import numpy as np
 from ves_twin.diagnosis.forward import Programme
 from ves_twin.diagnosis.linearise import linearise
 from ves_twin.diagnosis.metric import Metric
-from ves_twin.diagnosis.noise import whitening_declared
 from ves_twin.diagnosis.refine import Fit
 from ves_twin.diagnosis.runs import Runs
+from ves_twin.diagnosis.whitening import whitening_declared
 from ves_twin.types import FloatArray
 
 

@@ -12,18 +12,18 @@ from scipy.stats import chi2
 
 from ves_twin.diagnosis.adequacy import cells, misfit, misfit_floor
 from ves_twin.diagnosis.bank import Bank, bank_key, write_arrays
-from ves_twin.diagnosis.noise import Whitening
 from ves_twin.diagnosis.refine import Evidence, Fit, bare_residual, refine, residual_about
 from ves_twin.diagnosis.runs import Progress, silent
 from ves_twin.diagnosis.screen import Screen, Suspect
 from ves_twin.diagnosis.settings import Settings
+from ves_twin.diagnosis.whitening import Whitening
 from ves_twin.types import FloatArray, SingleArray
 
-LEVELS = (0.9, 1.12)
-"""Range of the noise's sd that null rigs are drawn with, against the noise model's."""
+DECLARED = ((0.9, 1.12), (0.0, 0.25))
+"""Ranges that a null rig's noise is drawn from: sd against the noise model's, lag-one colour."""
 
-COLOURS = (0.0, 0.25)
-"""Range of the lag-one colour of that noise, on the grid."""
+MEASURED = ((0.95, 1.05), (-0.05, 0.05))
+"""The same where a standstill recording told the noise."""
 
 ROUNDS = 3
 """Linearisations at most for the commissioning errors of one record."""
@@ -175,7 +175,8 @@ class _NullStudy:
         spread = runs.sd[runs.nuisances]
         shift[runs.nuisances] = spread * rng.standard_normal(len(spread))
         clean = runs.one(np.clip(shift, runs.low, runs.high), refined=bool(rng.integers(2)))
-        noise = self.whitening.draw(rng, rng.uniform(*LEVELS), rng.uniform(*COLOURS))
+        levels, colours = MEASURED if self.whitening.measured else DECLARED
+        noise = self.whitening.draw(rng, rng.uniform(*levels), rng.uniform(*colours))
         found = assess(clean + noise, self.bank, self.whitening, self.effect, self.misfit)
         return found.score, found.misfit
 

@@ -10,10 +10,10 @@ from ves_twin.diagnosis.refine import Fit
 def probabilities(fits: list[Fit], allowance: float, odds: float) -> tuple[list[Fit], list[float]]:
     """The fits that cannot be ruled out, most probable first, with their probabilities.
 
-    By Laplace's method the evidence of a fit is exp(-chi^2 / 2) times, for each free parameter,
-    sqrt(2 pi) sd p(size); the prior p is log-uniform in size between the hypothesis's smallest and
-    largest, equal over its signs. Hypotheses are equally probable before the record. Differences
-    of chi^2 within what the model may be wrong by count as none.
+    The evidence of a fit is exp(-chi^2 / 2) times, for each free parameter, the integral of a
+    normal likelihood of its sd over the prior: log-uniform in size between the hypothesis's
+    smallest and largest, equal over its signs. Hypotheses are equally probable before the record.
+    Differences of chi^2 within what the model may be wrong by count as none.
 
     Args:
         fits: rivals, of equal numbers of causes.
@@ -30,12 +30,24 @@ def probabilities(fits: list[Fit], allowance: float, odds: float) -> tuple[list[
 
 
 def _occam(fit: Fit) -> float:
-    """Ln of prior density times width of the likelihood, over the free parameters."""
+    """Ln of the integral of prior times likelihood, relative to its peak, parameter by parameter.
+
+    Where the record hardly shows a size the prior's 1 / size is no constant beneath the likelihood,
+    so the integral is taken on a grid, over the hypothesis's signs and sizes.
+    """
     total, n = 0.0, 0
     for cause in fit.causes:
         for smallest, largest in zip(cause.smallest, cause.largest, strict=True):
-            size = float(np.clip(abs(fit.sizes[n]), smallest, largest))
-            prior = 1.0 / (size * np.log(largest / smallest) * len(cause.signs))
-            total += float(np.log(np.sqrt(2.0 * np.pi * fit.covariance[n, n]) * prior))
+            size, sd = float(fit.sizes[n]), float(np.sqrt(fit.covariance[n, n]))
+            span = np.log(largest / smallest) * len(cause.signs)
+            parts = [_integral(sign * size, sd, smallest, largest) for sign in cause.signs]
+            total += float(np.log(max(sum(parts) / span, 1e-300)))
             n += 1
     return total
+
+
+def _integral(size: float, sd: float, smallest: float, largest: float) -> float:
+    """Integral of exp(-((x - size) / sd)^2 / 2) / x from the smallest to the largest x."""
+    near = np.clip(size + sd * np.linspace(-6.0, 6.0, 241), smallest, largest)
+    grid = np.unique(np.concatenate([np.geomspace(smallest, largest, 200), near]))
+    return float(np.trapezoid(np.exp(-0.5 * ((grid - size) / sd) ** 2) / grid, grid))

@@ -8,8 +8,8 @@ import numpy as np
 
 from ves_twin.diagnosis.forward import Hypothesis
 from ves_twin.diagnosis.linearise import Linearisation, linearise
-from ves_twin.diagnosis.noise import Whitening
 from ves_twin.diagnosis.runs import Runs
+from ves_twin.diagnosis.whitening import Whitening
 from ves_twin.types import FloatArray, IntArray, SingleArray
 
 ITERATIONS = 12
@@ -23,6 +23,10 @@ CONVERGED = 0.02
 
 NEAR = 0.3
 """Commissioning sd within which nuisance columns are taken to hold; absent parameters: 6 %."""
+
+BENT = 0.01
+"""Squared error [sigma^2] of a predicted change above which the Jacobian is turned: single
+precision makes 1e-6 of it, and a smaller error moves no estimate."""
 
 HALVINGS = (1.0, 0.4, 0.1)
 """Shares of a step that are tried until chi^2 falls."""
@@ -168,10 +172,9 @@ class _Search:
             if not np.isfinite(trial.chi2):
                 continue
             move = np.append(trial.shift[axes], trial.delta) / self.unit - here
-            size = float(move @ move)
-            if size > 1e-12:
-                surprise = point.residual - trial.residual - jacobian @ move
-                jacobian += np.outer(surprise, move / size)
+            surprise = point.residual - trial.residual - jacobian @ move
+            if surprise @ surprise > BENT:
+                jacobian += np.outer(surprise, move / (move @ move))
             if trial.chi2 < point.chi2:
                 return trial
         return point
@@ -210,7 +213,8 @@ def refine(
         point, jacobian = search.run(search.at(point.shift, point.delta))
     hessian = search.hessian(jacobian)
     spread = np.diag(1.0 / np.sqrt(np.maximum(np.diag(hessian), 1e-30)))
-    inverse = spread @ np.linalg.pinv(spread @ hessian @ spread, hermitian=True) @ spread
+    scaled = spread @ hessian @ spread + 1e-12 * np.eye(len(hessian))  # what nothing shows: wide
+    inverse = spread @ np.linalg.inv(scaled) @ spread
     posterior = inverse[:-1, :-1] * np.outer(search.unit[:-1], search.unit[:-1])
     count = len(free)
     return Fit(

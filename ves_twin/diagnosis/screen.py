@@ -9,7 +9,7 @@ import numpy as np
 
 from ves_twin.diagnosis.bank import Bank
 from ves_twin.diagnosis.metric import Metric
-from ves_twin.diagnosis.noise import Whitening
+from ves_twin.diagnosis.whitening import Whitening
 from ves_twin.types import FloatArray
 
 AMPLITUDE = (0.35, 2.8)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from scipy.linalg import solve_toeplitz
@@ -40,6 +40,7 @@ class Whitening:
         mixing: C of each recording (recordings, c, c).
         colour: lag-one coefficient left in each recording and whitened channel (recordings, c).
         level: sd of what is then left (recordings, c).
+        measured: whether a standstill recording told it.
     """
 
     runs: Runs
@@ -47,6 +48,7 @@ class Whitening:
     mixing: FloatArray
     colour: FloatArray
     level: FloatArray
+    measured: bool = False
 
     def apply(self, stack: SingleArray) -> FloatArray:
         """Whitened rows, flattened: (..., rows, c) -> (..., samples)."""
@@ -92,7 +94,7 @@ class Whitening:
             found = np.sqrt(scale[best, np.arange(len(best))]) * self.level[k]
             low, high = np.sqrt(LEVEL_RANGE)
             level[k] = np.clip(found, low, high)
-        return Whitening(self.runs, self.filters, self.mixing, colour, level)
+        return replace(self, colour=colour, level=level)
 
     def draw(self, rng: np.random.Generator, level: float, colour: float) -> SingleArray:
         """Noise (rows, c) that this whitening takes as unit white, but for a level and a colour."""
@@ -153,7 +155,7 @@ def whitening_measured(runs: Runs, standstill: Recording) -> Whitening:
     inner = np.stack([lfilter(a, [1.0], noise[:, c])[ORDER:] for c, a in enumerate(filters)])
     correlation = np.atleast_2d(np.corrcoef(inner))
     copies = len(runs.grids)
-    return _whitening(runs, [covariance] * copies, [correlation] * copies)
+    return replace(_whitening(runs, [covariance] * copies, [correlation] * copies), measured=True)
 
 
 def _whitening(

@@ -1,0 +1,29 @@
+"""detectability: the size of an effect in sigma, after commissioning errors took what they can."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ves_twin.diagnosis.linearise import Linearisation
+from ves_twin.diagnosis.refine import Evidence, refine
+from ves_twin.diagnosis.whitening import Whitening
+from ves_twin.types import FloatArray
+
+
+def detectability(
+    local: Linearisation, whitening: Whitening, shift: FloatArray, rounds: int = 3
+) -> float:
+    """D of a departure: the root of the least chi^2 that commissioning errors alone leave of it.
+
+    d^2 = min over nu of |W (f(shift) - f(nu))|^2 + sum (nu / sd)^2. For a linear model this is
+    <s, s> of the marginalised signature.
+
+    Args:
+        local: nuisance columns at nominal.
+        whitening: noise as declared.
+        shift: departures of the effect alone (coordinates,).
+        rounds: linearisations at most.
+    """
+    runs = local.runs
+    evidence = Evidence(runs, runs.one(shift), whitening)
+    return float(np.sqrt(refine(evidence, (), runs.origin, local, rounds).chi2))
