@@ -34,6 +34,21 @@ OPEN_NUMBERS = (
 )
 """Numbers of the whole rig that commissioning leaves open, with the sd of the plant's table."""
 
+BENT = frozenset(
+    {
+        "base_tilt",
+        "coulomb_friction",
+        "hose_stiffness",
+        "joint_friction",
+        "oil_air",
+        "sensor_lag",
+        "supply_droop",
+        "valve_deadband",
+        "valve_lag",
+    }
+)
+"""Kinds whose trace is not proportional to their size; the others are checked to be."""
+
 SIGNS = {Sign.BOTH: (-1, 1), Sign.POSITIVE: (1,), Sign.NEGATIVE: (-1,)}
 
 AXES = ("fx", "fy", "fz", "mx", "my", "mz")
@@ -106,6 +121,7 @@ def hypotheses_of(plant: Plant, exclude: frozenset[str] = frozenset()) -> tuple[
                     largest=tuple(m.largest for m in group),
                     signs=SIGNS[group[0].sign],
                     source=kind.source,
+                    linear=kind.kind not in BENT,
                 )
             )
     return tuple(found)

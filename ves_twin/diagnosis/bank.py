@@ -20,6 +20,9 @@ from ves_twin.types import FloatArray, IntArray, SingleArray
 STRAIGHT = 4.0
 """Size of a linear signature in commissioning sd; scaled, it reaches from 1.4 to 11."""
 
+LADDER = 6.0
+"""Step between the sizes of a cause that is linear throughout; scaling bridges a factor of 8."""
+
 SCHEMA = 1
 """Version of the cached file; another one is built anew."""
 
@@ -85,6 +88,8 @@ def build_bank(
     base = linearise(runs, start, progress)
     shifts, owner, sizes = [], [], []
     for h, hypothesis in enumerate(library):
+        if hypothesis.linear and _column(runs, hypothesis) is not None:
+            continue
         where = runs.indices(hypothesis)
         for departure in hypothesis.departures():
             shift = runs.depart(start, where, start[where] + departure)
@@ -117,13 +122,30 @@ def _straight(
     runs = base.runs
     found, owner, sizes = [base.columns[:0]], [], []
     for h, hypothesis in enumerate(library):
-        rows = np.flatnonzero(np.isin(runs.nuisances, runs.indices(hypothesis)))
-        if len(hypothesis.parameters) == 1 and len(rows) == 1:
+        rows = _column(runs, hypothesis)
+        if rows is None:
+            continue
+        sd = runs.sd[runs.nuisances[rows]]
+        for spreads in _ladder(hypothesis, float(sd[0])):
             for sign in hypothesis.signs:
-                found.append(np.float32(sign * STRAIGHT) * base.columns[rows])
+                found.append(np.float32(sign * spreads) * base.columns[rows])
                 owner.append(h)
-                sizes.append(sign * STRAIGHT * runs.sd[runs.nuisances[rows]])
+                sizes.append(sign * spreads * sd)
     return np.concatenate(found), owner, sizes
+
+
+def _column(runs: Runs, hypothesis: Hypothesis) -> IntArray | None:
+    """Where among the nuisances a cause of one parameter has a column of its own."""
+    rows = np.flatnonzero(np.isin(runs.nuisances, runs.indices(hypothesis)))
+    return rows if len(hypothesis.parameters) == 1 and len(rows) == 1 else None
+
+
+def _ladder(hypothesis: Hypothesis, sd: float) -> list[float]:
+    """Sizes in commissioning sd: one, or as many as a cause that is linear throughout needs."""
+    sizes = [STRAIGHT]
+    while hypothesis.linear and LADDER * sizes[-1] * sd <= hypothesis.largest[0]:
+        sizes.append(LADDER * sizes[-1])
+    return sizes
 
 
 def cached_bank(runs: Runs, folder: Path | None, build: Callable[[], Bank]) -> Bank:

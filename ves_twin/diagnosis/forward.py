@@ -78,6 +78,8 @@ class Hypothesis:
         largest: largest departure that is plausible.
         signs: directions that are physical: (1,), (-1,) or (-1, 1).
         source: where sizes come from.
+        linear: its trace is proportional to its size over the whole range, so that the column of
+            its own tolerance, scaled, stands for every size in the bank.
     """
 
     effect: str
@@ -87,6 +89,7 @@ class Hypothesis:
     largest: tuple[float, ...]
     signs: tuple[int, ...] = (-1, 1)
     source: str = ""
+    linear: bool = False
 
     @property
     def label(self) -> str:

@@ -17,6 +17,9 @@ from ves_twin.types import FloatArray, SingleArray
 ORDER = 8
 """Order of the autoregression, as in the study behind the method (AR(8))."""
 
+SILENT = 1e-3
+"""Share of its declared noise power below which a channel's standstill tells nothing."""
+
 FLOOR_FROM = 0.3
 """Share of the Nyquist rate above which a residual is taken as noise: 15 Hz of 50 Hz."""
 
@@ -151,6 +154,10 @@ def whitening_measured(runs: Runs, standstill: Recording) -> Whitening:
     noise = noise - line @ np.linalg.lstsq(line, noise, rcond=None)[0]
     products = [noise[: count - j].T @ noise[j:] / count for j in range(ORDER + 1)]
     covariance = np.array([np.diag(p) for p in products]).T
+    silent = covariance[:, 0] < SILENT * np.array([channel.sd for channel in channels]) ** 2
+    for c in np.flatnonzero(silent):  # a standing encoder shows one count and no noise
+        covariance[c] = grid.autocovariance(channels[c].sd, ORDER)
+        noise[:, c] = channels[c].sd * np.random.default_rng(c).standard_normal(count)
     filters = _filters(covariance)
     inner = np.stack([lfilter(a, [1.0], noise[:, c])[ORDER:] for c, a in enumerate(filters)])
     correlation = np.atleast_2d(np.corrcoef(inner))

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, ClassVar, final
 
 from ves_twin.effects.effect import LINKS, Effect
-from ves_twin.effects.magnitude import Magnitude
+from ves_twin.effects.magnitude import Magnitude, Sign
 
 if TYPE_CHECKING:
     import mujoco
@@ -16,13 +16,15 @@ if TYPE_CHECKING:
 @final
 @dataclass(frozen=True)
 class PayloadMass(Effect):
-    """A point mass that nobody declared sits at the tool (or what was declared is missing)."""
+    """A point mass that nobody declared sits at the tool."""
 
     mass: float = 0.0
 
     kind: ClassVar[str] = "payload_mass"
     targets: ClassVar[tuple[str, ...]] = ("arm.tool",)
-    magnitudes: ClassVar[tuple[Magnitude, ...]] = (Magnitude("mass", "kg", 0.02, 0.05, 4.0),)
+    magnitudes: ClassVar[tuple[Magnitude, ...]] = (
+        Magnitude("mass", "kg", 0.02, 0.05, 4.0, Sign.POSITIVE),
+    )
     channels: ClassVar[tuple[str, ...]] = ("sensor.wrench", "arm.torque")
     source: ClassVar[str] = "assumed; tools and cables on the wrist"
 
@@ -95,4 +97,6 @@ def _add_mass(arm: mujoco.MjSpec, name: str, mass: float, at: np.ndarray) -> Non
     principal, axes, quat = np.zeros(3), np.zeros(9), np.zeros(4)
     mujoco.mju_eig3(principal, axes, quat, full.ravel())
     body.mass = before + mass
+    # link 3 is a plate to the last digit (A + B = C), so that round-off alone would break it
+    principal[0] = min(principal[0], principal[1] + principal[2])
     body.ipos, body.iquat, body.inertia = centre, quat, principal
