@@ -35,16 +35,16 @@ def creep_speed(p: np.void, force: FloatArray) -> FloatArray:
         force: forces of the cylinders, pushing the platform up positive [N] (6,).
     """
     (a1, a2), (c1, c2), (n1, n2) = p["area"], p["conductance"], p["null"]
-    leak, viscous = p["leakage"], p["viscous"]
-    system = np.array(
-        [[c1 + leak, -leak, a1], [leak, -(c2 + leak), a2], [a1, -a2, -viscous]], dtype=float
-    )
-    if not np.linalg.matrix_rank(system) == 3:
+    leak, viscous = np.broadcast_to(p["leakage"], 6), np.broadcast_to(p["viscous"], 6)
+    if not c1 + np.min(leak) > 0.0:
         raise InvalidInputError(
             "chamber", "no leakage at all", "a leak that lets frozen legs creep"
         )
-    right = np.array([np.full(6, c1 * n1), np.full(6, -c2 * n2), force])
-    return np.asarray(np.linalg.solve(system, right)[2])
+    speed = np.empty(6)
+    for i, (cl, b) in enumerate(zip(leak, viscous, strict=True)):
+        system = np.array([[c1 + cl, -cl, a1], [cl, -(c2 + cl), a2], [a1, -a2, -b]])
+        speed[i] = np.linalg.solve(system, [c1 * n1, -c2 * n2, force[i]])[2]
+    return speed
 
 
 def frozen_droop(
@@ -67,11 +67,11 @@ def frozen_droop(
     Raises:
         UnreachableError: it creeps into a singular pose.
     """
-    model = compile_model(assemble(plant, plant.parameters.number("clock.tick")))
+    model = compile_model(assemble(plant, plant.actual.number("clock.tick")))
     data, layout, geometry = mujoco.MjData(model), Layout.of(model), plant.geometry
     block = np.zeros(1, chambers.PARAMETERS)
-    fill_chambers(block[0], plant.parameters)
-    bias = plant.parameters.number("hydraulics.full_speed") * spool
+    fill_chambers(block[0], plant.actual)
+    bias = plant.actual.number("hydraulics.full_speed") * spool
 
     def rate(at: FloatArray) -> FloatArray:
         place_rig(data, layout, geometry, at, q)
