@@ -95,14 +95,21 @@ def test_intervals_cover_the_truth_as_often_as_they_say(bench, gain_sd, weight):
     assert 0.80 <= np.mean(share[1:]) <= 0.97  # P, asked for
 
 
-def test_two_passes_are_enough(bench):
-    """With D-optimal poses; with random ones a third pass takes up to 15 % off the moments."""
+def test_two_passes_are_enough_with_chosen_poses(bench):
+    """With D-optimal poses."""
     q, angles = chosen_poses(bench, Choice.D_OPTIMAL, 47)
     for seed in range(5):
         rng = np.random.default_rng(200 + seed)
         done = passes(bench, bench.readings(rng, q, angles), 3)
         before, after = (np.linalg.norm(p.rms.reshape(2, 3), axis=1) for p in done[1:])
         assert np.all(np.abs(after - before) < 0.05 * before)  # thesis 3.4.6, asked for
+
+
+def test_random_poses_can_need_more_than_two_passes(bench):
+    """Why the shipped experiment chooses its poses."""
+    done = passes(bench, drawn(bench, 204), 3)
+    before, after = (np.linalg.norm(p.rms[3:]) for p in done[1:])
+    assert after < 0.95 * before
 
 
 def test_the_passes_end_at_the_noise_and_at_the_gain_they_started_from(bench):
