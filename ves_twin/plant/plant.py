@@ -5,6 +5,7 @@ from __future__ import annotations
 import hashlib
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
+from functools import lru_cache
 from pathlib import Path
 
 import numpy as np
@@ -65,6 +66,13 @@ class Plant:
             VersionError: a file of another version of the format.
         """
         path = find_resource("plant", "models", name_or_path)
+        if path.parent == resource_folder("models"):
+            return _shipped(path, path.stat().st_mtime_ns)
+        return Plant.read(path)
+
+    @staticmethod
+    def read(path: Path) -> Plant:
+        """A plant from a file; raises as `load`."""
         content = read_plant_file(path)
         changes = content.get("parameters", {})
         if not isinstance(changes, Mapping):
@@ -201,6 +209,12 @@ class Plant:
         for file in MJCF_FILES:
             digest.update((resource_folder("models") / file).read_bytes())
         return digest.hexdigest()[:16]
+
+
+@lru_cache(maxsize=32)
+def _shipped(path: Path, modified: int) -> Plant:
+    """A shipped plant, read once: a diagnosis asks for it with every one of a thousand runs."""
+    return Plant.read(path)
 
 
 def _complete(table: ParameterTable, path: Path) -> ParameterTable:

@@ -6,6 +6,7 @@ import json
 import platform as host
 from collections.abc import Callable, Iterator
 from dataclasses import asdict, dataclass
+from functools import lru_cache
 from importlib.metadata import version
 from pathlib import Path
 from time import perf_counter
@@ -156,7 +157,7 @@ def recording_info(sim: Simulator) -> RecordingInfo:
         parameters=sim.plant.changes(),
         effects=effects_table(sim.plant.effects),
         seed=sim.seed,
-        versions=versions(),
+        versions=dict(versions()),
         log=sim.scenario.run.log,
         period=clock.log * clock.tick,
         held=held,
@@ -165,8 +166,9 @@ def recording_info(sim: Simulator) -> RecordingInfo:
     )
 
 
+@lru_cache(maxsize=1)
 def versions() -> dict[str, str]:
-    """Versions of everything that shapes the numbers."""
+    """Versions of everything that shapes the numbers; they do not change while a program runs."""
     packages = {name: version(name) for name in ("mujoco", "numpy", "numba", "scipy", "pyarrow")}
     return {"ves_twin": _own_version(), "python": host.python_version(), **packages}
 
