@@ -21,6 +21,9 @@ from ves_twin.diagnosis.whitening import Whitening, whitening_declared, whitenin
 from ves_twin.errors import UnknownNameError
 from ves_twin.recording.recording import Recording
 
+MOST = 0.5
+"""Share of the held-out excess that a part of the truth must take, its interval's lower end."""
+
 
 def diagnose(
     forward: Forward,
@@ -76,8 +79,9 @@ def diagnose(
     if not first.exceeds(limits.effect, limits.misfit):
         return compose(findings, Kind.NOTHING, basis, tuple(exclude))
     found = explain(first, limits, chosen, progress)
-    gain = _gain(forward, held_out, standstill, found, chosen) if found and held_out else None
-    kind = _kind(found, gain)
+    gains = _gains(forward, held_out, standstill, found, chosen) if found and held_out else []
+    gain = gains[0] if gains else None
+    kind = _kind(found, gains)
     proposals = _next(seen.runs, found, next_programmes) if kind is Kind.AMBIGUOUS else ()
     findings = replace(findings, found=found, gain=gain, proposals=proposals)
     return compose(findings, kind, basis, tuple(exclude))
@@ -94,30 +98,47 @@ def _scale(forward: Forward, commissioning: Sequence[Recording]) -> float | None
     return tolerance_scale([(rig.runs, rig.measured) for rig in rigs])
 
 
-def _gain(
+def _gains(
     forward: Forward,
     held_out: Sequence[Recording],
     standstill: Recording | None,
     found: Explanation,
     settings: Settings,
-) -> Gain:
+) -> list[Gain]:
+    """Gain of the best explanation; of its rivals too, where it leaves something unexplained."""
     seen = observe(forward, held_out, settings.workers)
     whitening = _whitening(seen.runs, standstill)
-    nominal, best = found.commissioning, found.best
-    return held_out_gain(
-        seen.runs, seen.measured, whitening, nominal, best, settings.confidence, settings.seed
-    )
+    rivals = [] if found.adequate else [fit for fit in found.fits if fit is not found.best]
+    return [
+        held_out_gain(
+            seen.runs,
+            seen.measured,
+            whitening,
+            found.commissioning,
+            fit,
+            settings.confidence,
+            settings.seed,
+        )
+        for fit in [found.best, *rivals]
+    ]
 
 
-def _kind(found: Explanation | None, gain: Gain | None) -> Kind:
+def _kind(found: Explanation | None, gains: Sequence[Gain]) -> Kind:
     if found is None:
         return Kind.UNKNOWN
     if not found.adequate:
-        alone = len(found.chosen) == 1 and gain is not None and gain.passed
-        return Kind.PARTIAL if alone else Kind.UNKNOWN
+        return Kind.PARTIAL if _beats(found, gains) else Kind.UNKNOWN
     if len(found.chosen) > 1:
         return Kind.AMBIGUOUS
     return Kind.NAMED if len(found.best.causes) == 1 else Kind.SEVERAL
+
+
+def _beats(found: Explanation, gains: Sequence[Gain]) -> bool:
+    """Whether one cause takes most of the held-out excess away, and no rival nearly as much."""
+    if len(found.chosen) > 1 or not gains or gains[0].low is None:
+        return False
+    rivals = [gain.share or 0.0 for gain in gains[1:]]
+    return gains[0].low > max([MOST, *rivals])
 
 
 def _next(

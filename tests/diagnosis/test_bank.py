@@ -1,0 +1,77 @@
+"""The bank, its cache, and the screen's closed forms."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from toy import CAUSES, Toy, programme
+
+from ves_twin.diagnosis.bank import build_bank, cached_bank
+from ves_twin.diagnosis.forward import Hypothesis, check_forward
+from ves_twin.diagnosis.null import null_thresholds
+from ves_twin.diagnosis.runs import Runs
+from ves_twin.diagnosis.screen import Screen
+from ves_twin.diagnosis.whitening import whitening_declared
+from ves_twin.errors import InvalidInputError, UnknownNameError
+
+
+@pytest.fixture(scope="module")
+def runs():
+    return Runs(Toy(), (programme(),), (0, 1))
+
+
+def test_signatures_are_the_change_at_each_size(runs):
+    bank = build_bank(runs)
+    friction = 1 + CAUSES.index("friction")
+    for k in bank.entries(friction):
+        change = runs.forward.simulate(runs.programmes[0], {"friction.size": bank.sizes[k][0]})
+        nominal = runs.forward.simulate(runs.programmes[0], {})
+        assert bank.signatures[k] == pytest.approx(change - nominal, abs=1e-5)
+
+
+def test_the_screen_finds_the_pair_that_was_added(runs):
+    bank = build_bank(runs)
+    screen = Screen(bank, whitening_declared(runs))
+    names = [h.effect for h in bank.hypotheses]
+    a = next(k for k in bank.entries(names.index("drift")) if bank.sizes[k][0] > 0.01)
+    b = next(k for k in bank.entries(names.index("bump")) if bank.sizes[k][0] > 0.01)
+    z = screen.signatures[:, a] + 1.3 * screen.signatures[:, b]
+    first, second = screen.pairs(z, 3)[0]
+    assert {names[first.hypothesis], names[second.hypothesis]} == {"drift", "bump"}
+    # the pair explains all of it: its score is the whole of <z, z>
+    assert first.score == pytest.approx(z @ screen.metric.project(z), rel=1e-6)
+
+
+def test_a_cached_bank_is_the_same_and_another_programme_is_another_bank(runs, tmp_path):
+    built = cached_bank(runs, tmp_path, lambda: build_bank(runs))
+    read = cached_bank(runs, tmp_path, lambda: pytest.fail("built twice"))
+    assert np.array_equal(read.signatures, built.signatures)
+    assert np.array_equal(read.owner, built.owner)
+    assert all(np.array_equal(a, b) for a, b in zip(read.sizes, built.sizes, strict=True))
+    other = Runs(Toy(), (programme(2),), (0, 1))
+    assert not np.array_equal(
+        cached_bank(other, tmp_path, lambda: build_bank(other)).signatures, built.signatures
+    )
+    assert len(list(tmp_path.iterdir())) == 2
+
+
+def test_processes_change_nothing(runs):
+    two = Runs(Toy(), (programme(),), (0, 1), workers=2)
+    assert np.array_equal(build_bank(two).signatures, build_bank(runs).signatures)
+    alone = null_thresholds(build_bank(runs), whitening_declared(runs), 6, 0.01)
+    shared = null_thresholds(build_bank(two), whitening_declared(two), 6, 0.01)
+    assert sorted(alone.effects) == pytest.approx(sorted(shared.effects))
+
+
+def test_a_library_that_names_what_does_not_exist_is_refused():
+    class Wrong(Toy):
+        hypotheses = (Hypothesis("friction", "plant", ("fricton.size",), (0.1,), (1.0,)),)
+
+    with pytest.raises(UnknownNameError, match=r"did you mean 'friction\.size'"):
+        check_forward(Wrong())
+
+    class PerRun(Toy):
+        hypotheses = (Hypothesis("offset", "plant", ("plant.offset",), (0.1,), (1.0,)),)
+
+    with pytest.raises(InvalidInputError, match="of the plant itself"):
+        check_forward(PerRun())
