@@ -9,6 +9,16 @@ from collections.abc import Iterable
 class VesTwinError(Exception):
     """Base of every error that a user can cause; its text is one clear line."""
 
+    def __reduce__(self) -> tuple[object, ...]:
+        """As type and text, so that an error of another process arrives as what it is."""
+        return _rebuilt, (type(self), str(self))
+
+
+def _rebuilt(kind: type[VesTwinError], text: str) -> VesTwinError:
+    error = kind.__new__(kind)
+    Exception.__init__(error, text)
+    return error
+
 
 class UnknownNameError(VesTwinError):
     """A name that does not exist, answered with the nearest one that does.

@@ -159,7 +159,7 @@ def test_every_effect_has_room_in_the_fast_rig_or_is_refused(fast, kind):
 
 def test_a_moved_platform_joint_leaves_the_zero_of_travel_where_it_was(plant, fast):
     """The transducer does not know of it: both rigs show the change as travel."""
-    effect = build_effect("anchor_position", "leg.2", {"z": 0.01})
+    effect = build_effect("anchor_position", "leg.2.z", {"offset": 0.01})
     slides = []
     for rig in (plant.extended(effect), fast.extended(effect)):
         model = assemble(rig, 341e-6).compile()

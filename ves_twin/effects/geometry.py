@@ -12,29 +12,29 @@ if TYPE_CHECKING:
     import mujoco
 
 
+_ANCHORS = tuple(f"{leg}.{axis}" for leg in LEGS for axis in "xyz")
+
+
 @final
 @dataclass(frozen=True)
 class AnchorPosition(Effect):
-    """The joint of a leg on the platform sits off its drawing position, in platform axes."""
+    """The joint of a leg on the platform sits off its drawing position, along a platform axis."""
 
-    x: float = 0.0
-    y: float = 0.0
-    z: float = 0.0
+    offset: float = 0.0
 
     kind: ClassVar[str] = "anchor_position"
-    targets: ClassVar[tuple[str, ...]] = LEGS
-    magnitudes: ClassVar[tuple[Magnitude, ...]] = (
-        Magnitude("x", "m", 1e-4, 3e-4, 0.02),
-        Magnitude("y", "m", 1e-4, 3e-4, 0.02),
-        Magnitude("z", "m", 1e-4, 3e-4, 0.02),
-    )
+    targets: ClassVar[tuple[str, ...]] = _ANCHORS
+    magnitudes: ClassVar[tuple[Magnitude, ...]] = (Magnitude("offset", "m", 1e-4, 3e-4, 0.02),)
     channels: ClassVar[tuple[str, ...]] = ("sensor.wrench", "valve.command")
     source: ClassVar[str] = "assumed; machining and assembly of a welded frame"
 
     def edit_rig(self, rig: mujoco.MjSpec) -> None:
         """Move the site that the leg closes on."""
-        site = rig.site(f"platform/joint{self.index + 1}")
-        site.pos = [p + d for p, d in zip(site.pos, (self.x, self.y, self.z), strict=True)]
+        leg, axis = divmod(self.index, 3)
+        site = rig.site(f"platform/joint{leg + 1}")
+        position = list(site.pos)
+        position[axis] += self.offset
+        site.pos = position
 
 
 @final

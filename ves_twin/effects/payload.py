@@ -55,32 +55,32 @@ class LinkMass(Effect):
         body = arm.body(self.target.removeprefix("arm."))
         share = 1.0 + self.mass / float(body.mass)
         body.mass = float(body.mass) * share
-        body.inertia = [share * value for value in body.inertia]
+        body.inertia = _possible([share * value for value in body.inertia])
+
+
+_CENTRES = tuple(f"{link}.{axis}" for link in LINKS for axis in "xyz")
 
 
 @final
 @dataclass(frozen=True)
 class LinkCentre(Effect):
-    """The centre of mass of a link lies off its data sheet, along the axes of its body."""
+    """The centre of mass of a link lies off its data sheet, along an axis of its body."""
 
-    x: float = 0.0
-    y: float = 0.0
-    z: float = 0.0
+    shift: float = 0.0
 
     kind: ClassVar[str] = "link_centre"
-    targets: ClassVar[tuple[str, ...]] = LINKS
-    magnitudes: ClassVar[tuple[Magnitude, ...]] = (
-        Magnitude("x", "m", 2e-3, 4e-3, 0.1),
-        Magnitude("y", "m", 2e-3, 4e-3, 0.1),
-        Magnitude("z", "m", 2e-3, 4e-3, 0.1),
-    )
+    targets: ClassVar[tuple[str, ...]] = _CENTRES
+    magnitudes: ClassVar[tuple[Magnitude, ...]] = (Magnitude("shift", "m", 2e-3, 4e-3, 0.1),)
     channels: ClassVar[tuple[str, ...]] = ("sensor.wrench", "arm.torque")
     source: ClassVar[str] = "Appendix B gives centres of mass to the millimetre"
 
     def edit_arm(self, arm: mujoco.MjSpec) -> None:
         """Shift the centre of mass."""
-        body = arm.body(self.target.removeprefix("arm."))
-        body.ipos = [p + d for p, d in zip(body.ipos, (self.x, self.y, self.z), strict=True)]
+        link, axis = divmod(self.index, 3)
+        body = arm.body(f"link{link + 1}")
+        centre = list(body.ipos)
+        centre[axis] += self.shift
+        body.ipos = centre
 
 
 def _add_mass(arm: mujoco.MjSpec, name: str, mass: float, at: np.ndarray) -> None:
@@ -97,6 +97,16 @@ def _add_mass(arm: mujoco.MjSpec, name: str, mass: float, at: np.ndarray) -> Non
     principal, axes, quat = np.zeros(3), np.zeros(9), np.zeros(4)
     mujoco.mju_eig3(principal, axes, quat, full.ravel())
     body.mass = before + mass
-    # link 3 is a plate to the last digit (A + B = C), so that round-off alone would break it
-    principal[0] = min(principal[0], principal[1] + principal[2])
-    body.ipos, body.iquat, body.inertia = centre, quat, principal
+    body.ipos, body.iquat, body.inertia = centre, quat, _possible(list(principal))
+
+
+def _possible(inertia: list[float]) -> list[float]:
+    """Principal inertias with the largest no more than the sum of the others, but for round-off.
+
+    Link 3 is a plate to the last digit, A + B = C, which round-off alone would break.
+    """
+    largest = max(range(3), key=inertia.__getitem__)
+    others = sum(value for i, value in enumerate(inertia) if i != largest)
+    if others <= inertia[largest] < others * (1.0 + 1e-9):
+        inertia[largest] = others * (1.0 - 1e-12)
+    return inertia

@@ -1,0 +1,40 @@
+"""write_plant: a plant as a file that loads again, what differs from a shipped one."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+from ves_twin.effects.registry import effects_table
+from ves_twin.errors import FileAccessError
+from ves_twin.plant.parameters import SCHEMA
+from ves_twin.plant.plant import Plant
+
+
+def write_plant(plant: Plant, path: Path, note: str = "") -> None:
+    """Write a plant; what was there is replaced only when the new file is whole.
+
+    Args:
+        plant: changed numbers and effects over the shipped plant of its form and fidelity.
+        path: a .toml file.
+        note: comment on the first lines.
+
+    Raises:
+        FileAccessError: not writable.
+    """
+    lines = [f"# {line}" for line in note.splitlines()]
+    lines += [f"schema = {SCHEMA}", f"name = {json.dumps(path.stem)}", f'base = "{plant.base}"']
+    changes = plant.changes()
+    if changes:
+        lines += ["", "[parameters]"]
+        lines += [f"{json.dumps(name)} = {json.dumps(value)}" for name, value in changes.items()]
+    for kind, targets in effects_table(plant.effects).items():
+        for target, values in targets.items():
+            lines += ["", f"[effects.{kind}.{json.dumps(target)}]"]
+            lines += [f"{name} = {value!r}" for name, value in values.items()]
+    partial = path.with_suffix(".part")
+    try:
+        partial.write_text("\n".join(lines) + "\n", encoding="utf-8")
+        partial.replace(path)
+    except OSError as error:
+        raise FileAccessError(f"cannot write {path}: {error.strerror}") from None
