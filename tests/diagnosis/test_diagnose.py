@@ -250,20 +250,31 @@ class TestMutations:
         for s in range(count):
             yield diagnose(plant, [record(np.random.default_rng([s, 3]), **kw)], settings=settings)
 
-    def test_nuisances_off_blames_rigs_in_order(self):
+    def test_nuisances_off_blames_rigs_in_order(self, tmp_path):
         exact = [
             Parameter(p.name, p.unit, p.nominal, p.low, p.high, 0.0, p.per_recording)
             for p in NUISANCES
         ]
         plant = Toy(nuisances=tuple(exact))
-        said = list(self.rigs(plant, Settings(nulls=60)))
+        said = list(self.rigs(plant, Settings(nulls=60, cache=tmp_path)))
         assert sum(v.verdict is not Kind.NOTHING for v in said) >= 11
 
-    def test_whitening_off_makes_coloured_noise_a_fault(self, monkeypatch):
+    def test_whitening_off_makes_coloured_noise_a_fault(self, monkeypatch, settings, tmp_path):
+        whitened = list(self.rigs(Toy(), settings, colour=0.4))
+        assert sum(v.verdict is not Kind.NOTHING for v in whitened) <= 1
         monkeypatch.setattr(Whitening, "adapted", lambda self, z: self)
         monkeypatch.setattr("ves_twin.diagnosis.null.DECLARED", ((1.0, 1.0), (0.0, 0.0)))
-        said = list(self.rigs(Toy(), Settings(nulls=60)))
-        assert sum(v.verdict is not Kind.NOTHING for v in said) >= 6
+        said = list(self.rigs(Toy(), Settings(nulls=60, cache=tmp_path), colour=0.4))
+        assert sum(v.verdict is not Kind.NOTHING for v in said) >= 9
+
+    def test_refine_off_names_nobody(self, monkeypatch, settings):
+        faulty = {"friction.size": 0.03}
+        refined = list(self.rigs(Toy(), settings, 4, values=faulty))
+        assert all(v.verdict is Kind.NAMED for v in refined)
+        monkeypatch.setattr("ves_twin.diagnosis.refine.ITERATIONS", 0)
+        assert all(
+            v.verdict is not Kind.NAMED for v in self.rigs(Toy(), settings, 4, values=faulty)
+        )
 
     def test_adequacy_off_blames_the_nearest_cause(self, monkeypatch, settings):
         u = programme().drive["drive.u"][:, 0]

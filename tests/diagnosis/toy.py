@@ -105,6 +105,7 @@ def record(
     fed: Programme | None = None,
     added: np.ndarray | None = None,
     plant: Toy | None = None,
+    colour: float | None = None,
 ) -> Recording:
     """A measured record: nuisances redrawn, noise of another level and colour than declared."""
     fed = programme() if fed is None else fed
@@ -115,7 +116,8 @@ def record(
     for name, size in (values or {}).items():
         value[name] = value.get(name, 0.0) + size
     rows = plant.simulate(fed, value)
-    colour, level = rng.uniform(0.0, 0.25), rng.uniform(0.9, 1.12)
+    drawn, level = rng.uniform(0.0, 0.25), rng.uniform(0.9, 1.12)
+    colour = drawn if colour is None else colour
     noise = level * rng.standard_normal((len(rows), 2)) * SD
     for k in range(1, len(noise)):
         noise[k] += colour * noise[k - 1]

@@ -26,4 +26,6 @@ def detectability(
     """
     runs = local.runs
     evidence = Evidence(runs, runs.one(shift), whitening)
-    return float(np.sqrt(refine(evidence, (), runs.origin, local, rounds).chi2))
+    # from nominal, and from where commissioning errors of that size themselves would be
+    starts = [runs.origin, np.where(runs.sd > 0.0, shift, 0.0)]
+    return float(np.sqrt(min(refine(evidence, (), s, local, rounds).chi2 for s in starts)))
