@@ -1,6 +1,6 @@
 """Blind pendulums through the diagnosis: counts with Wilson intervals, as the end of a page.
 
-    python benchmarks/diagnosis_pendulum.py docs/diagnosis.md [--minutes 20]
+    python benchmarks/diagnosis_pendulum.py docs/diagnosis.md [--cases 200]
 
 Everything below the line `## Measured on the pendulum` is written anew.
 """
@@ -152,29 +152,26 @@ def judge(v: Verdict, truth: list[str]) -> str:
 def main() -> None:
     parser = argparse.ArgumentParser()
     parser.add_argument("page", type=Path)
-    parser.add_argument("--minutes", type=float, default=30.0)
+    parser.add_argument("--cases", type=int, default=200)
     parser.add_argument("--cache", type=Path, default=Path("runs/banks"))
     options = parser.parse_args()
-    end = time.monotonic() + 60 * options.minutes
     bench = Bench(options.cache)
     table = peer_rows(bench.settings)
     tally = Tally(bench)
-    seed = 1000
-    while time.monotonic() < end:
+    for seed in range(1000, 1000 + options.cases):
         tally.case(seed)
-        seed += 1
     page = options.page.read_text(encoding="utf-8") if options.page.exists() else f"{MARK}\n"
-    text = "\n".join(measured(table, tally, options.minutes))
+    text = "\n".join(measured(table, tally, options.cases))
     options.page.write_text(page.split(MARK)[0] + text, encoding="utf-8")
 
 
-def measured(table: list[str], tally: Tally, minutes: float) -> list[str]:
+def measured(table: list[str], tally: Tally, cases: int) -> list[str]:
     said, covered, cpu = tally.said, tally.covered, tally.cpu
     lines = [
         MARK,
         "",
-        "Written by `.venv/bin/python benchmarks/diagnosis_pendulum.py docs/diagnosis.md --minutes"
-        f" {minutes:g}`.",
+        "Written by `.venv/bin/python benchmarks/diagnosis_pendulum.py docs/diagnosis.md --cases"
+        f" {cases}`.",
         "",
         "The six rows of the peers' table, data made as theirs (8 s, 500 Hz, same integrator):",
         "",

@@ -6,6 +6,7 @@ import json
 
 import numpy as np
 import pytest
+from scipy.signal import lfilter
 from scipy.stats import binomtest
 from toy import CAUSES, NUISANCES, QUICK, SD, Toy, programme, record, shape
 
@@ -168,11 +169,13 @@ def test_measured_tolerances_are_told(settings):
 def test_standstill_tells_the_noise(settings):
     rng = np.random.default_rng(4)
     fed = programme()
-    noise = rng.standard_normal((len(fed.time), 2)) * SD
+    # the same colour in both, which the declared white noise knows nothing of
+    white = rng.standard_normal((len(fed.time), 2)) * SD
+    noise = lfilter([1.0], [1.0, -0.4], white, axis=0)
     still = Recording(
         fed.time, {"drive.u": 0 * fed.drive["drive.u"], "out": noise}, record(rng).info
     )
-    v = diagnose(Toy(), [record(rng)], standstill=still, settings=settings)
+    v = diagnose(Toy(), [record(rng, colour=0.4)], standstill=still, settings=settings)
     assert v.basis.noise == "measured"
     assert v.verdict is Kind.NOTHING
 
