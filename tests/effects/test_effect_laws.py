@@ -25,6 +25,10 @@ MOVING = {
 QUIET = {"transducer.resolution": 0.0, "sensor.resolution": [0.0] * 6}
 """Counts would turn round-off into counts."""
 
+STICKING = {"coulomb_friction", "joint_friction"}
+"""Their stick and slip moves in whole steps, so that forces converge only in the long run; what
+moves, the first of their channels, converges at first order like the rest."""
+
 FIRST = [(kind, EFFECTS[kind].targets[0]) for kind in EFFECTS]
 REST = [(kind, target) for kind in EFFECTS for target in EFFECTS[kind].targets[1:]]
 
@@ -110,7 +114,8 @@ def test_what_an_effect_does_converges_in_the_sub_step(nominals, kind, target):
             size, first, second = (np.sqrt(np.mean(x**2)) for x in (four, one - two, two - four))
             where = f"{magnitude.name} in {channel}"
             assert first < 0.2 * size, where
-            assert second < 0.65 * first or first < 1e-3 * size, where
+            if kind not in STICKING or channel == EFFECTS[kind].channels[0]:
+                assert second < 0.65 * first or first < 1e-3 * size, where
 
 
 @pytest.mark.parametrize("kind", EFFECTS)
