@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 __version__ = "0.1.0"
 
 if TYPE_CHECKING:
+    from ves_twin.benches.diagnose_rig import diagnose_rig as diagnose
     from ves_twin.plant.plant import Plant
     from ves_twin.recording.files import load_recording
     from ves_twin.recording.recording import Recording
@@ -26,6 +27,7 @@ _HOMES = {
     "Recording": "ves_twin.recording.recording",
     "Scenario": "ves_twin.scenario.schema",
     "Simulator": "ves_twin.simulator.simulator",
+    "diagnose": "ves_twin.benches.diagnose_rig:diagnose_rig",
     "load_recording": "ves_twin.recording.files",
     "record": "ves_twin.simulator.simulate",
     "replay": "ves_twin.simulator.replay",
@@ -38,6 +40,7 @@ __all__ = [
     "Recording",
     "Scenario",
     "Simulator",
+    "diagnose",
     "load_recording",
     "record",
     "replay",
@@ -50,6 +53,7 @@ def __getattr__(name: str) -> object:
         return importlib.import_module("ves_twin.effects")
     if name not in _HOMES:
         raise AttributeError(f"module 'ves_twin' has no attribute '{name}'")
-    value = getattr(importlib.import_module(_HOMES[name]), name)
+    home, _, inner = _HOMES[name].partition(":")
+    value = getattr(importlib.import_module(home), inner or name)
     globals()[name] = value
     return value

@@ -10,12 +10,13 @@ from collections.abc import Sequence
 from typing import NoReturn
 
 from ves_twin import __version__
-from ves_twin.cli import info, reproduce, run, scenarios, view
+from ves_twin.cli import diagnose, info, reproduce, run, scenarios, view
 from ves_twin.errors import UnknownNameError, VesTwinError, one_line
 
 COMMANDS = {
     "scenarios": scenarios,
     "run": run,
+    "diagnose": diagnose,
     "reproduce": reproduce,
     "view": view,
     "info": info,

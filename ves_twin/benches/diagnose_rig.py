@@ -1,0 +1,129 @@
+"""diagnose_rig: recordings of VES II to a verdict and, where it names causes, an extended plant."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+from ves_twin.benches.ves2 import RigForward
+from ves_twin.diagnosis.diagnose import diagnose
+from ves_twin.diagnosis.runs import Progress, silent
+from ves_twin.diagnosis.settings import Settings
+from ves_twin.diagnosis.verdict import Cause, Kind, Verdict
+from ves_twin.effects.effect import Effect
+from ves_twin.effects.registry import build_effect
+from ves_twin.errors import InvalidInputError
+from ves_twin.plant.plant import Plant
+from ves_twin.recording.recording import Recording
+from ves_twin.scenario.schema import Scenario
+from ves_twin.simulator.replay import replay_scenario
+
+NAMES_A_PLANT = frozenset({Kind.NAMED, Kind.SEVERAL, Kind.PARTIAL})
+"""Verdicts whose causes, all together, make an extended plant."""
+
+
+@dataclass(frozen=True)
+class RigDiagnosis:
+    """What was found, and the plant that has it.
+
+    Attributes:
+        verdict: with the magnitudes of the effects as the names of its parameters.
+        extended: the nominal plant with the causes; None where no causes are named.
+        refused: why the extension is only a candidate; empty where it passed on held-out data.
+    """
+
+    verdict: Verdict
+    extended: Plant | None
+    refused: str
+
+
+def diagnose_rig(
+    recordings: Sequence[Recording],
+    plant: Plant,
+    *,
+    held_out: Sequence[Recording] = (),
+    commissioning: Sequence[Recording] = (),
+    standstill: Recording | None = None,
+    exclude: Sequence[str] = (),
+    scenario: Scenario | None = None,
+    settings: Settings | None = None,
+    progress: Progress = silent,
+) -> RigDiagnosis:
+    """Name what the simulation of VES II gets wrong in recordings of one rig.
+
+    Args:
+        recordings: what was measured; together one record.
+        plant: the nominal rig, with the tolerances that commissioning left.
+        held_out: other recordings of the same rig, on which an extension must prove itself.
+        commissioning: recordings of healthy rigs, or of this one mounted anew.
+        standstill: the rig standing still, which tells the noise.
+        exclude: causes that are not considered, by kind or kind@target.
+        scenario: rates and leg gains; that of the first recording if left out.
+        settings: how sure, how many, where banks are kept.
+        progress: told what is being done.
+
+    Raises:
+        InvalidInputError: no recording, or recordings made with other rates or leg settings.
+        UnknownNameError: an unknown cause in `exclude`, or a set-point that is not recorded.
+    """
+    if not recordings:
+        raise InvalidInputError("recordings", "none", "at least one")
+    setting = _one_step(replay_scenario(recordings[0], scenario))
+    if scenario is None:
+        _check_settings((*recordings, *held_out, *commissioning), setting)
+    forward = RigForward(plant, setting)
+    verdict = diagnose(
+        forward,
+        recordings,
+        held_out=held_out,
+        commissioning=commissioning,
+        standstill=standstill,
+        exclude=exclude,
+        settings=settings,
+        progress=progress,
+    )
+    verdict = replace(verdict, causes=tuple(map(_shortened, verdict.causes)))
+    if verdict.verdict not in NAMES_A_PLANT:
+        return RigDiagnosis(verdict, None, f"the verdict is {verdict.verdict.value}")
+    extended = plant.extended(*map(effect_of, verdict.causes))
+    return RigDiagnosis(verdict, extended, _refused(verdict))
+
+
+def effect_of(cause: Cause) -> Effect:
+    """The effect that a cause names, at its estimated size."""
+    sizes = {name: estimate.value for name, estimate in cause.parameters.items()}
+    return build_effect(cause.effect, cause.target, sizes)
+
+
+def _shortened(cause: Cause) -> Cause:
+    """Magnitudes as an effect calls them: "null" for "valve_null@leg.3:null"."""
+    short = {name.rpartition(":")[2]: value for name, value in cause.parameters.items()}
+    return replace(cause, parameters=short)
+
+
+def _refused(verdict: Verdict) -> str:
+    gain = verdict.gain
+    if gain is None:
+        return "there were no held-out recordings to prove it on"
+    if gain.share is None:
+        return "the held-out recordings show nothing that it could improve"
+    if not gain.passed:
+        return f"its gain on held-out recordings is not clear of zero (from {gain.low:.2f})"
+    return ""
+
+
+def _one_step(scenario: Scenario) -> Scenario:
+    """The model's own step, whatever a simulated recording was made with."""
+    return scenario.model_copy(update={"run": scenario.run.model_copy(update={"substeps": 1})})
+
+
+def _check_settings(recordings: Sequence[Recording], first: Scenario) -> None:
+    for number, recording in enumerate(recordings, 1):
+        other = replay_scenario(recording)
+        for what, here, there in (
+            ("platform.rate", other.platform.rate, first.platform.rate),
+            ("legs", other.legs, first.legs),
+        ):
+            if here != there:
+                where = f"recording {number}: {what}"
+                raise InvalidInputError(where, here, f"{there}, as in the first one")

@@ -1,0 +1,119 @@
+"""diagnose: name what the simulation gets wrong in recordings, and extend the plant."""
+
+from __future__ import annotations
+
+import argparse
+import os
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from ves_twin.benches.diagnose_rig import RigDiagnosis
+    from ves_twin.plant.plant import Plant
+    from ves_twin.recording.recording import Recording
+
+SUMMARY = "name what the simulation gets wrong in recordings, extend the plant, measure the gain"
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Options of the command."""
+    parser.add_argument("measured", metavar="MEASURED", nargs="+", help="recordings of one rig")
+    for name, words in (
+        ("--held-out", "recordings that an extension must prove itself on"),
+        ("--commissioning", "recordings of healthy rigs, five or more"),
+    ):
+        parser.add_argument(name, metavar="REC", action="append", default=[], help=words)
+    parser.add_argument("--standstill", metavar="REC", help="the rig standing still: its noise")
+    parser.add_argument(
+        "--exclude", metavar="EFFECT", action="append", default=[], help="a cause not considered"
+    )
+    parser.add_argument("--plant", metavar="FILE", help="the nominal plant (default: as recorded)")
+    parser.add_argument("--out", metavar="DIR", help="output folder (default: runs/diagnosis)")
+    parser.add_argument("--json", action="store_true", help="the verdict as JSON on stdout")
+
+
+def execute(arguments: argparse.Namespace) -> int:
+    """Diagnose, write verdict and plant, print the verdict."""
+    from ves_twin.benches.diagnose_rig import diagnose_rig
+    from ves_twin.cli.progress import RunProgress
+    from ves_twin.cli.run import output_folder
+    from ves_twin.compiled import cache_folder
+    from ves_twin.diagnosis.settings import Settings
+    from ves_twin.recording.files import load_recording
+    from ves_twin.simulator.simulate import make_folder
+
+    measured = [load_recording(name) for name in arguments.measured]
+    held_out = [load_recording(name) for name in arguments.held_out]
+    commissioning = [load_recording(name) for name in arguments.commissioning]
+    standstill = load_recording(arguments.standstill) if arguments.standstill else None
+    plant = _nominal(arguments.plant, measured[0])
+    folder = output_folder(arguments.out, "diagnosis")
+    make_folder(folder)
+    settings = Settings(workers=os.cpu_count() or 1, cache=cache_folder().parent / "banks")
+    with RunProgress("diagnose", 1.0, unit="share") as progress:
+        found = diagnose_rig(
+            measured,
+            plant,
+            held_out=held_out,
+            commissioning=commissioning,
+            standstill=standstill,
+            exclude=arguments.exclude,
+            settings=settings,
+            progress=progress.share,
+        )
+    _write(found, folder)
+    if arguments.json:
+        print(found.verdict.to_json())
+    else:
+        print(_text(found, folder))
+    return 0
+
+
+def _nominal(given: str | None, recording: Recording) -> Plant:
+    """The plant asked for, or the shipped one of the recording's form without its changes."""
+    from ves_twin.plant.plant import Plant
+
+    return Plant.load(given or recording.info.plant_base or "ves2")
+
+
+def _write(found: RigDiagnosis, folder: Path) -> None:
+    from ves_twin.plant.write_plant import write_plant
+
+    for name in ("plant.toml", "plant.candidate.toml"):  # of an earlier diagnosis
+        (folder / name).unlink(missing_ok=True)
+    found.verdict.save(folder / "verdict.json")
+    if found.extended is None:
+        return
+    note = f"Extended by ves-twin diagnose: {found.verdict.words}"
+    if found.refused:
+        write_plant(
+            found.extended,
+            folder / "plant.candidate.toml",
+            f"{note}\nOnly a candidate: {found.refused}.",
+        )
+    else:
+        write_plant(found.extended, folder / "plant.toml", note)
+
+
+def _text(found: RigDiagnosis, folder: Path) -> str:
+    verdict = found.verdict
+    basis = verdict.basis
+    lines = [
+        f"verdict   {verdict.verdict.value}",
+        f"          {verdict.words}",
+        f"basis     noise {basis.noise}, tolerances {basis.tolerances},"
+        f" held-out recordings {basis.held_out}",
+    ]
+    if verdict.gain is not None and verdict.gain.share is not None:
+        gain = verdict.gain
+        lines.append(
+            f"gain      {gain.share:.0%} of the excess on held-out recordings"
+            f" ({gain.low:.0%} to {gain.high:.0%})"
+        )
+    lines += ["", "  channel             before     after   (rms, in the channel's unit)"]
+    for name, error in verdict.residuals.items():
+        lines.append(f"  {name:<18}{error.before_si:10.3g}{error.after_si:10.3g}   {error.unit}")
+    if found.extended is not None and found.refused:
+        lines += ["", f"  plant.candidate.toml, no plant.toml: {found.refused}"]
+    files = ", ".join(sorted(p.name for p in folder.iterdir()))
+    return "\n".join([*lines, "", f"  files     {folder}/: {files}"])
