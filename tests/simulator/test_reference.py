@@ -7,7 +7,7 @@ import ves_twin as vt
 from ves_twin.control.emulated import EmulatedSystem
 from ves_twin.plant.assembly import assemble_free_arm
 from ves_twin.simulator import reference as module
-from ves_twin.simulator.build import arm_motion
+from ves_twin.simulator.arm_commands import arm_motion
 from ves_twin.simulator.reference import ZeroGravityReference
 
 CYCLE = 37 * 341e-6

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import hashlib
 from dataclasses import dataclass
 from enum import StrEnum
 from pathlib import Path
@@ -69,6 +70,12 @@ class EmulatedSystem:
         path = find_resource("emulated model", "models/emulated", name_or_path)
         content, _ = read_toml("emulated model", path)
         return _parse(content, path)
+
+    @property
+    def identity(self) -> str:
+        """A hash of M, B and K: equal identity, equal system."""
+        parts = (self.mass, self.damping, self.stiffness)
+        return hashlib.sha256(b"".join(part.tobytes() for part in parts)).hexdigest()[:12]
 
     def discretise(self, period: float) -> tuple[FloatArray, FloatArray]:
         """Exact zero-order-hold form X(k+1) = Phi X(k) + Gamma W(k), X = (Y, Y').

@@ -10,6 +10,7 @@ import numpy as np
 
 from ves_twin.control.belief import Belief
 from ves_twin.control.readings import Readings
+from ves_twin.gravity_model.learned import LearnedGravity
 from ves_twin.kinematics.wrenches import top_to_sensor
 from ves_twin.types import FloatArray
 
@@ -24,10 +25,17 @@ class TruthPort(Protocol):
 
 @dataclass(frozen=True)
 class GravityTask:
-    """What a compensation is told when it is built: the belief; the truth for tests alone."""
+    """What a compensation is told when it is built.
+
+    Attributes:
+        belief: what the computers take the rig to be.
+        truth: for tests alone.
+        learned: W_g of the Learning Method, where the scenario names one.
+    """
 
     belief: Belief
     truth: TruthPort
+    learned: LearnedGravity | None = None
 
 
 class GravityCompensation(abc.ABC):

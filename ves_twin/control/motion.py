@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import abc
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -99,6 +100,30 @@ class ArmMotion(JointMotion):
                 share = quintic((time - move.start) / move.duration)
                 angles = angles + share * (move.to - angles)
         return angles
+
+
+@dataclass(frozen=True)
+class RecordedJoints(JointMotion):
+    """Joint angles through recorded points, without overshoot (monotone cubic pieces).
+
+    Attributes:
+        times: of the points [s] (n,); the first point before them, the last after them.
+        curve: joint angles [rad] (3,) at a time [s] within them.
+    """
+
+    times: FloatArray
+    curve: Callable[[float], FloatArray]
+
+    @staticmethod
+    def through(times: FloatArray, angles: FloatArray) -> RecordedJoints:
+        """The motion through angles [rad] (n, 3) at increasing times [s] (n,)."""
+        from scipy.interpolate import PchipInterpolator  # slow to import
+
+        return RecordedJoints(times, PchipInterpolator(times, angles, axis=0))
+
+    def q(self, time: float) -> FloatArray:
+        """Joint angles [rad] (3,) at a time [s]."""
+        return np.asarray(self.curve(min(max(time, self.times[0]), self.times[-1])))
 
 
 def quintic(s: float) -> float:

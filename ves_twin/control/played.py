@@ -7,9 +7,10 @@ from typing import final
 
 import numpy as np
 
-from ves_twin.control.gravity import GravityCompensation
+from ves_twin.control.gravity import GravityCompensation, GravityTask
 from ves_twin.control.motion import JointMotion, PlatformMotion
 from ves_twin.control.readings import Readings
+from ves_twin.errors import InvalidInputError
 from ves_twin.types import FloatArray
 
 
@@ -57,6 +58,19 @@ class PlayedWrench(GravityCompensation):
 
     def restore(self, snapshot: object) -> None:
         """Nothing to go back to."""
+
+
+def learned_wrench(task: GravityTask) -> PlayedWrench:
+    """The Learning Method at full speed: W_g(s), cycle by cycle, whatever the readings say.
+
+    Raises:
+        InvalidInputError: no W_g to play.
+
+    Source: thesis 3.3.1, step 5.
+    """
+    if task.learned is None:
+        raise InvalidInputError("gravity.file", None, "the W_g that method 'learned' plays")
+    return PlayedWrench(task.learned.wrenches, task.learned.experiment.period)
 
 
 @final

@@ -13,6 +13,7 @@ from ves_twin.control.gravity import (
     NoCompensation,
     TruthCompensation,
 )
+from ves_twin.control.played import learned_wrench
 from ves_twin.control.position import PositionController
 from ves_twin.plugins import Registry, lacks
 
@@ -32,6 +33,7 @@ GRAVITY_COMPENSATIONS: Registry[Callable[[GravityTask], GravityCompensation]] = 
     {
         "none": lambda task: NoCompensation(),
         "truth": lambda task: TruthCompensation(task.truth),
+        "learned": learned_wrench,
         "model": lambda task: ModelCompensation(task.belief),
     },
     lambda loaded: None if callable(loaded) else "cannot be called",

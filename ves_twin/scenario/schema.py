@@ -88,6 +88,7 @@ class Gravity(Part):
     That is also nearly the delay of the force sensor's 20 Hz low-pass, so a fresher estimate is
     a worse one: it runs ahead of the reading that it is taken off. Method `model` predicts from
     the masses of the belief, or from the calibration in `file`, whose matrix C the sensor then has.
+    Method `learned` plays the wrench that the Learning Method left in `file`.
     """
 
     method: Annotated[str, named("gravity method", GRAVITY_COMPENSATIONS)] = "none"
@@ -96,9 +97,11 @@ class Gravity(Part):
     file: str | None = None
 
     @model_validator(mode="after")
-    def _file_is_for_the_model(self) -> Self:
-        if self.file is not None and self.method != "model":
-            raise ValueError(f"gravity.file is for method 'model', not '{self.method}'")
+    def _file_is_for_its_method(self) -> Self:
+        if self.file is not None and self.method not in ("model", "learned"):
+            raise ValueError(f"gravity.file is for 'model' or 'learned', not '{self.method}'")
+        if self.file is None and self.method == "learned":
+            raise ValueError("method 'learned' needs gravity.file, written by the Learning Method")
         return self
 
 
@@ -121,13 +124,20 @@ class JointMove(Part):
 
 
 class Arm(Part):
-    """Joint angles at the start and the moves after it."""
+    """Joint angles at the start and the moves after it, or what an operator does with the arm.
+
+    `operator` is a file of joint commands over time (t, q1, q2, q3 in s and rad), a name of
+    scenarios/data/ or a path. Nothing that plays the rig may look ahead in it.
+    """
 
     start: Joints = ZERO_JOINTS
     moves: tuple[JointMove, ...] = ()
+    operator: str | None = None
 
     @model_validator(mode="after")
     def _moves_follow_each_other(self) -> Self:
+        if self.operator is not None and self.moves:
+            raise ValueError("arm.moves are planned; with arm.operator leave them out")
         for one, two in zip(self.moves, self.moves[1:], strict=False):
             if two.start < one.start + one.duration - 1e-9:  # round-off of a sum of times
                 raise ValueError(
@@ -155,6 +165,15 @@ class Scenario(Part):
     gravity: Gravity = Gravity()
     legs: Legs = Legs()
     arm: Arm = Arm()
+
+    @model_validator(mode="after")
+    def _what_is_learned_is_planned(self) -> Self:
+        if self.gravity.method == "learned" and self.arm.operator is not None:
+            raise ValueError(
+                "gravity.method 'learned' needs commands that are known in advance, and"
+                " arm.operator gives none; use 'model'"
+            )
+        return self
 
     @property
     def has_reference(self) -> bool:

@@ -10,15 +10,18 @@ from ves_twin.control.belief import Belief
 from ves_twin.control.controller import ControlTask
 from ves_twin.control.emulated import EmulatedSystem
 from ves_twin.control.gravity import GravityCompensation, GravityTask
-from ves_twin.control.motion import ArmMotion, Move, PlatformMotion
+from ves_twin.control.motion import PlatformMotion
 from ves_twin.control.played import Script
 from ves_twin.control.registry import GRAVITY_COMPENSATIONS, PLATFORM_CONTROLLERS
 from ves_twin.gravity_model.calibration import GravityCalibration
+from ves_twin.gravity_model.learned import LearnedGravity
 from ves_twin.plant.plant import Plant
 from ves_twin.plant.statics import check_reach
 from ves_twin.recording.recording import Event
 from ves_twin.scenario.schema import Platform, Scenario
+from ves_twin.simulator.arm_commands import arm_motion
 from ves_twin.simulator.computers import Computers
+from ves_twin.simulator.planned import planned_experiment
 from ves_twin.simulator.recorder import IDEAL, LEG_LAG
 from ves_twin.simulator.reference import ZeroGravityReference
 from ves_twin.simulator.rig import Rig
@@ -47,7 +50,8 @@ def build_computers(
 
     Raises:
         UnreachableError: the start pose is outside the legs' travel.
-        InvalidInputError: a gravity calibration of another sensor or arm.
+        InvalidInputError: a gravity calibration of another sensor or arm, or W_g of another
+            experiment.
     """
     start = np.array(scenario.platform.start)
     check_reach(belief.geometry, start, belief.leg_travel, "platform.start")
@@ -76,13 +80,26 @@ def build_computers(
 
 
 def _gravity(scenario: Scenario, belief: Belief, rig: Rig) -> GravityCompensation:
-    port = GravityTruth(rig.model, rig.data, rig.layout)
-    return GRAVITY_COMPENSATIONS[scenario.gravity.method](GravityTask(belief, port))
+    task = GravityTask(
+        belief=belief,
+        truth=GravityTruth(rig.model, rig.data, rig.layout),
+        learned=_learned(scenario, rig),
+    )
+    return GRAVITY_COMPENSATIONS[scenario.gravity.method](task)
+
+
+def _learned(scenario: Scenario, rig: Rig) -> LearnedGravity | None:
+    """W_g of the Learning Method, where the scenario plays it, checked against the scenario."""
+    if scenario.gravity.method != "learned" or scenario.gravity.file is None:
+        return None
+    learned = LearnedGravity.load(scenario.gravity.file)
+    learned.check(planned_experiment(scenario, rig.plant))
+    return learned
 
 
 def _calibrated(scenario: Scenario, belief: Belief, rig: Rig) -> Belief:
     """Load calibration matrix and P vector (Appendix E, step 8), where the scenario names them."""
-    if scenario.gravity.file is None:
+    if scenario.gravity.method != "model" or scenario.gravity.file is None:
         return belief
     calibration = GravityCalibration.load(scenario.gravity.file)
     calibration.check(rig.plant.sensor_identity, belief.gravity.basis)
@@ -120,12 +137,6 @@ def emulated_of(scenario: Scenario) -> EmulatedSystem | None:
     return None if name is None else EmulatedSystem.load(name)
 
 
-def arm_motion(scenario: Scenario) -> ArmMotion:
-    """The arm's moves."""
-    moves = tuple(Move(m.start, m.duration, np.array(m.to)) for m in scenario.arm.moves)
-    return ArmMotion(np.array(scenario.arm.start), moves)
-
-
 def agenda_of(scenario: Scenario) -> list[Event]:
     """What the scenario plans, as events in the order of time."""
     events = []
@@ -134,6 +145,8 @@ def agenda_of(scenario: Scenario) -> list[Event]:
     for busy in scenario.platform.busy:
         message = f"cycles take {busy.extra * 1e3:.3g} ms longer for {busy.duration:.3g} s"
         events.append(Event(busy.start, "busy", message))
+    if scenario.arm.operator is not None:
+        events.append(Event(0.0, "operator", f"an operator commands: {scenario.arm.operator}"))
     for number, move in enumerate(scenario.arm.moves, 1):
         angles = ", ".join(f"{angle:.4g}" for angle in move.to)
         events.append(Event(move.start, "arm_move", f"move {number} to {angles} rad begins"))

@@ -8,7 +8,7 @@ import numpy as np
 
 from ves_twin.kinematics.wrenches import sensor_to_top
 from ves_twin.scenario.schema import Scenario
-from ves_twin.simulator.build import arm_motion
+from ves_twin.simulator.arm_commands import arm_motion
 from ves_twin.simulator.outcome import Outcome
 from ves_twin.thesis.claim import Claim
 from ves_twin.thesis.context import Context, Models
