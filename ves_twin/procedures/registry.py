@@ -11,6 +11,7 @@ from ves_twin.procedures.calibrate_poses import CalibratePoses
 from ves_twin.procedures.coupling_map_paths import CouplingMapPaths
 from ves_twin.procedures.frequency_response import FrequencyResponseTest
 from ves_twin.procedures.frozen_droop import FrozenDroop
+from ves_twin.procedures.gravity_sensitivity import GravitySensitivity
 from ves_twin.procedures.learning_method import LearningMethod
 from ves_twin.procedures.positioning_error import PositioningErrorTest
 from ves_twin.procedures.pped_release import PpedRelease
@@ -26,6 +27,7 @@ PROCEDURES: dict[str, type[Procedure]] = {
     "positioning_error": PositioningErrorTest,
     "calibrate_poses": CalibratePoses,
     "frozen_droop": FrozenDroop,
+    "gravity_sensitivity": GravitySensitivity,
     "learning_method": LearningMethod,
     "sensor_drift": SensorDrift,
     "verify_gravity": VerifyGravity,

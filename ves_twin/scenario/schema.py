@@ -89,12 +89,17 @@ class Gravity(Part):
     a worse one: it runs ahead of the reading that it is taken off. Method `model` predicts from
     the masses of the belief, or from the calibration in `file`, whose matrix C the sensor then has.
     Method `learned` plays the wrench that the Learning Method left in `file`.
+
+    `error` makes the estimate wrong on purpose, by a share of itself: from `error_since` on, or, if
+    that is left out, always, so that zeroing hides what it does at the start pose.
     """
 
     method: Annotated[str, named("gravity method", GRAVITY_COMPENSATIONS)] = "none"
     age: Annotated[int, Field(ge=0, le=50)] = 1
     zero: bool = True
     file: str | None = None
+    error: Annotated[float, Field(ge=-1, le=1)] = 0.0
+    error_since: Annotated[Seconds, Field(ge=0)] | None = None
 
     @model_validator(mode="after")
     def _file_is_for_its_method(self) -> Self:

@@ -13,6 +13,7 @@ from ves_twin.control.gravity import GravityCompensation, GravityTask
 from ves_twin.control.motion import PlatformMotion
 from ves_twin.control.played import Script
 from ves_twin.control.registry import GRAVITY_COMPENSATIONS, PLATFORM_CONTROLLERS
+from ves_twin.control.scaled import ScaledCompensation
 from ves_twin.gravity_model.calibration import GravityCalibration
 from ves_twin.gravity_model.learned import LearnedGravity
 from ves_twin.plant.plant import Plant
@@ -85,7 +86,11 @@ def _gravity(scenario: Scenario, belief: Belief, rig: Rig) -> GravityCompensatio
         truth=GravityTruth(rig.model, rig.data, rig.layout),
         learned=_learned(scenario, rig),
     )
-    return GRAVITY_COMPENSATIONS[scenario.gravity.method](task)
+    gravity = scenario.gravity
+    compensation = GRAVITY_COMPENSATIONS[gravity.method](task)
+    if gravity.error == 0.0:
+        return compensation
+    return ScaledCompensation(compensation, gravity.error, gravity.error_since)
 
 
 def _learned(scenario: Scenario, rig: Rig) -> LearnedGravity | None:

@@ -7,13 +7,13 @@ from collections.abc import Mapping
 import numpy as np
 
 from ves_twin.kinematics.wrenches import sensor_to_top
+from ves_twin.procedures.gravity_shift import gravity_shift
 from ves_twin.scenario.schema import Scenario
 from ves_twin.simulator.arm_commands import arm_motion
 from ves_twin.simulator.outcome import Outcome
 from ves_twin.thesis.claim import Claim
 from ves_twin.thesis.context import Context, Models
 from ves_twin.thesis.evaluation import Answer, Evaluation, NotBuilt, NotTestable
-from ves_twin.thesis.gravity_error import gravity_shift
 from ves_twin.thesis.standing_rig import StandingRig
 
 LEARNING = NotBuilt("the Learning Method (3.3)")
@@ -64,15 +64,18 @@ def _sensor_weight(context: Context, claim: Claim) -> Evaluation:
 
 def _shift(context: Context, share: float) -> Evaluation:
     changes = {"run.duration": 20.0, "run.noise": False}
-    found = gravity_shift(context, BEAM[context.models], changes, share)
+    exact = context.run(BEAM[context.models], changes)
+    error: dict[str, object] = {"gravity.error": share, "gravity.error_since": 0.0}
+    run = context.run(BEAM[context.models], {**changes, **error})
+    found, outcome = gravity_shift(exact.recording, run.recording), run.recording.info.outcome
     note = (
         f"estimate {100 * share:g} % too large from t = 0, 20 s: Z shifts by"
         f" {found.shift * 1e3:.0f} mm, true peak {found.peak * 1e3:.0f} mm"
     )
-    if found.outcome != Outcome.COMPLETED:
-        note += f"; the run ended early ({found.outcome})"
-    ratio = found.shift / found.peak if found.peak > 0 else float("nan")
-    return Evaluation((ratio,), holds=found.outcome == Outcome.COMPLETED, note=note)
+    if outcome != Outcome.COMPLETED:
+        note += f"; the run ended early ({outcome})"
+    holds = outcome == Outcome.COMPLETED
+    return Evaluation((found.ratio,), holds=holds, note=note, runs=(exact.command, run.command))
 
 
 def _half_percent(context: Context, claim: Claim) -> Evaluation:

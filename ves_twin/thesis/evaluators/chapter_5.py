@@ -11,6 +11,7 @@ from ves_twin.control.emulated import EmulatedSystem
 from ves_twin.control.leg_loop import chebyshev_section
 from ves_twin.plant.modes import structural_modes
 from ves_twin.plant.statics import check_reach
+from ves_twin.procedures.gravity_shift import gravity_shift
 from ves_twin.scenario.schema import Scenario
 from ves_twin.simulator.clock import Clock
 from ves_twin.simulator.outcome import Outcome
@@ -18,7 +19,6 @@ from ves_twin.thesis.claim import Claim
 from ves_twin.thesis.context import Context
 from ves_twin.thesis.evaluation import Answer, Evaluation, Evaluator, NotBuilt, NotTestable
 from ves_twin.thesis.evaluators.chapter_2 import model_rates
-from ves_twin.thesis.gravity_error import gravity_shift
 from ves_twin.thesis.leg_response import LegSettings, bandwidth, leg_response
 from ves_twin.thesis.standing_rig import StandingRig
 from ves_twin.types import ComplexArray, FloatArray
@@ -166,11 +166,18 @@ def _laplace(context: Context, claim: Claim) -> Evaluation:
 def _softness(context: Context, claim: Claim) -> Evaluation:
     quiet: dict[str, object] = {"run.duration": 10.0, "run.noise": False}
     home = {**quiet, "platform.start": [0.0] * 6}
-    soft = gravity_shift(context, "beam_horizontal_truth", quiet, 0.002)
-    stiff = gravity_shift(context, RELEASE, home, 0.002)
+    wrong: dict[str, object] = {"gravity.error": 0.002, "gravity.error_since": 0.0}
+    runs = [
+        context.run(name, {**changes, **error})
+        for name, changes in (("beam_horizontal_truth", quiet), (RELEASE, home))
+        for error in ({}, wrong)
+    ]
+    recordings = [run.recording for run in runs]
+    soft, stiff = gravity_shift(*recordings[:2]), gravity_shift(*recordings[2:])
     return Evaluation(
         (soft.shift / stiff.shift,),
-        holds=soft.outcome == stiff.outcome == Outcome.COMPLETED,
+        holds=all(run.info.outcome == Outcome.COMPLETED for run in recordings),
+        runs=tuple(run.command for run in runs),
         note=f"0.2 % of the weight shifts the beam by {soft.shift * 1e3:.1f} mm in Z, Table 5-2 by"
         f" {stiff.shift * 1e3:.1f} mm",
     )
