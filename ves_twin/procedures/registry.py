@@ -9,6 +9,7 @@ from pydantic import ValidationError
 from ves_twin.errors import UnknownNameError
 from ves_twin.procedures.calibrate_poses import CalibratePoses
 from ves_twin.procedures.coupling_map_paths import CouplingMapPaths
+from ves_twin.procedures.emulation_error_budget import EmulationErrorBudget
 from ves_twin.procedures.frequency_response import FrequencyResponseTest
 from ves_twin.procedures.frozen_droop import FrozenDroop
 from ves_twin.procedures.gravity_sensitivity import GravitySensitivity
@@ -28,6 +29,7 @@ PROCEDURES: dict[str, type[Procedure]] = {
     "calibrate_poses": CalibratePoses,
     "frozen_droop": FrozenDroop,
     "gravity_sensitivity": GravitySensitivity,
+    "emulation_error_budget": EmulationErrorBudget,
     "learning_method": LearningMethod,
     "sensor_drift": SensorDrift,
     "verify_gravity": VerifyGravity,
