@@ -98,7 +98,7 @@ class ErrorSources:
     def _drawn(self, name: str) -> FloatArray:
         """A number as it is, or, where commissioning leaves a zero open, one draw of its sd."""
         parameter = self.ideal.parameters[name]
-        generator = np.random.default_rng([self.seed, len(name)])
+        generator = np.random.default_rng([self.seed, (*DRIFT, *ORIENTATION).index(name)])
         drawn = parameter.value + parameter.sd * generator.normal(size=parameter.value.shape)
         return np.asarray(drawn if name in (*DRIFT, "platform.level") else parameter.value)
 

@@ -11,7 +11,7 @@ import numpy as np
 from pydantic import Field
 
 from ves_twin.plant.plant import Plant
-from ves_twin.procedures.learning_phases import LearningPhases, poses_at_cycles
+from ves_twin.procedures.learning_phases import Changes, LearningPhases, poses_at_cycles
 from ves_twin.procedures.learning_report import Iteration, Learned, account_of, write_report
 from ves_twin.procedures.procedure import Account, Conduct, Procedure, Progress, part_of
 from ves_twin.recording.recording import Recording
@@ -35,9 +35,9 @@ class LearningMethod(Procedure):
 
     `experiment` is a micro-gravity scenario; its gravity method is replaced. `guess`: no motion
     (the thesis), or that of a run of the belief, without noise and in `fast`. `noise_grade` and
-    `drift_grade` scale the sensor's noise and the sd of its drift rates. `exact`: run the
-    experiment once more with gravity known exactly, which no laboratory can, to say what the
-    method lost. `settled` are the changes below which the motion counts as found (3.3.2).
+    `drift_grade` scale the sensor's noise and the sd of its drift rates. `compare`: run the
+    experiment also with gravity known exactly, which no laboratory can, to say what the method
+    lost, and with the scenario's own gravity method. `settled` are the changes below which the motion counts as found (3.3.2).
     """
 
     experiment: str = "beam_model_method"
@@ -48,13 +48,13 @@ class LearningMethod(Procedure):
     smooth: Annotated[Seconds, Field(gt=0, le=10)] = 0.2
     noise_grade: Annotated[float, Field(ge=0, le=100)] = 1.0
     drift_grade: Annotated[float, Field(ge=0, le=100)] = 1.0
-    exact: bool = True
+    compare: bool = True
     settled_translation: Annotated[Metres, Field(gt=0)] = 1e-3
     settled_rotation: Annotated[float, si("rad"), Field(gt=0)] = 1e-3
     seed: Annotated[int, Field(ge=0, lt=2**63)] = 0
 
     def carry_out(self, conduct: Conduct) -> Account:
-        """Iterate; write `learned_gravity.parquet`, `convergence.csv`, `.png` and `motion.csv`.
+        """Iterate; write `learned_gravity.parquet`, tables and pictures.
 
         An iteration that leaves the workspace ends it with that outcome; what was done is kept.
 
@@ -65,8 +65,8 @@ class LearningMethod(Procedure):
         seed = self.seed if conduct.seed is None else conduct.seed
         phases = self.phases(conduct, seed)
         planned = phases.planned
-        seeds = _seeds(seed, 2 * self.iterations + 1)
-        parts = self.iterations + (1 if self.exact else 0)
+        seeds = _seeds(seed, 2 * self.iterations + 2)
+        parts = self.iterations + (1 if self.compare else 0)
         still = np.tile(np.array(phases.scenario.platform.start), (len(planned.commands), 1))
         motion = still if self.guess is Guess.NONE else self._simulated(phases)
         done: list[Iteration] = []
@@ -80,10 +80,12 @@ class LearningMethod(Procedure):
                 break
             done.append(round_.iteration)
             motion = round_.iteration.motion
-        exact = None
-        if self.exact and outcome is Outcome.COMPLETED:
+        exact = model = None
+        if self.compare and outcome is Outcome.COMPLETED:
             last = part_of(conduct.progress, self.iterations, parts)
-            exact = phases.run({"gravity": EXACT}, seeds[-1], last, "gravity known exactly")
+            exact = phases.run(EXACT, seeds[-1], part_of(last, 0, 2), "gravity known exactly")
+            own = {"gravity": Scenario.load(self.experiment).gravity.model_dump(mode="json")}
+            model = phases.run(own, seeds[-2], part_of(last, 1, 2), "the scenario's own method")
         learned = Learned(
             tuple(done),
             still[0],
@@ -92,6 +94,7 @@ class LearningMethod(Procedure):
             outcome,
             (self.settled_translation, self.settled_rotation),
             exact,
+            model,
         )
         write_report(learned, conduct.folder)
         return account_of(learned)
@@ -145,12 +148,12 @@ class LearningMethod(Procedure):
         """Y^0 by a run of the belief: its masses, its geometry, no noise, `fast`."""
         believed = Plant.load(phases.scenario.belief).with_fidelity("fast")
         guess = LearningPhases(phases.scenario, believed, self.alpha, self.smooth)
-        changes = {"run": {"noise": False}, "gravity": {"method": "model"}}
+        changes: Changes = {"run": {"noise": False}, "gravity": {"method": "model"}}
         run = guess.run(changes, 0, lambda share, what: None)
         return poses_at_cycles(run, phases.planned)
 
 
-EXACT: dict[str, object] = {"method": "truth", "file": None}
+EXACT: Changes = {"gravity": {"method": "truth", "file": None}, "run": {"noise": False}}
 
 
 @dataclass(frozen=True)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -25,6 +26,10 @@ from ves_twin.types import FloatArray
 
 CUBIC = 3
 """Order of the local polynomials that smooth W_g: they leave its slope and curvature alone."""
+
+
+Changes = Mapping[str, Mapping[str, Any]]
+"""Table of a scenario -> keys of it that are changed."""
 
 
 @dataclass(frozen=True)
@@ -102,7 +107,7 @@ class LearningPhases:
         return self.run({"gravity": gravity}, seed, progress, "phase B, full speed")
 
     def run(
-        self, changes: dict[str, Any], seed: int, progress: Progress, what: str = "full speed"
+        self, changes: Changes, seed: int, progress: Progress, what: str = "full speed"
     ) -> Recording:
         """The experiment at full speed with some tables of the scenario changed."""
         content = self.scenario.model_dump(mode="json")
@@ -140,7 +145,7 @@ def poses_at_cycles(run: Recording, planned: PlannedExperiment) -> FloatArray:
     return np.array(run["platform.pose"][np.searchsorted(run.time, due, "right") - 1])
 
 
-def _recorded(sim: Simulator, progress: Any) -> Recording:
+def _recorded(sim: Simulator, progress: Callable[[float], None]) -> Recording:
     length = sim.scenario.run.duration
     try:
         while not sim.done:

@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 from pydantic import JsonValue
 
+from ves_twin.procedures.agreement_picture import write_agreement
 from ves_twin.procedures.number_table import write_table
 from ves_twin.procedures.procedure import Account
 from ves_twin.recording.recording import Recording
@@ -54,7 +55,8 @@ class Learned:
         rig_time: of one iteration as the thesis counts it, (alpha + 1) times the motion [s].
         outcome: how the last one ended.
         settled: changes [m], [rad] below which the motion counts as found.
-        exact: the experiment with gravity known exactly; None if it was not run.
+        exact: the experiment with gravity known exactly, without noise; None if it was not run.
+        model: the experiment with the scenario's own gravity method; None if it was not run.
     """
 
     iterations: tuple[Iteration, ...]
@@ -64,6 +66,7 @@ class Learned:
     outcome: Outcome
     settled: tuple[float, float]
     exact: Recording | None
+    model: Recording | None
 
     @property
     def settled_after(self) -> int | None:
@@ -132,10 +135,17 @@ def _losses(learned: Learned, values: dict[str, JsonValue]) -> list[str]:
     rows["  legs' bandwidth alone"] = rms_difference(
         run, "reference.pose_leg_lag", run, "reference.pose"
     )
-    if learned.exact is not None:
-        rows["lost against gravity known exactly"] = rms_difference(
-            run, "truth.pose", learned.exact, "truth.pose"
+    if learned.exact is not None and learned.model is not None:
+        lost, lost_by_model = (
+            rms_difference(one, "truth.pose", learned.exact, "truth.pose")
+            for one in (run, learned.model)
         )
+        rows["lost against gravity known exactly"] = lost
+        rows["  the same by the Model Method"] = lost_by_model
+        rows["Learning less Model Method"] = rms_difference(
+            run, "truth.pose", learned.model, "truth.pose"
+        )
+        rows["  predicted by the two losses"] = np.hypot(lost, lost_by_model)
     lines = ["", head]
     for name, row in rows.items():
         lines.append(f"  {name:<34}" + "".join(f"{v * 1e3:9.3f}" for v in row))
@@ -150,7 +160,7 @@ def rms_difference(one: Recording, name: str, two: Recording, other: str) -> Flo
 
 
 def write_report(learned: Learned, folder: Path) -> None:
-    """Write `convergence.csv`, `motion.csv` and `convergence.png`; nothing without an iteration."""
+    """Write tables and pictures of the iterations; nothing if there was none."""
     if not learned.iterations:
         return
     changes = np.array([np.max(np.abs(one.change), axis=0) for one in learned.iterations])
@@ -164,6 +174,8 @@ def write_report(learned: Learned, folder: Path) -> None:
     columns = dict(zip(heads, last.motion.T, strict=True))
     write_table(folder / "motion.csv", {"t [s]": time, **columns})
     _picture(learned, time, folder / "convergence.png")
+    if learned.model is not None:
+        write_agreement(last.run, learned.model, folder / "agreement.png")
 
 
 def _picture(learned: Learned, time: FloatArray, path: Path) -> None:
