@@ -19,8 +19,15 @@ PARAMETERS = np.dtype(
 """stiffness [N m/rad], damping [N m s/rad], integral [N m/rad/s], limit [N m] of each joint;
 cycle: time between two commands [s]."""
 
-STATE = np.dtype([("points", np.float64, (4, 3)), ("integral", np.float64, 3)])
-"""points: commands k-1, k, k+1, k+2 [rad]; integral: torque of the integrator [N m]."""
+STATE = np.dtype(
+    [
+        ("points", np.float64, (4, 3)),
+        ("integral", np.float64, 3),
+        ("feedforward", np.float64, 3),
+    ]
+)
+"""points: commands k-1, k, k+1, k+2 [rad]; integral: torque of the integrator [N m];
+feedforward: torque that the computers add, held for a cycle [N m]."""
 
 
 @compiled
@@ -56,18 +63,18 @@ def spline(points: FloatArray, u: float, cycle: float, q: FloatArray, rate: Floa
 @compiled
 def servo_torque(
     p: Record,
-    integral: FloatArray,
+    added: FloatArray,
     q_set: FloatArray,
     rate_set: FloatArray,
     q: FloatArray,
     rate: FloatArray,
     torque: FloatArray,
 ) -> None:
-    """Joint torques K (q_set - q) + B (q_set' - q') + I, limited to what the drives give.
+    """Joint torques K (q_set - q) + B (q_set' - q') + added, limited to what the drives give.
 
     Args:
         p: PARAMETERS.
-        integral: torque of the integrator [N m] (3,).
+        added: torque of integrator and feed-forward [N m] (3,).
         q_set: set-point [rad] (3,).
         rate_set: its rate [rad/s] (3,).
         q: joint angles [rad] (3,).
@@ -76,4 +83,4 @@ def servo_torque(
     """
     for j in range(3):
         t = p.stiffness[j] * (q_set[j] - q[j]) + p.damping[j] * (rate_set[j] - rate[j])
-        torque[j] = min(max(t + integral[j], -p.limit[j]), p.limit[j])
+        torque[j] = min(max(t + added[j], -p.limit[j]), p.limit[j])

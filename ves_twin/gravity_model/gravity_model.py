@@ -49,6 +49,29 @@ class GravityModel:
         first = self.basis.regressor(q) @ self.moments
         return np.hstack([self.total_mass * g, np.cross(first, g)])
 
+    def holding_torque(self, q: FloatArray, angles: FloatArray) -> FloatArray:
+        """Torques or forces of the joints that hold the arm against gravity: -g . dS/dq.
+
+        S is the first moment of the whole arm. It is a sine of each revolute joint and linear in
+        each prismatic one, so a central difference over half pi, divided by 2 or by pi, is exact.
+
+        Args:
+            q: joint coordinates (n, k).
+            angles: fixed-axis angles of the platform [rad] (n, 3).
+
+        Returns:
+            One for each joint [N m, N] (n, k).
+        """
+        g = gravity_in_top(angles, self.gravity)
+        torque = np.empty(q.shape)
+        for j, joint in enumerate(self.basis.chain.joints):
+            step = np.zeros(q.shape[1])
+            step[j] = np.pi / 2
+            ahead, behind = self.basis.regressor(q + step), self.basis.regressor(q - step)
+            span = np.pi if joint.prismatic else 2.0
+            torque[:, j] = -np.sum((ahead - behind) @ self.moments * g, axis=1) / span
+        return torque
+
 
 def gravity_in_top(angles: FloatArray, gravity: float) -> FloatArray:
     """Acceleration of gravity in t [m/s^2] (n, 3): g (sin y, -sin x cos y, -cos x cos y).

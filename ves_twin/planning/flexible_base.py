@@ -68,8 +68,8 @@ class FlexibleBaseArm:
         mass[:6, :6] += base.mass
         return FlexibleBaseArm(
             mass,
-            block_diag(base.damping, _square(gains.damping, n, "damping")),
-            block_diag(base.stiffness, _square(gains.stiffness, n, "stiffness")),
+            block_diag(base.damping, joint_matrix(gains.damping, n, "damping")),
+            block_diag(base.stiffness, joint_matrix(gains.stiffness, n, "stiffness")),
         )
 
     @property
@@ -116,7 +116,8 @@ def strain_energy(base: EmulatedSystem, poses: FloatArray) -> FloatArray:
     return np.asarray(0.5 * np.einsum("...i,ij,...j->...", poses, base.stiffness, poses))
 
 
-def _square(gains: FloatArray, n: int, what: str) -> FloatArray:
+def joint_matrix(gains: FloatArray, n: int, what: str) -> FloatArray:
+    """Gains of n joints, (n,) or full, as a matrix (n, n); refused if they are for others."""
     array = np.asarray(gains, float)
     if array.shape not in {(n,), (n, n)} or not np.all(np.isfinite(array)):
         came = array.tolist()

@@ -49,13 +49,25 @@ def strain_energy_integral(arm: FlexibleBaseArm, start: FloatArray, until: float
         The integral [J s]; infinite where the motion does not die out.
     """
     a = arm.state_matrix
-    if np.max(np.linalg.eigvals(a).real) >= 0:
-        return float("inf")
     energy = np.zeros_like(a)
     energy[:6, :6] = 0.5 * arm.stiffness[:6, :6]
-    total = solve_continuous_lyapunov(a.T, -energy)
     state = np.zeros(len(a))
     state[:6] = start
+    return quadratic_integral(a, energy, state, until)
+
+
+def quadratic_integral(a: FloatArray, form: FloatArray, state: FloatArray, until: float) -> float:
+    """Integral of x' C x from zero to a time, x' = A x from x0, exactly; inf where A is unstable.
+
+    Args:
+        a: A (n, n).
+        form: C (n, n).
+        state: x0 (n,).
+        until: end [s]; may be infinite.
+    """
+    if np.max(np.linalg.eigvals(a).real) >= 0:
+        return float("inf")
+    total = solve_continuous_lyapunov(a.T, -form)
     end = expm(a * until) @ state if np.isfinite(until) else np.zeros_like(state)
     return float(state @ total @ state - end @ total @ end)
 

@@ -6,6 +6,7 @@ import numpy as np
 from scipy.ndimage import gaussian_filter1d
 
 from ves_twin.control.motion import quintic
+from ves_twin.control.path_motion import at_lengths, path_lengths
 from ves_twin.errors import InvalidInputError
 from ves_twin.types import FloatArray
 
@@ -39,14 +40,14 @@ def timed_path(corners: FloatArray, seconds: float, cycle: float, rest: float) -
         raise InvalidInputError("path", corners.tolist(), "two different configurations")
     count = round((seconds + rest) / cycle) + 1
     share = np.array([quintic(k * cycle / seconds) for k in range(count)])
-    return _at(corners, lengths, share * lengths[-1])
+    return at_lengths(corners, lengths, share * lengths[-1])
 
 
 def evenly(corners: FloatArray, count: int) -> FloatArray:
     """A polyline (k, n) at places evenly spaced along it (count, n)."""
     corners = np.asarray(corners, float)
     lengths = path_lengths(corners)
-    return _at(corners, lengths, np.linspace(0.0, lengths[-1], count))
+    return at_lengths(corners, lengths, np.linspace(0.0, lengths[-1], count))
 
 
 def rounded(corners: FloatArray) -> FloatArray:
@@ -63,13 +64,3 @@ def rounded(corners: FloatArray) -> FloatArray:
     smooth = evenly(straight + blurred, POINTS)
     smooth[0], smooth[-1] = corners[0], corners[-1]
     return smooth
-
-
-def path_lengths(corners: FloatArray) -> FloatArray:
-    """Length along a polyline (k, n) at each corner [rad] (k,)."""
-    steps = np.linalg.norm(np.diff(corners, axis=0), axis=1)
-    return np.concatenate([[0.0], np.cumsum(steps)])
-
-
-def _at(corners: FloatArray, lengths: FloatArray, places: FloatArray) -> FloatArray:
-    return np.column_stack([np.interp(places, lengths, column) for column in corners.T])

@@ -1,4 +1,4 @@
-"""CouplingMapPaths: the same move along a planned, a straight and a bad path, in zero gravity."""
+"""CouplingMapPaths: the same move along a planned, a straight and a bad path, zero-g and rig."""
 
 from __future__ import annotations
 
@@ -9,16 +9,19 @@ import numpy as np
 from pydantic import Field, JsonValue
 
 from ves_twin.control.emulated import EmulatedSystem
+from ves_twin.control.path_motion import path_lengths
 from ves_twin.planning.base_motion import base_motion
 from ves_twin.planning.chain import SerialChain
 from ves_twin.planning.coupling import coupling_length
 from ves_twin.planning.flexible_base import strain_energy
 from ves_twin.planning.hot_spot import hot_spot_path
 from ves_twin.planning.puma import puma_chain
-from ves_twin.planning.timed_path import evenly, path_lengths, rounded, timed_path
+from ves_twin.planning.timed_path import evenly, rounded, timed_path
 from ves_twin.plant.plant import Plant
 from ves_twin.procedures.number_table import write_table
-from ves_twin.procedures.procedure import Account, Conduct, Procedure
+from ves_twin.procedures.paths_on_rig import PathsOnRig
+from ves_twin.procedures.procedure import Account, Conduct, Procedure, Progress
+from ves_twin.procedures.rig_energy import RigOptions
 from ves_twin.scenario.fields import Joints, Seconds
 from ves_twin.simulator.outcome import Outcome
 from ves_twin.simulator.zero_gravity import zero_gravity_motion
@@ -56,6 +59,7 @@ class CouplingMapPaths(Procedure):
 
     `corners` are the places near which the bad path turns; it is rounded like the planned one, so
     that no jump of a joint rate speaks against it. `low` and `high` bound the planned path.
+    `on_rig` runs all paths on the rig too, with the Model Method and without compensation.
     """
 
     emulated: str
@@ -68,6 +72,8 @@ class CouplingMapPaths(Procedure):
     straightness: Annotated[float, Field(ge=0)] = 0.1
     duration: Annotated[Seconds, Field(gt=0)]
     rest: Annotated[Seconds, Field(ge=0)]
+    on_rig: bool = True
+    rig: RigOptions = RigOptions()
 
     def paths(self, chain: SerialChain, base: EmulatedSystem) -> dict[str, FloatArray]:
         """The three ways by name, evenly spaced (k, 3)."""
@@ -103,23 +109,47 @@ class CouplingMapPaths(Procedure):
             )
         return found
 
+    def rig_runs(
+        self,
+        plant: Plant,
+        seed: int | None = None,
+        progress: Progress = lambda share, what: None,
+    ) -> PathsOnRig:
+        """Every path on the rig."""
+        paths = self.paths(puma_chain(plant), EmulatedSystem.load(self.emulated))
+        times = (self.duration, self.rest)
+        return PathsOnRig.run(self.rig, plant, seed, self.emulated, paths, times, progress)
+
     def carry_out(self, conduct: Conduct) -> Account:
-        """Run the paths; write `paths.csv` with commands and energies over time.
+        """Run the paths; write `paths.csv` and `paths_on_rig.csv` with energies over time.
 
         Raises:
             VesTwinError: a base or a path that cannot be.
         """
         conduct.progress(0.0, "paths in zero gravity")
-        runs = self.runs(conduct.plant or Plant.load(self.plant))
+        plant = conduct.plant or Plant.load(self.plant)
+        runs = self.runs(plant)
         count = len(runs["good"].energy)
         columns: dict[str, FloatArray] = {"t [s]": CYCLE * np.arange(count, dtype=float)}
         for name, run in runs.items():
             for j in range(3):
                 columns[f"{name}.q.{j + 1} [rad]"] = run.commands[:, j]
             columns[f"{name}.energy [J]"] = run.energy
+        rig = self.rig_runs(plant, conduct.seed, conduct.progress) if self.on_rig else None
         write_table(conduct.folder / "paths.csv", columns)
+        values: dict[str, JsonValue] = {"zero_g": path_figures(runs)}
+        lines = _lines(runs)
+        if rig is not None:
+            rig.write(conduct.folder)
+            values |= rig.figures(peak_ratio(runs))
+            lines += rig.lines()
         conduct.progress(1.0, "written")
-        return Account(Outcome.COMPLETED, {"zero_g": path_figures(runs)}, _lines(runs))
+        return Account(Outcome.COMPLETED, values, lines)
+
+
+def peak_ratio(runs: dict[str, PathRun]) -> float:
+    """Peak energy of the good path over that of the bad one, in zero gravity."""
+    return float(runs["good"].energy.max() / runs["bad"].energy.max())
 
 
 def path_figures(runs: dict[str, PathRun]) -> dict[str, JsonValue]:
@@ -134,7 +164,7 @@ def path_figures(runs: dict[str, PathRun]) -> dict[str, JsonValue]:
             "joint_length": run.length,
             "coupling_length": run.coupling,
         }
-    values["good_over_bad"] = peaks["good"] / peaks["bad"]
+    values["good_over_bad"] = peak_ratio(runs)
     values["good_over_straight"] = peaks["good"] / peaks["straight"]
     return values
 
@@ -146,5 +176,4 @@ def _lines(runs: dict[str, PathRun]) -> tuple[str, ...]:
         f" {np.degrees(run.length):9.1f} deg {run.coupling:12.3f}"
         for name, run in runs.items()
     ]
-    ratio = runs["good"].energy.max() / runs["bad"].energy.max()
-    return (head, *rows, "", f"  good over bad, peak energy: {ratio:.3f}")
+    return (head, *rows, "", f"  good over bad, peak energy: {peak_ratio(runs):.3f}")

@@ -37,7 +37,8 @@ class LearningMethod(Procedure):
     (the thesis), or that of a run of the belief, without noise and in `fast`. `noise_grade` and
     `drift_grade` scale the sensor's noise and the sd of its drift rates. `compare`: run the
     experiment also with gravity known exactly, which no laboratory can, to say what the method
-    lost, and with the scenario's own gravity method. `settled` are the changes below which the motion counts as found (3.3.2).
+    lost, and with the scenario's own gravity method. `settled` are the changes below which the
+    motion counts as found (3.3.2).
     """
 
     experiment: str = "beam_model_method"

@@ -16,6 +16,7 @@ from ves_twin.procedures.gravity_sensitivity import GravitySensitivity
 from ves_twin.procedures.learning_method import LearningMethod
 from ves_twin.procedures.positioning_error import PositioningErrorTest
 from ves_twin.procedures.pped_release import PpedRelease
+from ves_twin.procedures.pped_release_emulated import PpedReleaseEmulated
 from ves_twin.procedures.procedure import Procedure
 from ves_twin.procedures.sensor_drift import SensorDrift
 from ves_twin.procedures.verify_gravity import VerifyGravity
@@ -24,6 +25,7 @@ from ves_twin.scenario.load import refusal, scenario_content
 PROCEDURES: dict[str, type[Procedure]] = {
     "coupling_map_paths": CouplingMapPaths,
     "pped_release": PpedRelease,
+    "pped_release_emulated": PpedReleaseEmulated,
     "frequency_response": FrequencyResponseTest,
     "positioning_error": PositioningErrorTest,
     "calibrate_poses": CalibratePoses,

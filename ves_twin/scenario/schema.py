@@ -128,16 +128,37 @@ class JointMove(Part):
     to: Joints
 
 
+class JointPath(Part):
+    """A way from the arm's start through places, one quintic in its length, no stop between."""
+
+    start: Annotated[Seconds, Field(ge=0)]
+    duration: Annotated[Seconds, Field(gt=0)]
+    through: Annotated[tuple[Joints, ...], Field(min_length=1)]
+
+
 class Arm(Part):
-    """Joint angles at the start and the moves after it, or what an operator does with the arm.
+    """Joint angles at the start, and the moves or the path after it, or what an operator does.
 
     `operator` is a file of joint commands over time (t, q1, q2, q3 in s and rad), a name of
     scenarios/data/ or a path. Nothing that plays the rig may look ahead in it.
+    `gravity_feedforward` adds the torque that the believed weight needs to the joint servo, once
+    a cycle; a soft servo without integrator would sag.
     """
 
     start: Joints = ZERO_JOINTS
     moves: tuple[JointMove, ...] = ()
     operator: str | None = None
+    path: JointPath | None = None
+    gravity_feedforward: bool = False
+
+    @model_validator(mode="after")
+    def _path_or_moves(self) -> Self:
+        given = [self.path is not None, bool(self.moves), self.operator is not None]
+        if self.path is not None and sum(given) > 1:
+            raise ValueError("arm: give one of arm.moves, arm.path and arm.operator")
+        if self.path is not None and all(place == self.start for place in self.path.through):
+            raise ValueError("arm.path never leaves arm.start")
+        return self
 
     @model_validator(mode="after")
     def _moves_follow_each_other(self) -> Self:

@@ -90,6 +90,7 @@ WORK = np.dtype(
         ("rate", np.float64, 3),
         ("q_set", np.float64, 3),
         ("rate_set", np.float64, 3),
+        ("added", np.float64, 3),
         ("torque", np.float64, 3),
     ]
 )

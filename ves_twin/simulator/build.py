@@ -10,6 +10,7 @@ from ves_twin.control.belief import Belief
 from ves_twin.control.controller import ControlTask
 from ves_twin.control.emulated import EmulatedSystem
 from ves_twin.control.gravity import GravityCompensation, GravityTask
+from ves_twin.control.gravity_feedforward import GravityFeedforward
 from ves_twin.control.motion import PlatformMotion
 from ves_twin.control.played import Script
 from ves_twin.control.registry import GRAVITY_COMPENSATIONS, PLATFORM_CONTROLLERS
@@ -74,6 +75,7 @@ def build_computers(
         gravity=gravity,
         gravity_age=scenario.gravity.age,
         arm=script.joints if script else arm_motion(scenario),
+        feedforward=GravityFeedforward(belief) if scenario.arm.gravity_feedforward else None,
         period=period,
         board=rig.board,
         state=rig.state,
@@ -156,6 +158,10 @@ def agenda_of(scenario: Scenario) -> list[Event]:
         angles = ", ".join(f"{angle:.4g}" for angle in move.to)
         events.append(Event(move.start, "arm_move", f"move {number} to {angles} rad begins"))
         events.append(Event(move.start + move.duration, "arm_move", f"move {number} ends"))
+    path = scenario.arm.path
+    if path is not None:
+        events.append(Event(path.start, "arm_path", f"path of {len(path.through)} places begins"))
+        events.append(Event(path.start + path.duration, "arm_path", "path ends"))
     return sorted(events, key=lambda event: event.time)
 
 

@@ -10,6 +10,7 @@ import numpy as np
 from ves_twin.control.belief import Belief
 from ves_twin.control.controller import PlatformController
 from ves_twin.control.gravity import GravityCompensation
+from ves_twin.control.gravity_feedforward import GravityFeedforward
 from ves_twin.control.motion import JointMotion
 from ves_twin.control.readings import Readings
 from ves_twin.control.safety import NOT_A_POSE
@@ -26,6 +27,7 @@ class ComputersSnapshot:
     controller: object
     gravity: object
     shared: tuple[FloatArray, ...]
+    feedforward: object
 
 
 class Computers:
@@ -42,6 +44,7 @@ class Computers:
         gravity: GravityCompensation,
         gravity_age: int,
         arm: JointMotion,
+        feedforward: GravityFeedforward | None,
         period: float,
         board: Board,
         state: Block,
@@ -49,12 +52,14 @@ class Computers:
         self.controller = controller
         self.gravity = gravity
         self._arm = arm
+        self._feedforward = feedforward
         self._period = period
         g = self._geometry = belief.geometry
         self._reach = (g.base, g.top, g.home, g.lengths(np.zeros(6)), belief.leg_travel)
         self._shared: deque[FloatArray] = deque(maxlen=gravity_age + 1)
         self._state, self._board = state, board.block
         self._points = state["servo"]["points"][0]
+        self._held_torque = state["servo"]["feedforward"][0]
         self._estimate = board["gravity.estimate"]
         self.readings = Readings(
             leg_length=board.read_only("leg.length"),
@@ -89,6 +94,12 @@ class Computers:
         """A new estimate goes into shared memory; the one of `age` cycles ago comes out."""
         self._shared.append(self.gravity.wrench(time, self.readings))
         self._estimate[:] = self._shared[0]
+        self.hold_arm()
+
+    def hold_arm(self) -> None:
+        """The joint servo's feed-forward for this cycle, from the readings of now."""
+        if self._feedforward is not None:
+            self._held_torque[:] = self._feedforward.torque(self.readings)
 
     def send(self, tick: int, time: float, pose: FloatArray) -> int:
         """Set-points of a pose to the legs if they are safe, and the arm's command to its spline.
@@ -109,7 +120,8 @@ class Computers:
     def snapshot(self) -> ComputersSnapshot:
         """A copy of everything that the next cycle depends on."""
         shared = tuple(estimate.copy() for estimate in self._shared)
-        return ComputersSnapshot(self.controller.snapshot(), self.gravity.snapshot(), shared)
+        arm = None if self._feedforward is None else self._feedforward.snapshot()
+        return ComputersSnapshot(self.controller.snapshot(), self.gravity.snapshot(), shared, arm)
 
     def restore(self, snapshot: ComputersSnapshot) -> None:
         """Go back to a snapshot."""
@@ -117,6 +129,8 @@ class Computers:
         self.gravity.restore(snapshot.gravity)
         self._shared.clear()
         self._shared.extend(estimate.copy() for estimate in snapshot.shared)
+        if self._feedforward is not None:
+            self._feedforward.restore(snapshot.feedforward)
 
     def _decide(self, time: float) -> FloatArray:
         try:

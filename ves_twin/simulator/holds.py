@@ -105,7 +105,7 @@ def hold_poses(
 def _at(scenario: Scenario, pose: FloatArray, q: FloatArray) -> Scenario:
     """The scenario at rest at a pose."""
     platform = scenario.platform.model_copy(update={"start": tuple(pose), "motion": None})
-    arm = scenario.arm.model_copy(update={"start": tuple(q), "moves": ()})
+    arm = scenario.arm.model_copy(update={"start": tuple(q), "moves": (), "path": None})
     return scenario.model_copy(update={"platform": platform, "arm": arm})
 
 

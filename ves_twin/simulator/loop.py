@@ -43,9 +43,8 @@ def _drive_arm(
     for j in range(3):
         work.q[j] = qpos[p.layout.arm_qpos[j]] + p.drive.encoder_offset[j]
         work.rate[j] = qvel[p.layout.arm_dof[j]]
-    servo_torque(
-        p.servo, s.servo.integral, work.q_set, work.rate_set, work.q, work.rate, work.torque
-    )
+        work.added[j] = s.servo.integral[j] + s.servo.feedforward[j]
+    servo_torque(p.servo, work.added, work.q_set, work.rate_set, work.q, work.rate, work.torque)
     for j in range(3):
         error = work.q_set[j] - work.q[j]
         s.servo.integral[j] += p.servo.integral[j] * error * p.clock.tick

@@ -163,7 +163,9 @@ def _starting_at(scenario: Scenario, script: Script) -> Scenario:
     if np.abs(joints - scenario.arm.start).max() < NEAR:
         joints = np.array(scenario.arm.start)
     platform = scenario.platform.model_copy(update={"start": tuple(map(float, pose))})
-    arm = scenario.arm.model_copy(update={"start": tuple(map(float, joints)), "moves": ()})
+    arm = scenario.arm.model_copy(
+        update={"start": tuple(map(float, joints)), "moves": (), "path": None}
+    )
     return scenario.model_copy(update={"platform": platform, "arm": arm})
 
 

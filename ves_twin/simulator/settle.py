@@ -89,7 +89,7 @@ def stand(
         log: buffer of at least one row, overwritten.
     """
     number, averaged = cycles
-    _start_states(rig, pose, q, computers.lengths(pose))
+    _start_states(rig, pose, q, computers)
     computers.start_arm(rig.time)
     total = np.zeros(15)
     for cycle in range(number):
@@ -117,8 +117,9 @@ def settling_events(rig: Rig, scenario: Scenario) -> Iterator[Event]:
         yield Event(0.0, "zeroed", "force sensor zeroed against the gravity estimate")
 
 
-def _start_states(rig: Rig, pose: FloatArray, q: FloatArray, believed: FloatArray) -> None:
+def _start_states(rig: Rig, pose: FloatArray, q: FloatArray, computers: Computers) -> None:
     """Positions, oil preload, integrators and filters of a rig that has long stood there."""
+    believed = computers.lengths(pose)
     geometry, layout, p, s = rig.plant.geometry, rig.layout, rig.parameters, rig.state
     place_rig(rig.data, layout, geometry, pose, q, joints_on_platform(rig.model))
     force = static_leg_forces(rig.model, rig.data, layout, geometry, pose)
@@ -128,9 +129,11 @@ def _start_states(rig: Rig, pose: FloatArray, q: FloatArray, believed: FloatArra
     supply = float(s["supply"]["manifold"][0])
     s["chambers"]["pressure"][0] = loaded_pressures(p[0]["chambers"], force, supply)
     s["rod_force"] = force
-    s["servo"]["integral"] = rig.data.qfrc_bias[layout.arm_dof]
     rig.board["leg.length"][:] = believed
     rig.board["arm.q"][:] = q
+    computers.hold_arm()
+    held = rig.data.qfrc_bias[layout.arm_dof] - s["servo"]["feedforward"]
+    s["servo"]["integral"] = np.where(p["servo"]["integral"] > 0.0, held, 0.0)
     start_legs(p[0]["legs"], s[0]["legs"], believed)
     wrench = GravityTruth(rig.model, rig.data, layout).gravity_in_sensor()
     _, slow = rig.noise.window(rig.tick - SLOW, 1)
