@@ -21,7 +21,7 @@ NONLINEAR = 0.03
 @pytest.fixture(scope="module")
 def paths(tmp_path_factory):
     folder = tmp_path_factory.mktemp("paths")
-    procedure = load_procedure("coupling_map_paths")
+    procedure = load_procedure("coupling_map_paths", {"on_rig": False})
     return folder, procedure.carry_out(Conduct(folder))
 
 
@@ -104,8 +104,8 @@ def test_the_written_release_holds_every_gain_set(release):
 
 def test_procedures_run_from_the_command_line(tmp_path, capsys):
     out = tmp_path / "out"
-    arguments = ["run", "coupling_map_paths", "--set", "rest=1.0", "--out", str(out), "--json"]
-    assert main(arguments) == 0
+    changes = ["--set", "rest=1.0", "--set", "on_rig=false"]
+    assert main(["run", "coupling_map_paths", *changes, "--out", str(out), "--json"]) == 0
     summary = json.loads(capsys.readouterr().out)
     assert summary["outcome"] == "completed"
     assert summary["zero_g"]["good_over_bad"] < 0.5

@@ -201,6 +201,17 @@ def test_a_wrong_value_is_refused_with_its_key(key, value, word):
     refused(lambda: Scenario.load(SINE, {key: value}), "position_sine.toml", key, word)
 
 
+def test_an_arm_has_a_path_or_moves_and_a_path_leaves_its_start():
+    path = {"start": 0.0, "duration": 2.0, "through": [["10 deg", 0, 0]]}
+    arm = Scenario.load(SINE, {"arm": {"path": path}}).arm
+    assert arm.path.through == ((math.radians(10), 0.0, 0.0),)
+    both = {"arm": {"path": path, "moves": MOVES}}
+    refused(lambda: Scenario.load(SINE, both), "arm.moves or arm.path")
+    still = {"arm": {"path": {**path, "through": [[0, 0, 0]]}}}
+    refused(lambda: Scenario.load(SINE, still), "never leaves")
+    refused(lambda: Scenario.load(SINE, {"arm": {"path": {**path, "through": []}}}), "through")
+
+
 def test_moves_may_touch_but_not_overlap():
     touching = [*MOVES, {"start": 2.0, "duration": 1.0, "to": [1, 0, 0]}]
     assert len(Scenario.load(SINE, {"arm.moves": touching}).arm.moves) == 2

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Collection
 from dataclasses import dataclass
 from typing import Annotated
 
@@ -114,11 +115,12 @@ class CouplingMapPaths(Procedure):
         plant: Plant,
         seed: int | None = None,
         progress: Progress = lambda share, what: None,
+        bare: Collection[str] = PATHS,
     ) -> PathsOnRig:
-        """Every path on the rig."""
+        """Every path on the rig with the Model Method; those of `bare` without it too."""
         paths = self.paths(puma_chain(plant), EmulatedSystem.load(self.emulated))
         times = (self.duration, self.rest)
-        return PathsOnRig.run(self.rig, plant, seed, self.emulated, paths, times, progress)
+        return PathsOnRig.run(self.rig, plant, seed, self.emulated, paths, times, bare, progress)
 
     def carry_out(self, conduct: Conduct) -> Account:
         """Run the paths; write `paths.csv` and `paths_on_rig.csv` with energies over time.

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Collection
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -21,7 +22,7 @@ class PathsOnRig:
 
     Attributes:
         emulated: gravity compensated by the Model Method.
-        uncompensated: with the weight of the first moment tared and nothing else.
+        uncompensated: with the weight of the first moment tared and nothing else; some of them.
     """
 
     emulated: dict[str, RigEnergy]
@@ -35,9 +36,10 @@ class PathsOnRig:
         emulated: str,
         paths: dict[str, FloatArray],
         times: tuple[float, float],
+        bare: Collection[str],
         progress: Progress = lambda share, what: None,
     ) -> PathsOnRig:
-        """Every path with and without compensation.
+        """Every path with compensation, and some without.
 
         Args:
             options: how the rig is run.
@@ -46,15 +48,17 @@ class PathsOnRig:
             emulated: name of the base.
             paths: joint angles by name (k, 3) [rad].
             times: of the motion and of the rest after it [s].
+            bare: names of the paths that are run without compensation too.
             progress: called with the share done.
         """
         moving, rest = times
-        found = PathsOnRig({}, {})
+        found, total = PathsOnRig({}, {}), len(paths) + len(bare)
         for compensated, runs in ((True, found.emulated), (False, found.uncompensated)):
-            for name, path in paths.items():
+            chosen = paths if compensated else {name: paths[name] for name in bare}
+            for name, path in chosen.items():
                 done = len(found.emulated) + len(found.uncompensated)
                 method = "Model Method" if compensated else "no compensation"
-                progress(done / (2 * len(paths)), f"rig, {name} path, {method}")
+                progress(done / total, f"rig, {name} path, {method}")
                 way = {"start": 0.0, "duration": moving, "through": path[1:].tolist()}
                 arm = {"start": path[0].tolist(), "path": way}
                 runs[name] = options.run(
@@ -95,13 +99,12 @@ class PathsOnRig:
     def lines(self) -> tuple[str, ...]:
         """The same for a person."""
         head = "  on the rig  Model Method   not compensated"
-        rows = [
-            f"  {name:<10} {run.peak:9.4f} J {bare.peak:14.2f} J"
-            f"   {bare.outcome.value} after {bare.time[-1]:.1f} s"
-            for (name, run), bare in zip(
-                self.emulated.items(), self.uncompensated.values(), strict=True
-            )
-        ]
+        rows = []
+        for name, run in self.emulated.items():
+            row, bare = f"  {name:<10} {run.peak:9.4f} J", self.uncompensated.get(name)
+            if bare is not None:
+                row += f" {bare.peak:14.2f} J   {bare.outcome.value} after {bare.time[-1]:.1f} s"
+            rows.append(row)
         ratio = self.emulated["good"].peak / self.emulated["bad"].peak
         return ("", head, *rows, "", f"  good over bad on the rig, Model Method: {ratio:.3f}")
 

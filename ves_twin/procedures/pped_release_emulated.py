@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
-from pydantic import JsonValue
+from pydantic import Field, JsonValue
 
 from ves_twin.control.emulated import EmulatedSystem
 from ves_twin.planning.flexible_base import HIGH_GAINS, PPED_GAINS, FlexibleBaseArm, JointGains
@@ -34,8 +35,10 @@ class PpedReleaseEmulated(PpedRelease):
 
     The joint servo takes the gains in place of its own and has no integrator. On the rig the arm
     weighs something, so the computers feed forward the torque that the believed weight needs.
+    `parameters` changes the plant.
     """
 
+    parameters: dict[str, Any] = Field(default_factory=dict)
     rig: RigOptions = RigOptions()
 
     def gain_sets(self, plant: Plant) -> dict[str, JointGains]:
@@ -78,7 +81,7 @@ class PpedReleaseEmulated(PpedRelease):
         Raises:
             VesTwinError: a base or a pose that cannot be.
         """
-        plant = conduct.plant or Plant.load(self.plant)
+        plant = (conduct.plant or Plant.load(self.plant)).with_values(self.parameters)
         conduct.progress(0.0, "gain search")
         sets = self.gain_sets(plant)
         runs: dict[str, RigEnergy] = {}

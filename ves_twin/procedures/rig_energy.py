@@ -63,6 +63,7 @@ class RigOptions(Part):
     rate: Hertz = 75.0
     legs_gain: Annotated[PerSecond, Field(gt=0)] = 12.6
     gravity_file: str | None = None
+    gravity_age: Annotated[int, Field(ge=0, le=50)] = 1
     noise: bool = True
     seed: Annotated[int, Field(ge=0, lt=2**63)] = 0
 
@@ -92,7 +93,9 @@ class RigOptions(Part):
         Raises:
             VesTwinError: a scenario that cannot be built.
         """
-        method = {"method": "model", "file": self.gravity_file} if compensated else {}
+        gravity: dict[str, Any] = {"age": self.gravity_age}
+        if compensated:
+            gravity |= {"method": "model", "file": self.gravity_file}
         content = {
             "name": "energy",
             "question": "How much energy does the arm leave in the base?",
@@ -106,7 +109,7 @@ class RigOptions(Part):
                 "emulated": emulated,
                 "start": start,
             },
-            "gravity": method,
+            "gravity": gravity,
             "legs": {"gain": self.legs_gain},
             "arm": arm,
         }
