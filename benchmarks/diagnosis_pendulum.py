@@ -116,7 +116,7 @@ class Tally:
         self.cpu.append(seconds)
         answer = judge(v, truth)
         self.said[kind][answer] += 1
-        if answer not in ("right", "nothing") or kind == "outside":
+        if answer != ("nothing" if kind == "none" else "right"):
             what = ", ".join(f"{k} {x:+.3g}" for k, x in hidden.items()) or str(outside or "-")
             self.other.append(f"{kind}: {what} -> {v.words}")
             print(self.other[-1], file=sys.stderr, flush=True)

@@ -11,7 +11,7 @@ from ves_twin.diagnosis.explain import Explanation, explain
 from ves_twin.diagnosis.forward import Forward, Programme
 from ves_twin.diagnosis.gain import Gain, held_out_gain
 from ves_twin.diagnosis.next_experiment import separations
-from ves_twin.diagnosis.null import assess, cached_thresholds
+from ves_twin.diagnosis.null import assess, cached_thresholds, pull_limit
 from ves_twin.diagnosis.observe import observe
 from ves_twin.diagnosis.runs import Progress, Runs, silent
 from ves_twin.diagnosis.settings import Settings
@@ -68,7 +68,8 @@ def diagnose(
     built = cached_bank(seen.runs, chosen.cache, lambda: build_bank(seen.runs, progress=progress))
     bank = built.without(tuple(exclude))
     limits = cached_thresholds(bank, whitening, chosen, progress)
-    first = assess(seen.measured, bank, whitening, limits.effect, limits.misfit)
+    pull = pull_limit(bank, chosen.alpha)
+    first = assess(seen.measured, bank, whitening, limits.effect, limits.misfit, pull)
     scale = _scale(forward, commissioning)
     basis = Basis(
         noise="declared" if standstill is None else "measured",
@@ -76,7 +77,7 @@ def diagnose(
         held_out="measured" if held_out else "none",
     )
     findings = Findings(seen, first, limits, chosen, naming_limit(bank, scale), scale)
-    if not first.exceeds(limits.effect, limits.misfit):
+    if not first.exceeds(limits.effect, limits.misfit, pull):
         return compose(findings, Kind.NOTHING, basis, tuple(exclude))
     found = explain(first, limits, chosen, progress)
     gains = _gains(forward, held_out, standstill, found, chosen) if found and held_out else []

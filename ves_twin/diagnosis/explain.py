@@ -9,7 +9,7 @@ import numpy as np
 from ves_twin.diagnosis.adequacy import Cell, cells, misfit
 from ves_twin.diagnosis.bank import build_bank
 from ves_twin.diagnosis.forward import Hypothesis
-from ves_twin.diagnosis.null import Assessment, Thresholds
+from ves_twin.diagnosis.null import Assessment, Thresholds, pull_limit
 from ves_twin.diagnosis.probability import probabilities
 from ves_twin.diagnosis.refine import Evidence, Fit, bare_residual, refine, residual_about
 from ves_twin.diagnosis.runs import Progress, silent
@@ -19,6 +19,9 @@ from ves_twin.types import FloatArray
 
 HOPELESS = 4.0
 """A fit with this many times the chi^2 of the best is not worth new nuisance columns."""
+
+LEAST = 0.7
+"""Part of the threshold that a cause must take off chi^2: the fit moves the screen's figure."""
 
 PAIRS = 6
 """Pairs of causes that are fitted with the full forward."""
@@ -157,13 +160,16 @@ def _judge(desk: _Desk, fits: list[Fit]) -> Explanation:
     score = misfit(after, before, settings.model_error)
     second = _second(desk, evidence, chosen[0], allowance)
     limit = desk.thresholds.effect + allowance
+    fall = commissioning.chi2 - chosen[0].chi2
+    strained = chosen[0].pull > pull_limit(first.screen.bank, settings.alpha)
+    enough = fall > LEAST * desk.thresholds.effect and not strained
     return Explanation(
         evidence=evidence,
         commissioning=commissioning,
         fits=tuple(ranked),
         chosen=tuple(chosen),
         weights=tuple(weights),
-        adequate=score < desk.thresholds.misfit and second < limit,
+        adequate=score < desk.thresholds.misfit and second < limit and enough,
         score=score,
         second=second,
         before=tuple(before),

@@ -8,7 +8,7 @@ from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.stats import chi2
+from scipy.stats import chi2, norm
 
 from ves_twin.diagnosis.adequacy import cells, misfit, misfit_floor
 from ves_twin.diagnosis.bank import Bank, bank_key, write_arrays
@@ -75,13 +75,24 @@ class Assessment:
         """The best hypothesis's chi^2."""
         return self.suspects[0].score if self.suspects else 0.0
 
-    def exceeds(self, effect: float, misfit: float) -> bool:
+    @property
+    def pull(self) -> float:
+        """Largest most probable commissioning error, in declared sd (the step's share is none)."""
+        errors = self.screen.metric.nuisances(self.z)[: len(self.evidence.runs.nuisances)]
+        return float(np.max(np.abs(errors), initial=0.0))
+
+    def exceeds(self, effect: float, misfit: float, pull: float) -> bool:
         """Whether something is there."""
-        return self.score > effect or self.misfit > misfit
+        return self.score > effect or self.misfit > misfit or self.pull > pull
 
 
 def assess(
-    measured: SingleArray, bank: Bank, whitening: Whitening, effect: float, level: float
+    measured: SingleArray,
+    bank: Bank,
+    whitening: Whitening,
+    effect: float,
+    level: float,
+    pull: float,
 ) -> Assessment:
     """Screen a record; where it looks faulty, once more with the nuisances fitted in full.
 
@@ -91,13 +102,14 @@ def assess(
         whitening: noise as declared or measured.
         effect: score that leads to the second look.
         level: misfit that leads to it.
+        pull: commissioning error [sd] that leads to it.
     """
     runs = bank.base.runs
     raw = whitening.apply(measured - bank.base.prediction)
     plain = Screen(bank, whitening)
     own = whitening.adapted(plain.metric.project(raw))
     first = _look(Evidence(runs, measured, own), Screen(bank, own), None)
-    if not first.exceeds(effect, level):
+    if not first.exceeds(effect, level, pull):
         return first
     look = first
     for rounds in (0, ROUNDS):
@@ -106,7 +118,7 @@ def assess(
         fit = refine(evidence, (), start, bank.base, rounds)
         own = whitening.adapted(whitening.apply(bare_residual(evidence, fit)))
         look = _look(Evidence(runs, measured, own), Screen(bank, own), fit)
-        if not look.exceeds(effect, level):
+        if not look.exceeds(effect, level, pull):
             break
     return look
 
@@ -120,6 +132,15 @@ def _look(evidence: Evidence, screen: Screen, fit: Fit | None) -> Assessment:
     left = screen.metric.project(z)
     worst = misfit(cells(evidence.whitening, left))
     return Assessment(evidence, screen, z, left, screen.suspects(z), worst, fit)
+
+
+def pull_limit(bank: Bank, alpha: float) -> float:
+    """Declared sd that the largest commissioning error of a rig in order passes with alpha.
+
+    It catches what the library lacks and the commissioning parameters would swallow: a cause that
+    was left out, or a tolerance that is wrong.
+    """
+    return float(norm.isf(alpha / (2.0 * max(len(bank.base.runs.nuisances), 1))))
 
 
 def null_thresholds(
@@ -149,7 +170,7 @@ def null_thresholds(
     floor = float(chi2.isf(alpha / library, 1))
     samples = len(whitening.apply(bank.base.prediction))
     floor_misfit = misfit_floor(len(cells(whitening, np.zeros(samples))), alpha)
-    study = _NullStudy(bank, whitening, floor, floor_misfit)
+    study = _NullStudy(bank, whitening, floor, floor_misfit, alpha)
     seeds = np.random.SeedSequence(seed).spawn(count)
     drawn = np.array(list(_draws(study, seeds, progress)))
     return Thresholds(
@@ -168,6 +189,7 @@ class _NullStudy:
     whitening: Whitening
     effect: float
     misfit: float
+    alpha: float
 
     def draw(self, seed: np.random.SeedSequence) -> tuple[float, float]:
         runs, rng = self.bank.base.runs, np.random.default_rng(seed)
@@ -177,7 +199,8 @@ class _NullStudy:
         clean = runs.one(np.clip(shift, runs.low, runs.high), refined=bool(rng.integers(2)))
         levels, colours = MEASURED if self.whitening.measured else DECLARED
         noise = self.whitening.draw(rng, rng.uniform(*levels), rng.uniform(*colours))
-        found = assess(clean + noise, self.bank, self.whitening, self.effect, self.misfit)
+        limit = pull_limit(self.bank, self.alpha)
+        found = assess(clean + noise, self.bank, self.whitening, self.effect, self.misfit, limit)
         return found.score, found.misfit
 
     def batch(self, seeds: list[np.random.SeedSequence]) -> list[tuple[float, float]]:

@@ -15,8 +15,8 @@ from ves_twin.types import FloatArray, IntArray, SingleArray
 ITERATIONS = 12
 """Steps at most from one linearisation."""
 
-FARTHEST = 8.0
-"""Nuisances are held within this many commissioning sd: beyond, it is no commissioning error."""
+FARTHEST = 30.0
+"""Nuisances are held within this many commissioning sd: a search that leaves them is lost."""
 
 CONVERGED = 0.02
 """Fall of chi^2 that is not worth another run; names turn on differences of 9 and more."""
@@ -74,6 +74,13 @@ class Fit:
     free: FloatArray
     local: Linearisation
     prediction: SingleArray
+
+    @property
+    def pull(self) -> float:
+        """Largest commissioning error that the fit needs, in declared sd."""
+        runs = self.local.runs
+        errors = np.setdiff1d(self.active[len(self.sizes) :], self.active[: len(self.sizes)])
+        return float(np.max(np.abs(self.shift[errors]) / runs.sd[errors], initial=0.0))
 
 
 @dataclass(frozen=True)
