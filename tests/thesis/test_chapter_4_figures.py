@@ -6,7 +6,6 @@ import pytest
 import ves_twin as vt
 from ves_twin.thesis.figures.chapter_4 import CHAPTER_4
 
-
 RIG = ("fig-4-2", "fig-4-3", "fig-4-7-emulated")
 """Figures that run the rig."""
 
