@@ -10,13 +10,14 @@ from collections.abc import Sequence
 from typing import NoReturn
 
 from ves_twin import __version__
-from ves_twin.cli import diagnose, info, reproduce, run, scenarios, view
+from ves_twin.cli import compare, diagnose, info, reproduce, run, scenarios, view
 from ves_twin.errors import UnknownNameError, VesTwinError, one_line
 
 COMMANDS = {
     "scenarios": scenarios,
     "run": run,
     "diagnose": diagnose,
+    "compare": compare,
     "reproduce": reproduce,
     "view": view,
     "info": info,
@@ -61,7 +62,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     """Run a command.
 
     Returns:
-        0 done; 2 bad input; 3 the run ended early; 130 interrupted.
+        0 done; 2 bad input; 3 the run ended early; 4 out of tolerance; 130 interrupted.
     """
     words = list(sys.argv[1:] if arguments is None else arguments)
     try:

@@ -94,9 +94,12 @@ def replay_scenario(recording: Recording, scenario: Scenario | None = None) -> S
     period = float(np.median(np.diff(recording.time))) if len(recording) > 1 else 1.0
     content["run"] |= {"duration": float(recording.time[-1]) + 0.5 * period, "noise": False}
     content["platform"] |= {"mode": "position", "emulated": None, "motion": None, "busy": []}
-    content["gravity"]["method"] = "none"
+    file = content["gravity"]["file"]  # the sensor keeps the calibration that it was read with
+    content["gravity"] |= {"method": "none", "file": None}
     content |= {"parameters": {}, "effects": {}}
-    return Scenario.model_validate(content)
+    replayed = Scenario.model_validate(content)
+    gravity = replayed.gravity.model_copy(update={"file": file})
+    return replayed.model_copy(update={"gravity": gravity})
 
 
 class Rows:

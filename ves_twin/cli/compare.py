@@ -1,0 +1,103 @@
+"""compare: where measured recordings and the simulation part; one page, one JSON file."""
+
+from __future__ import annotations
+
+import argparse
+import json
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from ves_twin.comparison.compare import Named
+    from ves_twin.comparison.result import Comparison
+
+SUMMARY = "show where measured recordings and the simulation part"
+JSON_NAME, PAGE_NAME = "compare.json", "report.html"
+OUT_OF_TOLERANCE = 4
+"""Exit code if a limit of the tolerance is not kept."""
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Options of the command."""
+    parser.add_argument(
+        "recordings", metavar="MEASURED", nargs="+", help="recording files, or folders of runs"
+    )
+    parser.add_argument(
+        "--against", metavar="REC", help="hold them against this recording, not the plant"
+    )
+    parser.add_argument("--experiment", metavar="FILE", help="how they were made (TOML)")
+    parser.add_argument("--plant", metavar="FILE", help="another plant: a name or a TOML file")
+    parser.add_argument("--tolerance", metavar="FILE", help="limits in SI (TOML), exit 4 if broken")
+    parser.add_argument("--standstill", metavar="REC", help="noise from this recording at rest")
+    parser.add_argument("--out", metavar="DIR", help="output folder (default: runs/compare)")
+    parser.add_argument("--json", action="store_true", help="the result as JSON on stdout")
+
+
+def execute(arguments: argparse.Namespace) -> int:
+    """Compare, write page and JSON, print the answer."""
+    from ves_twin.cli.run import output_folder
+    from ves_twin.comparison.report import comparison_page
+    from ves_twin.report.page import write_page
+    from ves_twin.simulator.simulate import make_folder
+
+    comparison = _compare(arguments)
+    folder = output_folder(arguments.out, "compare")
+    page = comparison_page(comparison)
+    text = json.dumps(comparison.to_dict(), indent=2, allow_nan=False)
+    make_folder(folder)
+    write_page(folder / JSON_NAME, text + "\n")
+    write_page(folder / PAGE_NAME, page)
+    print(text if arguments.json else _text(comparison, folder))
+    return OUT_OF_TOLERANCE if comparison.in_tolerance is False else 0
+
+
+def _compare(arguments: argparse.Namespace) -> Comparison:
+    from ves_twin.cli.progress import RunProgress
+    from ves_twin.comparison.compare import compare
+    from ves_twin.comparison.tolerance import Tolerance
+    from ves_twin.plant.plant import Plant
+    from ves_twin.scenario.experiment import Experiment
+
+    given = arguments.experiment
+    experiment = Experiment.load(given) if given else Experiment()
+    if arguments.standstill:
+        experiment = experiment.model_copy(update={"noise": arguments.standstill})
+    tolerance = Tolerance.load(arguments.tolerance) if arguments.tolerance else None
+    plant = Plant.load(arguments.plant) if arguments.plant else None
+    recordings = [_named(path) for path in arguments.recordings]
+    against = _named(arguments.against) if arguments.against else None
+    with RunProgress("compare", 1.0, unit="share") as progress:
+        return compare(recordings, plant, experiment, tolerance, against, progress.share)
+
+
+def _named(path: str) -> Named:
+    from ves_twin.comparison.compare import Named
+    from ves_twin.recording.files import load_recording
+
+    file = Path(path)
+    own = file.name in {"recording.parquet", "recording.arrows"}
+    return Named(file.parent.name if own and file.parent.name else file.name, load_recording(file))
+
+
+def _text(comparison: Comparison, folder: Path) -> str:
+    from ves_twin.comparison.words import (
+        cost_sentence,
+        gap_sentence,
+        place_sentence,
+        tolerance_sentence,
+        trust_sentence,
+    )
+    from ves_twin.quality.check import Grade
+
+    lines = []
+    for r in comparison.recordings:
+        lines += [f"{r.name}: against {comparison.plant} {comparison.plant_hash}, {r.basis.value}"]
+        lines += [f"  {trust_sentence(r)}"]
+        lines += [f"    {c.name}: {c.message}" for c in r.checks if c.grade is Grade.FAILED]
+        lines += [f"  {gap_sentence(r)}"]
+        lines += [f"    {place_sentence(c)}" for c in r.beyond_noise[:4]]
+        lines += [f"  {cost_sentence(r)}"] if r.cost else []
+        lines += [f"  Not compared: {', '.join(r.absent)}"] if r.absent else []
+        lines += [f"  Note: {note}" for note in r.notes]
+    lines += [tolerance_sentence(comparison), f"files {folder}/{PAGE_NAME}, {JSON_NAME}"]
+    return "\n".join(lines)

@@ -1,0 +1,1 @@
+"""comparison: where a measured recording and a plant part, in sigma and in SI."""

@@ -1,0 +1,1 @@
+"""report: parts of a self-contained HTML page: text, tables, figures."""

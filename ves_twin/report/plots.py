@@ -1,0 +1,138 @@
+"""draw_traces, draw_levels, draw_cells: the plots that reports share, on axes or figures."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from ves_twin.report.figure import new_figure
+from ves_twin.types import FloatArray
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+POINTS = 700
+"""Stretches of a long line, each drawn from its least to its largest value."""
+
+MEASURED, SIMULATED, RESIDUAL = "#1f5fa8", "#d9731a", "#444b52"
+"""Colours that stay apart for the colour-blind and in print."""
+
+
+@dataclass(frozen=True)
+class Trace:
+    """One line of a plot: label, values (n,), colour."""
+
+    label: str
+    values: FloatArray
+    colour: str
+
+
+def envelope(time: FloatArray, values: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """A line of at most 2 POINTS points that shows every peak of a longer one."""
+    if len(time) <= 2 * POINTS:
+        return time, values
+    per = int(np.ceil(len(time) / POINTS))
+    count = len(time) // per
+    rows = values[: count * per].reshape(count, per)
+    filled = np.where(np.isfinite(rows), rows, 0.0)
+    ends = np.sort(np.stack([filled.argmin(axis=1), filled.argmax(axis=1)], axis=1), axis=1)
+    at = (np.arange(count)[:, None] * per + ends).ravel()
+    return time[at], values[at]
+
+
+def draw_traces(
+    axes: Axes, time: FloatArray, traces: Sequence[Trace], label: str, band: float | None = None
+) -> None:
+    """Lines over time.
+
+    Args:
+        axes: drawn upon.
+        time: [s] (n,).
+        traces: what is drawn.
+        label: of the vertical axis, with its unit.
+        band: half-width of a grey band about zero, for instance two sigma.
+    """
+    if band is not None and np.isfinite(band):
+        axes.axhspan(-band, band, color="#e4e8ec", linewidth=0)
+    for trace in traces:
+        x, y = envelope(time, trace.values)
+        axes.plot(x, y, color=trace.colour, linewidth=0.9, label=trace.label)
+    axes.set_ylabel(label, fontsize=8)
+    axes.tick_params(labelsize=8)
+    axes.grid(color="#e8ebee", linewidth=0.6)
+    axes.margins(x=0)
+    for side in ("top", "right"):
+        axes.spines[side].set_visible(False)
+    if len(traces) > 1:
+        axes.legend(fontsize=7, loc="upper right", ncols=len(traces), frameon=False)
+
+
+def draw_levels(names: Sequence[str], levels: Sequence[float], unit: str, mark: float) -> Figure:
+    """Horizontal bars on a logarithmic axis.
+
+    Args:
+        names: of the bars, from the top.
+        levels: their lengths, positive.
+        unit: label of the axis.
+        mark: a line across, for instance 1 sigma.
+    """
+    figure = new_figure(0.8 + 0.2 * len(names))
+    axes = figure.add_subplot()
+    values = np.maximum(np.nan_to_num(np.array(levels, float)), 1e-3)
+    low = min(0.1, 0.5 * values.min(initial=1.0))
+    place = np.arange(len(names))
+    axes.barh(place, values - low, left=low, color=MEASURED, height=0.65)
+    axes.set_xscale("log")
+    axes.set_xlim(low, max(3.0 * mark, 1.5 * values.max(initial=1.0)))
+    axes.axvline(mark, color="#a32020", linewidth=1.0)
+    axes.set_yticks(place, list(names), fontsize=8)
+    axes.invert_yaxis()
+    axes.set_xlabel(unit, fontsize=8)
+    axes.tick_params(axis="x", labelsize=8)
+    for side in ("top", "right"):
+        axes.spines[side].set_visible(False)
+    return figure
+
+
+def draw_cells(
+    rows: Sequence[str], columns: Sequence[str], values: FloatArray, unit: str
+) -> Figure:
+    """A map of cells on a logarithmic colour scale, each with its number.
+
+    Args:
+        rows: names of the rows.
+        columns: names of the columns.
+        values: (rows, columns), positive; NaN is left white.
+        unit: what the numbers are.
+    """
+    from matplotlib.colors import LogNorm
+
+    figure = new_figure(1.1 + 0.21 * len(rows))
+    axes = figure.add_subplot()
+    top = max(10.0, float(np.nanmax(values, initial=1.0)))
+    shown = np.clip(values, 1.0, None)
+    axes.pcolormesh(shown, cmap="YlOrRd", norm=LogNorm(1.0, top), edgecolors="white", linewidth=1)
+    for i, j in np.ndindex(*values.shape):
+        if np.isfinite(values[i, j]):
+            dark = shown[i, j] > top**0.6
+            axes.text(
+                j + 0.5,
+                i + 0.5,
+                f"{values[i, j]:.2g}" if values[i, j] < 99.5 else f"{values[i, j]:.0f}",
+                ha="center",
+                va="center",
+                fontsize=7,
+                color="white" if dark else "#333333",
+            )
+    axes.set_xticks(np.arange(len(columns)) + 0.5, list(columns), fontsize=7)
+    axes.set_yticks(np.arange(len(rows)) + 0.5, list(rows), fontsize=8)
+    axes.tick_params(length=0)
+    axes.invert_yaxis()
+    axes.set_xlabel(unit, fontsize=8)
+    for spine in axes.spines.values():
+        spine.set_visible(False)
+    return figure
