@@ -91,7 +91,7 @@ def _text(comparison: Comparison, folder: Path) -> str:
 
     lines = []
     for r in comparison.recordings:
-        lines += [f"{r.name}: against {comparison.plant} {comparison.plant_hash}, {r.basis.value}"]
+        lines += [f"{r.name}: plant {r.plant} {r.plant_hash}, against the {r.basis.value}"]
         lines += [f"  {trust_sentence(r)}"]
         lines += [f"    {c.name}: {c.message}" for c in r.checks if c.grade is Grade.FAILED]
         lines += [f"  {gap_sentence(r)}"]

@@ -158,7 +158,7 @@ def compare_column(
     white = power.whiteness()
     coherence = companions.of(filled)
     leader = column.leader
-    if leader is None and coherence is not None:
+    if leader is None and coherence is not None and coherence.told:
         leader = (coherence.column, drive[coherence.column])
     moved = float(np.var(measured[good]))
     at = np.arange(len(time))

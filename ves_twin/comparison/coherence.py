@@ -8,6 +8,9 @@ import numpy as np
 
 from ves_twin.types import ComplexArray, FloatArray
 
+CLEAR = 1.5
+"""A coherence so many times what chance gave is one."""
+
 PIECES = 15
 """Overlapping pieces of a record: half of each with the next."""
 
@@ -25,6 +28,11 @@ class Coherence:
     value: float
     chance: float
     column: str
+
+    @property
+    def told(self) -> bool:
+        """Whether it is clearly more than chance."""
+        return self.value > CLEAR * self.chance
 
 
 class Companions:

@@ -78,8 +78,7 @@ def compare(
     excesses = None
     if tolerance is not None:
         excesses = tuple(e for r in found for e in tolerance.excesses(r.name, r.channels))
-    rig = prepared[0].plant
-    return Comparison(rig.name, rig.hash, tuple(found), excesses, versions())
+    return Comparison(tuple(found), excesses, versions())
 
 
 def _one(one: Prepared, told: Experiment) -> RecordingComparison:
@@ -147,6 +146,8 @@ def _compared(
         start=one.offset + float(time[0]),
         stop=one.offset + float(time[-1]),
         rate=1.0 / one.period,
+        plant=one.plant.name,
+        plant_hash=one.plant.hash,
         made_by=one.recording.info.plant_hash,
         traces=Traces(one.offset + time, measured, expected),
     )

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ves_twin.comparison.declared_noise import declared_noise
-from ves_twin.comparison.even_clock import even_clock, holes
+from ves_twin.comparison.even_clock import WAKE, even_clock, holes
 from ves_twin.comparison.loop_noise import with_loop_noise
 from ves_twin.comparison.noise import Noise, NoiseSource, measured_noise, standing_rows
 from ves_twin.comparison.predict import predict
@@ -161,7 +161,10 @@ def _notes(
         notes.append(f"{lost} rows are missing from the clock and were left empty")
     bad = holes(recording, drive)
     if bad or lost > 0:
-        notes.append(f"set-points of {bad + max(lost, 0)} rows were drawn straight across holes")
+        notes.append(
+            f"set-points of {bad + max(lost, 0)} rows were drawn across holes; what was measured"
+            f" there and for {WAKE:g} s after is not compared"
+        )
     if experiment.start.state is StartState.ESTIMATED:
         notes.append(
             f"begins in motion: started at rest, the first {experiment.start.forget:g} s are"

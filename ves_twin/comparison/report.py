@@ -45,16 +45,18 @@ def comparison_page(comparison: Comparison) -> str:
 
 
 def _head(comparison: Comparison) -> Html:
-    plant = f"Plant {comparison.plant} ({comparison.plant_hash})"
     count = len(comparison.recordings)
-    return paragraph(f"{plant}; {count} recording{'s' if count > 1 else ''}.", "note")
+    return paragraph(
+        f"{count} recording{'s' if count > 1 else ''}, made by ves-twin compare.", "note"
+    )
 
 
 def _answer(recording: RecordingComparison, several: bool) -> Html:
-    made = f", made by plant {recording.made_by}" if recording.made_by else ""
+    made = f", recorded from plant {recording.made_by}" if recording.made_by else ""
     what = (
         f"{recording.name}: {recording.start:.2f} to {recording.stop:.2f} s at"
-        f" {recording.rate:.2f} Hz{made}, against {HELD_AGAINST[recording.basis]}."
+        f" {recording.rate:.2f} Hz{made}, against {HELD_AGAINST[recording.basis]};"
+        f" plant {recording.plant} ({recording.plant_hash})."
     )
     loud = bool(recording.beyond_noise)
     parts = [
@@ -116,8 +118,8 @@ def _details(recording: RecordingComparison, name: str, several: bool) -> list[H
 
 def _channel_table(channels: tuple[ChannelComparison, ...]) -> Html:
     head = (
-        *("column", "rms", "sigma", "rms / sigma", "peak", "mean", "unexplained variance"),
-        *("lag-one (of noise)", "white", "lag, ms", "coherence (chance)"),
+        *("column (* beyond noise)", "rms", "sigma", "rms / sigma", "peak", "mean"),
+        *("unexplained", "lag-one (noise)", "white", "lag, ms", "coherence (chance)"),
     )
     return table(head, [_row(c) for c in channels])
 
@@ -125,16 +127,16 @@ def _channel_table(channels: tuple[ChannelComparison, ...]) -> Html:
 def _row(c: ChannelComparison) -> tuple[str, ...]:
     white, lag, coherence = c.whiteness, c.lag, c.coherence
     return (
-        f"{'* ' if c.beyond_noise else ''}{c.name}",
+        f"{c.name}{' *' if c.beyond_noise else ''}",
         quantity(c.rms, c.unit),
-        f"{quantity(c.sigma, c.unit)} {c.noise.value}",
+        quantity(c.sigma, c.unit),
         digits(c.rms_sigma),
         quantity(c.peak, c.unit),
         quantity(c.mean, c.unit),
         percent(c.unexplained),
         f"{white.lag_one:.2f} ({white.expected:.2f} +- {white.spread:.2f})" if white else UNSURE,
-        ("yes" if white.white else "no") if white else "cannot tell",
-        f"{lag.value * 1e3:.3f} +- {lag.sd * 1e3:.3f}" if lag else "cannot tell",
+        ("yes" if white.white else "no") if white else "?",
+        f"{lag.value * 1e3:.3f} +- {lag.sd * 1e3:.3f}" if lag else "?",
         f"{coherence.value:.2f} ({coherence.chance:.2f})" if coherence else UNSURE,
     )
 
@@ -166,7 +168,8 @@ def _reading(comparison: Comparison) -> Html:
                 "Beyond noise is not important, and important is not beyond noise: the tolerance"
                 " and the cost for the emulation say what matters.",
                 "Lag: measured later than expected is positive. Coherence: share of the residual"
-                " that one column of the set-points explains linearly, and what chance gives.",
+                " that one column of the set-points explains linearly, and what chance gives. A question"
+                " mark: the data cannot tell.",
                 "The page shows where data and plant part. It does not name the cause.",
             )
         ),

@@ -53,6 +53,8 @@ class RecordingComparison:
         start: first time that is compared [s].
         stop: last one [s].
         rate: of the rows [Hz].
+        plant: name of the plant.
+        plant_hash: of it.
         made_by: hash of the plant that made the recording; empty for a measured one.
         traces: the rows behind it.
     """
@@ -67,6 +69,8 @@ class RecordingComparison:
     start: float
     stop: float
     rate: float
+    plant: str
+    plant_hash: str
     made_by: str
     traces: Traces
 
@@ -93,6 +97,8 @@ class RecordingComparison:
             "start": self.start,
             "stop": self.stop,
             "rate": self.rate,
+            "plant": self.plant,
+            "plant_hash": self.plant_hash,
             "made_by": self.made_by,
             "absent": list(self.absent),
             "notes": list(self.notes),
@@ -107,15 +113,11 @@ class Comparison:
     """All recordings.
 
     Attributes:
-        plant: name of the plant.
-        plant_hash: of it.
         recordings: in the order given.
         excesses: limits of the tolerance that are not kept; None if no tolerance was given.
         versions: package -> version.
     """
 
-    plant: str
-    plant_hash: str
     recordings: tuple[RecordingComparison, ...]
     excesses: tuple[Excess, ...] | None
     versions: Mapping[str, str]
@@ -129,8 +131,6 @@ class Comparison:
         """Plain values for JSON; what cannot be told is null."""
         content = {
             "schema": SCHEMA,
-            "plant": self.plant,
-            "plant_hash": self.plant_hash,
             "in_tolerance": self.in_tolerance,
             "out_of_tolerance": [asdict(e) for e in self.excesses or ()],
             "recordings": [recording.to_dict() for recording in self.recordings],

@@ -42,7 +42,7 @@ def gap_sentence(recording: RecordingComparison) -> str:
     loud, count = recording.beyond_noise, len(recording.channels)
     if not loud:
         top = max(recording.channels, key=lambda c: c.rms_sigma, default=None)
-        most = f" (largest: {size(top)})" if top else ""
+        most = f" (largest: {top.name} {size(top)})" if top else ""
         return f"Gap: none beyond noise in any of {count} columns{most}."
     names = ", ".join(f"{c.name} {size(c)}" for c in loud[:NAMED])
     return f"Gap: {len(loud)} of {count} columns are beyond noise. Loudest: {names}."
@@ -85,12 +85,13 @@ def cost_sentence(recording: RecordingComparison) -> str:
             f" The platform itself is off by {quantity(cost.translation, 'm')} and"
             f" {quantity(cost.rotation, 'rad')} rms."
         )
+    peaks = f"{digits(cost.force_share, '.2g')} and {digits(cost.moment_share, '.2g')}"
+    base = f"{quantity(cost.base_translation, 'm')} and {quantity(cost.base_rotation, 'rad')}"
     return (
-        f"Cost for the emulation of {cost.emulated}: the wrench gap peaks at"
-        f" {digits(cost.force_share, '.2g')} of the 1 N and {digits(cost.moment_share, '.2g')} of"
-        f" the 1.5 N m that thesis 3.2.3 allows (noise included); alone it would move the emulated"
-        f" base by up to {quantity(cost.base_translation, 'm')} and"
-        f" {quantity(cost.base_rotation, 'rad')}.{pose}"
+        f"Cost for the emulation of {cost.emulated}: the wrench gap is {quantity(cost.force, 'N')}"
+        f" and {quantity(cost.moment, 'N*m')} rms, noise included; its peaks are {peaks} times the"
+        f" 1 N and 1.5 N m that thesis 3.2.3 allows. Alone it would move the emulated base by up to"
+        f" {base}.{pose}"
     )
 
 
@@ -112,7 +113,7 @@ def place_sentence(channel: ChannelComparison) -> str:
         later = "later" if lag.value > 0 else "earlier"
         text += f"; {abs(lag.value) * 1e3:.2g} +- {lag.sd * 1e3:.1g} ms {later} than expected"
     coherence = channel.coherence
-    if coherence is not None and coherence.value > 0.3 and coherence.value > 2 * coherence.chance:
+    if coherence is not None and coherence.told and coherence.value > 0.3:
         text += f"; {coherence.value:.0%} of it goes along with {coherence.column}"
     return f"{text}."
 

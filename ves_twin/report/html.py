@@ -54,7 +54,8 @@ def table(head: Sequence[object], rows: Iterable[Sequence[object]], caption: obj
     top = "".join(f"<th>{markup(cell)}</th>" for cell in head)
     body = "\n".join(f"<tr>{''.join(_cell(cell) for cell in row)}</tr>" for row in rows)
     words = f"<caption>{markup(caption)}</caption>" if caption else ""
-    return Html(f"<table>{words}<thead><tr>{top}</tr></thead>\n<tbody>{body}</tbody></table>")
+    whole = f"<table>{words}<thead><tr>{top}</tr></thead>\n<tbody>{body}</tbody></table>"
+    return Html(f'<div class="wide">{whole}</div>')
 
 
 def _cell(cell: object) -> str:

@@ -12,7 +12,7 @@ STYLE = """
 :root { color-scheme: light; --ink: #1d2329; --soft: #5b6670; --line: #d8dde2; --wash: #f5f7f9;
   --good: #1b6e3c; --bad: #a32020; --open: #8a5a00; }
 * { box-sizing: border-box; }
-body { margin: 0 auto; padding: 2rem 1.5rem 4rem; max-width: 62rem; background: #fff;
+body { margin: 0 auto; padding: 2rem 1.5rem 4rem; max-width: 66rem; background: #fff;
   color: var(--ink); font: 15px/1.5 system-ui, "Segoe UI", "DejaVu Sans", sans-serif; }
 h1 { font-size: 1.55rem; margin: 0 0 .3rem; }
 h2 { font-size: 1.15rem; margin: 2.2rem 0 .6rem; padding-bottom: .2rem;
@@ -20,16 +20,19 @@ h2 { font-size: 1.15rem; margin: 2.2rem 0 .6rem; padding-bottom: .2rem;
 p { margin: .4rem 0; max-width: 52rem; }
 .lead { font-size: 1.15rem; margin: .8rem 0; }
 .note { color: var(--soft); font-size: .92rem; }
-.good, .bad, .open { padding: .45rem .8rem; border-left: 4px solid; background: var(--wash); }
+.good, .bad, .open { font-size: 1.05rem;
+  padding: .45rem .8rem; border-left: 4px solid; background: var(--wash); }
 .good { border-color: var(--good); } .bad { border-color: var(--bad); }
 .open { border-color: var(--open); }
 ul { margin: .3rem 0 .6rem; padding-left: 1.3rem; }
-table { border-collapse: collapse; margin: .7rem 0; font-size: .88rem; }
+table { border-collapse: collapse; margin: .7rem 0; font-size: .82rem; }
 caption { text-align: left; color: var(--soft); padding-bottom: .25rem; }
-th, td { padding: .22rem .65rem; border-bottom: 1px solid var(--line); text-align: left;
+th, td { padding: .2rem .45rem; border-bottom: 1px solid var(--line); text-align: left;
   vertical-align: top; }
 th { color: var(--soft); font-weight: 600; border-bottom: 2px solid var(--line); }
+td:first-child { white-space: nowrap; }
 td.number { text-align: right; font-variant-numeric: tabular-nums; white-space: nowrap; }
+.wide { overflow-x: auto; }
 figure { margin: .8rem 0 1.2rem; }
 figure svg { width: 100%; height: auto; }
 figcaption { color: var(--soft); font-size: .9rem; }

@@ -18,6 +18,9 @@ if TYPE_CHECKING:
 POINTS = 700
 """Stretches of a long line, each drawn from its least to its largest value."""
 
+LEAST = 0.03
+"""Bars begin at this share of the mark; what is smaller has none."""
+
 MEASURED, SIMULATED, RESIDUAL = "#1f5fa8", "#d9731a", "#444b52"
 """Colours that stay apart for the colour-blind and in print."""
 
@@ -58,9 +61,10 @@ def draw_traces(
     """
     if band is not None and np.isfinite(band):
         axes.axhspan(-band, band, color="#e4e8ec", linewidth=0)
-    for trace in traces:
+    for k, trace in enumerate(traces):
         x, y = envelope(time, trace.values)
-        axes.plot(x, y, color=trace.colour, linewidth=0.9, label=trace.label)
+        wide = 2.4 if k == 0 and len(traces) > 1 else 0.9  # the first shows behind the others
+        axes.plot(x, y, color=trace.colour, linewidth=wide, label=trace.label)
     axes.set_ylabel(label, fontsize=8)
     axes.tick_params(labelsize=8)
     axes.grid(color="#e8ebee", linewidth=0.6)
@@ -82,8 +86,8 @@ def draw_levels(names: Sequence[str], levels: Sequence[float], unit: str, mark: 
     """
     figure = new_figure(0.8 + 0.2 * len(names))
     axes = figure.add_subplot()
-    values = np.maximum(np.nan_to_num(np.array(levels, float)), 1e-3)
-    low = min(0.1, 0.5 * values.min(initial=1.0))
+    low = LEAST * mark
+    values = np.maximum(np.nan_to_num(np.array(levels, float)), low)
     place = np.arange(len(names))
     axes.barh(place, values - low, left=low, color=MEASURED, height=0.65)
     axes.set_xscale("log")

@@ -29,8 +29,7 @@ def quantity(value: float | None, unit: str) -> str:
         return f"0 {_shown(unit)}"
     factor, prefix = next(((f, p) for f, p in PREFIXES if size >= 0.9995 * f), PREFIXES[-1])
     if prefix == "k" and unit.startswith("N") and size < 1e4:
-        factor, prefix = 1.0, ""  # 1500 N reads better than 1.5 kN
-        return f"{value:.4g} {_shown(unit)}"
+        return f"{value:.4g} {_shown(unit)}"  # 1500 N reads better than 1.5 kN
     return f"{value / factor:.3g} {prefix}{_shown(unit)}"
 
 
@@ -43,7 +42,7 @@ def percent(share: float | None) -> str:
     """A share as percent with two digits; "-" for none."""
     if share is None or not math.isfinite(share):
         return UNSURE
-    return f"{100.0 * share:.2g} %"
+    return f"{100.0 * share:.2g} %" if abs(share) >= 1e-4 else "< 0.01 %"
 
 
 def _shown(unit: str) -> str:

@@ -1,0 +1,75 @@
+"""Parts of a page: escaping, tables, numbers, figures with names of their own."""
+
+import re
+
+import numpy as np
+import pytest
+
+from ves_twin.report.figure import new_figure, svg
+from ves_twin.report.html import Html, bullets, markup, paragraph, table
+from ves_twin.report.page import html_page
+from ves_twin.report.plots import Trace, draw_cells, draw_levels, draw_traces, envelope
+from ves_twin.report.quantity import percent, quantity
+
+
+def test_text_is_escaped_once_and_html_is_not():
+    assert markup("<a> & b") == "&lt;a&gt; &amp; b"
+    assert paragraph(markup("<a>")) == "<p>&lt;a&gt;</p>"
+    assert "&lt;x&gt;" in bullets(["<x>"])
+    assert bullets([]) == ""
+
+
+def test_numbers_of_a_table_stand_to_the_right():
+    text = table(("what", "size, m"), [("leg <1>", "0.31 mm"), ("leg 2", "-")])
+    assert "<td>leg &lt;1&gt;</td>" in text
+    assert '<td class="number">0.31 mm</td>' in text
+    assert "<td>-</td>" in text
+
+
+@pytest.mark.parametrize(
+    ("value", "unit", "text"),
+    [
+        (3.1e-4, "m", "310 um"),
+        (-2.04, "N*m", "-2.04 N m"),
+        (1500.0, "N", "1500 N"),
+        (2.03e4, "Pa", "20.3 kPa"),
+        (0.0, "rad", "0 rad"),
+        (0.0123, "1", "0.0123"),
+        (float("nan"), "m", "-"),
+        (None, "m", "-"),
+    ],
+)
+def test_numbers_read_with_a_prefix(value, unit, text):
+    assert quantity(value, unit) == text
+
+
+def test_shares_have_two_digits():
+    assert percent(0.01234) == "1.2 %"
+    assert percent(None) == "-"
+
+
+def test_figures_of_a_page_share_no_id_and_load_nothing():
+    first = draw_levels(["a", "b"], [0.1, 20.0], "sigma", 1.0)
+    second = draw_cells(["a", "b"], ["x"], np.array([[1.0], [np.nan]]), "band")
+    third = new_figure(2.0)
+    draw_traces(third.add_subplot(), np.arange(9.0), [Trace("y", np.arange(9.0), "k")], "m", 2.0)
+    parts = [
+        svg(figure, f"f{k}", 'a "caption" <i>') for k, figure in enumerate((first, second, third))
+    ]
+    page = html_page("<title>", parts)
+    ids = re.findall(r'\bid="([^"]*)"', page)
+    assert len(ids) == len(set(ids))
+    used = set(re.findall(r"url\(#([^)]*)\)", page)) | set(re.findall(r'href="#([^"]*)"', page))
+    assert used <= set(ids)
+    assert isinstance(parts[0], Html)
+    assert not re.search(r'(?:src|href)="(?!#)', page)
+    assert "&lt;title&gt;" in page
+
+
+def test_a_long_line_keeps_its_peaks():
+    values = np.zeros(100_000)
+    values[54_321] = 7.0
+    time, drawn = envelope(np.arange(100_000.0), values)
+    assert len(drawn) <= 1400
+    assert drawn.max() == 7.0
+    assert np.all(np.diff(time) >= 0)
