@@ -8,6 +8,7 @@ import numpy as np
 
 from ves_twin.compiled import compiled
 from ves_twin.control.controller import ControlTask, PlatformController
+from ves_twin.control.emulated import EmulatedSystem
 from ves_twin.control.readings import Readings
 from ves_twin.errors import InvalidInputError
 from ves_twin.kinematics.rotations import matrix_from_angles
@@ -50,6 +51,15 @@ class AdmittanceController(PlatformController):
         phi, gamma = task.emulated.discretise(task.period)
         position = np.array(task.belief.sensor_position)
         return cls(phi, gamma, position, task.start, task.home, task.subtract_gravity)
+
+    def emulate(self, emulated: EmulatedSystem, period: float) -> None:
+        """Emulate another system from now on, in the present position and velocity.
+
+        Args:
+            emulated: the system.
+            period: time between two cycles [s].
+        """
+        self._phi, self._gamma = emulated.discretise(period)
 
     def update(self, time: float, readings: Readings) -> FloatArray:
         """Advance the emulated base by one cycle under the present wrench."""

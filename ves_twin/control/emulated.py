@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import hashlib
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from enum import StrEnum
 from pathlib import Path
 
@@ -76,6 +76,20 @@ class EmulatedSystem:
         """A hash of M, B and K: equal identity, equal system."""
         parts = (self.mass, self.damping, self.stiffness)
         return hashlib.sha256(b"".join(part.tobytes() for part in parts)).hexdigest()[:12]
+
+    def with_mass(self, mass: float) -> EmulatedSystem:
+        """The same base with another translational mass [kg], the same along X, Y and Z.
+
+        Rotational inertia, coupling of mass, damping and stiffness stay as they are.
+
+        Raises:
+            InvalidInputError: a mass with which M is not positive definite.
+        """
+        matrix = self.mass.copy()
+        matrix[range(3), range(3)] = mass
+        if np.min(np.linalg.eigvalsh(matrix)) <= 0.0:
+            raise InvalidInputError(f"mass of {self.name}", mass, "a positive definite matrix M")
+        return replace(self, name=f"{self.name}, {mass:g} kg", mass=matrix)
 
     def discretise(self, period: float) -> tuple[FloatArray, FloatArray]:
         """Exact zero-order-hold form X(k+1) = Phi X(k) + Gamma W(k), X = (Y, Y').

@@ -50,11 +50,16 @@ class FilterPlace(StrEnum):
         return {FilterPlace.NONE: NONE, FilterPlace.ERROR: ERROR}.get(self, FEEDBACK)
 
 
-def chebyshev_section(rate: float) -> tuple[FloatArray, FloatArray]:
-    """The thesis's leg filter: Chebyshev type 2, second order, 4 dB from 9 Hz up.
+EDGE = 9.0
+"""Edge of the thesis's leg filter [Hz] (Table 5-1, errata E-43)."""
+
+
+def chebyshev_section(rate: float, edge: float = EDGE) -> tuple[FloatArray, FloatArray]:
+    """The thesis's leg filter: Chebyshev type 2, second order, 4 dB from its edge up.
 
     Args:
         rate: sampling rate of the leg loop [Hz].
+        edge: where the stop band begins [Hz]; the notch lies at sqrt(2) of it.
 
     Raises:
         InvalidInputError: a rate below twice the edge.
@@ -66,9 +71,11 @@ def chebyshev_section(rate: float) -> tuple[FloatArray, FloatArray]:
     """
     from scipy.signal import cheby2  # slow to import
 
-    if rate <= 18.0:
-        raise InvalidInputError("rate of the leg loop", rate, "more than 18 Hz, twice the edge")
-    numerator, denominator = cheby2(2, 4.0, 9.0, fs=rate)
+    if rate <= 2.0 * edge:
+        raise InvalidInputError(
+            "rate of the leg loop", rate, f"more than {2.0 * edge:g} Hz, twice the edge"
+        )
+    numerator, denominator = cheby2(2, 4.0, edge, fs=rate)
     return np.asarray(numerator), np.asarray(denominator)
 
 

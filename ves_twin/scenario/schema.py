@@ -7,7 +7,7 @@ from typing import Annotated, Any, Literal, Self
 
 from pydantic import Field, ValidationError, model_validator
 
-from ves_twin.control.leg_loop import FilterPlace
+from ves_twin.control.leg_loop import EDGE, FilterPlace
 from ves_twin.control.registry import GRAVITY_COMPENSATIONS, PLATFORM_CONTROLLERS
 from ves_twin.scenario.fields import (
     ZERO_JOINTS,
@@ -111,13 +111,14 @@ class Gravity(Part):
 
 
 class Legs(Part):
-    """Leg loop: gain K1 and rate gain K2 in physical units, and what the section filters."""
+    """Leg loop: gain K1 and rate gain K2 in physical units, what the section filters, its edge."""
 
     gain: Annotated[PerSecond, Field(ge=0)] = 12.6
     rate_gain: Annotated[float, si("1"), Field(ge=0)] = 0.0
     filter: Annotated[FilterPlace, named("filter place", [p.value for p in FilterPlace])] = (
         FilterPlace.NONE
     )
+    edge: Annotated[Hertz, Field(gt=0)] = EDGE
 
 
 class JointMove(Part):

@@ -171,7 +171,7 @@ def _fill_legs(p: np.void, legs: Legs, clock: Clock, belief: Belief) -> None:
     period = clock.leg * clock.tick
     p["gain"], p["rate_gain"] = legs.gain, legs.rate_gain
     p["place"] = legs.filter.code
-    p["numerator"], p["denominator"] = leg_loop.chebyshev_section(1.0 / period)
+    p["numerator"], p["denominator"] = leg_loop.chebyshev_section(1.0 / period, legs.edge)
     p["period"] = period
     p["full_speed"] = belief.full_speed
 
