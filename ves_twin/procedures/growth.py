@@ -13,7 +13,7 @@ from ves_twin.types import BoolArray, FloatArray
 STOP_BAND = 100.0
 """Attenuation outside the band [dB]: a slow swing of 100 mm leaves 1 um."""
 
-WINDOWS = 24
+WINDOWS = 48
 """Stretches into which the signal is cut, if each then holds three oscillations."""
 
 ABOVE_FLOOR = 4.0

@@ -35,6 +35,14 @@ PROCEDURES: dict[str, type[Procedure]] = {
     "learning_method": LearningMethod,
     "sensor_drift": SensorDrift,
     "verify_gravity": VerifyGravity,
+from ves_twin.procedures.calibrate_plant import CalibratePlant
+from ves_twin.procedures.procedure import Procedure
+from ves_twin.procedures.stability_map import StabilityMap
+from ves_twin.scenario.load import refusal, scenario_content
+
+PROCEDURES: dict[str, type[Procedure]] = {
+    "calibrate_plant": CalibratePlant,
+    "stability_map": StabilityMap,
 }
 """Value of `procedure` in a file -> class."""
 

@@ -88,7 +88,7 @@ class SampledLoop:
         found = [
             LoopMode(float(np.log(abs(multipliers[i])) / self.period), abs(float(f)))
             for i, f in zip(alive, frequency, strict=True)
-            if f >= lowest
+            if abs(f) >= lowest and multipliers[i].imag >= 0.0  # one of each conjugate pair
         ]
         return sorted(found, key=lambda mode: -mode.growth)
 
