@@ -25,6 +25,9 @@ GAINS = ("gain.low", "gain.high")
 SHORTEST = 0.01
 """Reach below which a search ends."""
 
+GAIN = 0.01
+"""Gain of the worst margin that is worth another round."""
+
 
 class Claim(Part):
     """A claim that holds from `low` to `high`; `scale` beyond a bound is a margin of 1."""
@@ -70,8 +73,9 @@ class CalibratePlant(Procedure):
     """Successive linear programmes for the largest worst margin of all claims.
 
     Each round takes forward differences of all margins to the logarithms of the knobs, finds the
-    change with the largest worst margin within `reach`, and keeps it if the plant agrees; else
-    the reach is halved. No rounds: the margins and their sensitivities as the plant stands.
+    change with the largest worst margin within `reach`, tries it and its half on the plant, and
+    keeps the better one if it gains; else the reach shrinks. No rounds: the margins and their
+    sensitivities as the plant stands.
     """
 
     gains: LegGains = LegGains()
@@ -135,16 +139,14 @@ class CalibratePlant(Procedure):
         history = [float(np.min(region.margins))]
         while rounds < self.rounds and reach > SHORTEST:
             rounds += 1
-            change = region.step(low - at, high - at, reach)
-            trial = at + change
-            if np.max(np.abs(change)) < SHORTEST:
-                break
-            if self._worst(plant, trial) > history[-1] + 0.01:
-                at = trial
+            steps = [region.step(low - at, high - at, reach / part) for part in (1.0, 2.0)]
+            worst = self._worst(plant, [at + step for step in steps])
+            best = int(np.argmax(worst))
+            if worst[best] > history[-1] + GAIN:
+                at = at + steps[best]
                 region, values = self._linearise(plant, at, conduct, rounds)
                 history.append(float(np.min(region.margins)))
-            else:
-                reach *= 0.5
+            reach *= 0.5**best if worst[best] > history[-1] - GAIN else 0.25
         return at, history, region, values
 
     def _linearise(
@@ -178,12 +180,11 @@ class CalibratePlant(Procedure):
         worst = [min(self._margins(values).values()) for values in found]
         return {k.name: worst[2 * i : 2 * i + 2] for i, k in enumerate(self.knobs)}
 
-    def _worst(self, plant: Plant, at: FloatArray) -> float:
-        try:
-            (values,) = carry_out_jobs(measure_claims, [self._evaluation(plant, at)], 1)
-        except VesTwinError:  # a plant that cannot stand
-            return -np.inf
-        return min(self._margins(values).values())
+    def _worst(self, plant: Plant, points: list[FloatArray]) -> list[float]:
+        """Worst margin at each point; minus infinity for a plant that cannot stand."""
+        jobs = [self._evaluation(plant, point) for point in points]
+        found = carry_out_jobs(_measure_or_nothing, jobs, self.workers)
+        return [min(self._margins(v).values()) if v else -np.inf for v in found]
 
     def _margins(self, values: dict[str, float]) -> dict[str, float]:
         rows: dict[str, float] = {}
@@ -204,3 +205,10 @@ class CalibratePlant(Procedure):
         if name in GAINS:
             return float(getattr(self.gains, name.removeprefix("gain.")))
         return plant.parameters.number(name)
+
+
+def _measure_or_nothing(evaluation: Evaluation) -> dict[str, float]:
+    try:
+        return measure_claims(evaluation)
+    except VesTwinError:
+        return {}

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 
@@ -15,10 +16,10 @@ from ves_twin.simulator.build import emulated_of
 from ves_twin.simulator.floquet import LoopMode, SampledLoop, smooth_readings
 from ves_twin.simulator.simulator import Simulator
 
-GRID = 10
-"""Masses tried before the limit is narrowed down, equally spaced in their logarithm."""
+RATIO = 1.4
+"""Ratio of neighbouring masses tried before the limit is narrowed down."""
 
-CLOSE = 0.005
+CLOSE = 0.001
 """A limit is known to this share of itself."""
 
 
@@ -86,22 +87,21 @@ class StabilityBench:
             lowest: lower end of the range [kg].
             highest: upper end of the range [kg].
         """
-        above = np.log(highest)
+        from scipy.optimize import brentq  # slow to import
+
+        def growth(logarithm: float) -> float:
+            return self.vibration(float(np.exp(logarithm))).growth
+
         mode = self.vibration(highest)
         if mode.growth >= 0.0:
             return MassLimit(np.inf, self.payload, mode.frequency)
-        for below in np.log(np.geomspace(highest, lowest, GRID))[1:]:
-            mode = self.vibration(float(np.exp(below)))
-            if mode.growth >= 0.0:
-                break
-            above = below
-        else:
-            return MassLimit(lowest, self.payload, mode.frequency)
-        while above - below > CLOSE:
-            middle = 0.5 * (above + below)
-            mode = self.vibration(float(np.exp(middle)))
-            above, below = (middle, below) if mode.growth < 0.0 else (above, middle)
-        return MassLimit(float(np.exp(0.5 * (above + below))), self.payload, mode.frequency)
+        count = 1 + int(np.ceil(np.log(highest / lowest) / np.log(RATIO)))
+        masses = np.log(np.geomspace(highest, lowest, count))
+        for above, below in pairwise(masses):
+            if growth(below) >= 0.0:
+                limit = float(np.exp(brentq(growth, below, above, xtol=CLOSE)))
+                return MassLimit(limit, self.payload, self.vibration(limit).frequency)
+        return MassLimit(lowest, self.payload, self.vibration(lowest).frequency)
 
 
 def still(scenario: Scenario) -> Scenario:

@@ -33,7 +33,7 @@ def carry_out_jobs(
         progress: called with the share done.
     """
     results: dict[int, Result] = {}
-    if workers == 1 or len(jobs) == 1:
+    if workers == 1:
         for i, job in enumerate(jobs):
             results[i] = function(job)
             progress((i + 1) / len(jobs))
