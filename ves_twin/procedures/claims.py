@@ -21,6 +21,9 @@ HEAVES = (-0.15, 0.0, 0.15)
 SERVO = 0.4
 """Damping ratio between structural modes, below 0.2, and those of the joint servos, above 0.6."""
 
+NO_MODE = 40.0
+"""Frequency that stands for legs without a lightly damped mode below it [Hz]."""
+
 PRINTED_RMS = np.array([0.46, 0.24, 0.46, 0.62, 1.01, 0.06])
 """RMS of the gravity error [N, N m] (6,) of thesis Table 3-1."""
 
@@ -86,7 +89,8 @@ def _modes(plant: Plant, gains: Gains) -> tuple[float, ...]:
     first = []
     for heave in HEAVES:
         modes = structural_modes(plant, np.array([0, 0, heave, 0, 0, 0]), np.zeros(3))
-        first.append(min(m.frequency for m in modes if m.damping < SERVO))
+        light = [m.frequency for m in modes if m.damping < SERVO]
+        first.append(min(light, default=NO_MODE))
     return max(first), min(first), first[0] - first[-1]
 
 

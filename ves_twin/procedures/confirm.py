@@ -22,8 +22,8 @@ PUSH = (20.0, 0.01)
 FADED = 1.0
 """Faster modes than the one looked for have died out by then [s]."""
 
-SILENCE = 1e-10
-"""Without noise and counts an oscillation is known to this level [m]."""
+SILENCE = 1e-8
+"""Without noise and counts an oscillation is followed down to this level [m]."""
 
 
 @dataclass(frozen=True)
