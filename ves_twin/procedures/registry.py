@@ -7,6 +7,7 @@ from collections.abc import Mapping
 from pydantic import ValidationError
 
 from ves_twin.errors import UnknownNameError
+from ves_twin.procedures.calibrate_plant import CalibratePlant
 from ves_twin.procedures.calibrate_poses import CalibratePoses
 from ves_twin.procedures.coupling_map_paths import CouplingMapPaths
 from ves_twin.procedures.emulation_error_budget import EmulationErrorBudget
@@ -19,6 +20,7 @@ from ves_twin.procedures.pped_release import PpedRelease
 from ves_twin.procedures.pped_release_emulated import PpedReleaseEmulated
 from ves_twin.procedures.procedure import Procedure
 from ves_twin.procedures.sensor_drift import SensorDrift
+from ves_twin.procedures.stability_map import StabilityMap
 from ves_twin.procedures.verify_gravity import VerifyGravity
 from ves_twin.scenario.load import refusal, scenario_content
 
@@ -35,12 +37,6 @@ PROCEDURES: dict[str, type[Procedure]] = {
     "learning_method": LearningMethod,
     "sensor_drift": SensorDrift,
     "verify_gravity": VerifyGravity,
-from ves_twin.procedures.calibrate_plant import CalibratePlant
-from ves_twin.procedures.procedure import Procedure
-from ves_twin.procedures.stability_map import StabilityMap
-from ves_twin.scenario.load import refusal, scenario_content
-
-PROCEDURES: dict[str, type[Procedure]] = {
     "calibrate_plant": CalibratePlant,
     "stability_map": StabilityMap,
 }

@@ -142,7 +142,8 @@ class Experiment(Part):
         if self.start.pose is None or self.start.joints is None:
             return scenario
         platform = scenario.platform.model_copy(update={"start": self.start.pose})
-        arm = scenario.arm.model_copy(update={"start": self.start.joints, "moves": ()})
+        still = {"start": self.start.joints, "moves": (), "path": None}
+        arm = scenario.arm.model_copy(update=still)
         return scenario.model_copy(update={"platform": platform, "arm": arm})
 
     def drive_of(self, recording: Recording) -> tuple[str, ...]:

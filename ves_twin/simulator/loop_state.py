@@ -133,7 +133,7 @@ class LoopState:
             parts.append(values[at : at + size].copy() if size else part)
             at += size
         shared = tuple(np.split(values[at:].copy(), len(rest.shared)))
-        self._sim.computers.restore(ComputersSnapshot(parts[0], parts[1], shared))
+        self._sim.computers.restore(ComputersSnapshot(parts[0], parts[1], shared, rest.feedforward))
 
 
 def _floats(dtype: np.dtype[np.void], offset: int) -> Iterator[tuple[str, int, int]]:
