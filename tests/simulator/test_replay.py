@@ -37,6 +37,16 @@ def test_the_same_plant_measures_the_same(recording):
         assert np.abs(again[name] - recording[name]).max() <= 1.001 * limit, name
 
 
+def test_a_sensor_keeps_its_calibration_in_a_replay():
+    """A run of the Model Method reads the sensor through the matrix of its calibration file."""
+    scenario = vt.Scenario.load("beam_model_method", {"run.duration": 1.0, "run.noise": False})
+    run = vt.simulate(scenario)
+    again = vt.replay(run, vt.Plant.load("ves2_crosstalk"))
+    known = slice(0, -10)  # the arm still moves; its spline ends with commands that nobody knows
+    miss = np.abs(again["sensor.wrench"] - run["sensor.wrench"])[known].max()
+    assert miss <= 1.001 * SAME["sensor.wrench"]
+
+
 def test_another_plant_measures_something_else(recording):
     offset = build_effect("length_offset", "leg.3", {"offset": 1e-3})
     again = vt.replay(recording, vt.Plant.load("ves2").extended(offset))

@@ -10,6 +10,7 @@ import numpy as np
 from ves_twin.comparison.channel import ChannelComparison, Column, compare_column
 from ves_twin.comparison.coherence import Companions
 from ves_twin.comparison.emulation_cost import EmulationCost, emulation_cost
+from ves_twin.comparison.even_clock import FEWEST
 from ves_twin.comparison.noise import Noise, NoiseSource
 from ves_twin.comparison.prepared import POSE, Prepared, noise_of_columns, prepare
 from ves_twin.comparison.programme import same_programme
@@ -95,6 +96,9 @@ def _against(one: Prepared, other: Prepared, told: Experiment) -> RecordingCompa
         came = f"{1.0 / other.period:.4g} Hz"
         raise InvalidInputError("rate of --against", came, f"{1.0 / one.period:.4g} Hz")
     count = min(len(one.recording), len(other.recording))
+    if count < one.rows.start + FEWEST:
+        came = f"{count} rows, the comparison begins at row {one.rows.start}"
+        raise InvalidInputError("length of --against", came, f"at least {FEWEST} rows in common")
     mine, theirs = noise_of_columns(one, told.noise), noise_of_columns(other, told.noise)
     noises = {
         column: _both(noise, theirs[column]) for column, noise in mine.items() if column in theirs

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ves_twin.comparison.declared_noise import declared_noise
-from ves_twin.comparison.even_clock import WAKE, even_clock, holes
+from ves_twin.comparison.even_clock import FEWEST, WAKE, even_clock, holes
 from ves_twin.comparison.loop_noise import with_loop_noise
 from ves_twin.comparison.noise import Noise, NoiseSource, measured_noise, standing_rows
 from ves_twin.comparison.predict import predict
@@ -25,6 +25,10 @@ from ves_twin.simulator.replay import replay_scenario
 from ves_twin.types import FloatArray
 
 POSE = "platform.pose"
+
+END = 10
+"""Cycles at the end that are not compared: the arm's spline needs commands of two cycles ahead, and
+what is taken for them dies away by 0.27 a cycle towards the begin."""
 
 
 @dataclass(frozen=True)
@@ -89,7 +93,7 @@ def prepare(
     if experiment.payload:
         rig = hang_weight(rig, experiment.payload)
     even = even_clock(recording, drive)
-    rows = _rows(even.time, experiment)
+    rows = _rows(even.time, scenario, experiment)
     notes = _notes(recording, even, drive, experiment)
     weight = float(rig.parameters.array("arm.mass").sum() * rig.parameters.number("gravity"))
     return Prepared(
@@ -141,14 +145,16 @@ def noise_of_columns(prepared: Prepared, source: str) -> dict[str, Noise]:
     return found
 
 
-def _rows(time: FloatArray, experiment: Experiment) -> slice:
+def _rows(time: FloatArray, scenario: Scenario, experiment: Experiment) -> slice:
     start = experiment.window.start
     if experiment.start.state is StartState.ESTIMATED:
         start = max(start, experiment.start.forget)
-    first, last = np.searchsorted(time, [start - 1e-9, experiment.window.stop - 1e-9])
-    if last - first < 64:
-        came = f"{last - first} rows between {start:.3g} and {experiment.window.stop:.3g} s"
-        raise InvalidInputError("window", came, "at least 64 rows")
+    tail = END / scenario.platform.rate
+    stop = min(experiment.window.stop, float(time[-1]) - tail)
+    first, last = np.searchsorted(time, [start - 1e-9, stop - 1e-9])
+    if last - first < FEWEST:
+        came = f"{last - first} rows between {start:.3g} and {stop:.3g} s"
+        raise InvalidInputError("window", came, f"at least {FEWEST} rows")
     return slice(int(first), int(last))
 
 
