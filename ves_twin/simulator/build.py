@@ -106,7 +106,8 @@ def _learned(scenario: Scenario, rig: Rig) -> LearnedGravity | None:
 
 def _calibrated(scenario: Scenario, belief: Belief, rig: Rig) -> Belief:
     """Load calibration matrix and P vector (Appendix E, step 8), where the scenario names them."""
-    if scenario.gravity.method != "model" or scenario.gravity.file is None:
+    # a replay has method "none", and the calibration that the sensor was read with
+    if scenario.gravity.method not in {"model", "none"} or scenario.gravity.file is None:
         return belief
     calibration = GravityCalibration.load(scenario.gravity.file)
     calibration.check(rig.plant.sensor_identity, belief.gravity.basis)

@@ -94,7 +94,8 @@ def replay_scenario(recording: Recording, scenario: Scenario | None = None) -> S
     period = float(np.median(np.diff(recording.time))) if len(recording) > 1 else 1.0
     content["run"] |= {"duration": float(recording.time[-1]) + 0.5 * period, "noise": False}
     content["platform"] |= {"mode": "position", "emulated": None, "motion": None, "busy": []}
-    file = content["gravity"]["file"]  # the sensor keeps the calibration that it was read with
+    model = content["gravity"]["method"] == "model"
+    file = content["gravity"]["file"] if model else None  # the sensor keeps its calibration
     content["gravity"] |= {"method": "none", "file": None}
     content |= {"parameters": {}, "effects": {}}
     replayed = Scenario.model_validate(content)
