@@ -45,6 +45,7 @@ def test_a_folder_of_a_run_needs_no_more_words(run, tmp_path, capsys):
     assert (tmp_path / "out" / "report.html").stat().st_size < 5e6
 
 
+@pytest.mark.slow
 def test_out_of_tolerance_exits_4_and_within_it_0(run, tmp_path, capsys):
     limits = tmp_path / "limits.toml"
     words = ["compare", str(run), "--tolerance", str(limits), "--out", str(tmp_path / "out")]
@@ -56,6 +57,7 @@ def test_out_of_tolerance_exits_4_and_within_it_0(run, tmp_path, capsys):
     assert "every limit is kept" in capsys.readouterr().out
 
 
+@pytest.mark.slow
 def test_a_measured_recording_is_told_by_an_experiment(bare, tmp_path, capsys):
     told = tmp_path / "lab.toml"
     told.write_text(

@@ -50,6 +50,7 @@ def test_friction_in_a_leg_is_loudest_in_its_own_column(sticky_result):
     assert "leg.command.3" in place_sentence(loud["leg.length.3"])
 
 
+@pytest.mark.slow
 def test_a_valve_that_is_off_null_is_a_constant_of_null_over_gain(faulty):
     """At rest the integrator needs null = K1 e / full speed, so e = 0.01 * 0.5 / 12.6."""
     run = faulty("valve_null", "leg.3", null=0.01)
@@ -60,6 +61,7 @@ def test_a_valve_that_is_off_null_is_a_constant_of_null_over_gain(faulty):
     assert "a constant" in place_sentence(found)
 
 
+@pytest.mark.slow
 def test_a_length_offset_shows_at_the_sensor_not_in_the_lengths(faulty):
     """The leg loop makes the reading equal to its command, whatever the reading is worth."""
     result = one(faulty("length_offset", "leg.3", offset=3e-3))
@@ -68,6 +70,7 @@ def test_a_length_offset_shows_at_the_sensor_not_in_the_lengths(faulty):
     assert mean < 3e-5  # a hundredth of the offset
 
 
+@pytest.mark.slow
 def test_a_delay_of_a_signal_is_found_with_its_size(healthy, changed):
     def late(values):
         values[2:] = values[:-2].copy()
@@ -90,6 +93,7 @@ def test_swapped_columns_fail_the_gate_on_the_first_screen(healthy, changed):
     assert page.index("leg.length.2 follows command 5") < page.index("<svg")
 
 
+@pytest.mark.slow
 def test_missing_numbers_are_left_out_and_named(healthy, changed):
     def lose(values):
         values[100:160, 2] = np.nan
@@ -101,6 +105,7 @@ def test_missing_numbers_are_left_out_and_named(healthy, changed):
     assert result.quality is Grade.FAILED
 
 
+@pytest.mark.slow
 def test_a_short_hole_of_set_points_is_bridged_and_a_long_one_refused(healthy, changed):
     def lose(count):
         return changed(
@@ -112,6 +117,7 @@ def test_a_short_hole_of_set_points_is_bridged_and_a_long_one_refused(healthy, c
         one(lose(80))
 
 
+@pytest.mark.slow
 def test_lost_rows_are_left_empty(healthy):
     keep = np.r_[0:200, 203 : len(healthy)]
     cut = {name: values[keep] for name, values in healthy.signals.items()}
@@ -120,6 +126,7 @@ def test_lost_rows_are_left_empty(healthy):
     assert result.beyond_noise == ()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("rate", [50.0, 200.0])
 def test_another_rate_is_compared_as_well(healthy, thinned, rate):
     """Set-points drawn straight at 50 Hz miss motion of 2.5 Hz by (pi f / r)^2 / 2 = 1 %."""
@@ -138,6 +145,7 @@ def test_missing_channels_are_named_and_the_rest_compared(healthy):
         one(replace(healthy, signals={"leg.length": healthy["leg.length"]}))
 
 
+@pytest.mark.slow
 def test_before_and_after_differ_where_the_rig_changed(healthy, sticky, scenario):
     against = Named("before", healthy)
     result = compare([Named("after", sticky)], against=against).recordings[0]
@@ -149,6 +157,7 @@ def test_before_and_after_differ_where_the_rig_changed(healthy, sticky, scenario
     assert same.beyond_noise == ()
 
 
+@pytest.mark.slow
 def test_another_programme_is_compared_by_what_the_plant_leaves_of_each(healthy):
     changes = {"run.duration": 8.0, "platform.motion.amplitude": [0.02, 0.02, 0.02, 0.0, 0.0, 0.0]}
     other = vt.simulate(vt.Scenario.load("identify_fast", changes), seed=5)
@@ -158,6 +167,7 @@ def test_another_programme_is_compared_by_what_the_plant_leaves_of_each(healthy)
     assert result.beyond_noise == ()
 
 
+@pytest.mark.slow
 def test_an_emulation_run_tells_what_the_gap_costs(beam_short):
     """A bias of 2 N in x at the sensor: 2 of the 1 N allowed, and it moves the emulated beam."""
     biased = beam_short["sensor.wrench"] + np.array([2.0, 0.0, 0.0, 0.0, 0.0, 0.0])
@@ -168,6 +178,7 @@ def test_an_emulation_run_tells_what_the_gap_costs(beam_short):
     assert cost.base_translation + cost.base_rotation > plain.base_translation
 
 
+@pytest.mark.slow
 def test_a_window_compares_only_its_rows(healthy):
     told = Experiment.model_validate({"window": {"start": "2 s", "stop": 6.0}})
     result = one(healthy, experiment=told)
@@ -176,6 +187,7 @@ def test_a_window_compares_only_its_rows(healthy):
     assert result.beyond_noise == ()
 
 
+@pytest.mark.slow
 def test_a_recording_that_begins_in_motion_forgets_its_start(healthy):
     """From cycle 240 on: the legs' ticks (5, 3) come round to the cycle's (37) every 15 cycles."""
     tail = healthy.window(healthy.time[240] - 1e-6, 9.0)
@@ -185,6 +197,7 @@ def test_a_recording_that_begins_in_motion_forgets_its_start(healthy):
     assert loud == []
 
 
+@pytest.mark.slow
 def test_an_undeclared_payload_is_seen_and_a_declared_one_is_not(scenario):
     from ves_twin.plant.known_weight import hang_weight
 
@@ -193,6 +206,7 @@ def test_an_undeclared_payload_is_seen_and_a_declared_one_is_not(scenario):
     assert one(run, experiment=Experiment(payload=1.0)).beyond_noise == ()
 
 
+@pytest.mark.slow
 def test_the_result_is_json_and_the_page_stands_alone(sticky):
     comparison = compare([Named("<b>&run", sticky)])
     content = json.loads(json.dumps(comparison.to_dict(), allow_nan=False))

@@ -16,7 +16,7 @@ from ves_twin.types import FloatArray
 LOUD = 5.0
 """Score beyond which a cell is more than noise: one false in 6000 pages of 600 cells."""
 
-FAR = 4.0
+FAR = 5.0
 """Sd beyond which a mean is more than noise and zeroing."""
 
 

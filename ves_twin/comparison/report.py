@@ -168,8 +168,8 @@ def _reading(comparison: Comparison) -> Html:
                 "Beyond noise is not important, and important is not beyond noise: the tolerance"
                 " and the cost for the emulation say what matters.",
                 "Lag: measured later than expected is positive. Coherence: share of the residual"
-                " that one column of the set-points explains linearly, and what chance gives. A"
-                " question mark: the data cannot tell.",
+                " that one column of the set-points explains linearly, and what chance gives."
+                " A question mark: the data cannot tell.",
                 "The page shows where data and plant part. It does not name the cause.",
             )
         ),
