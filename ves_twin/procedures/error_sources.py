@@ -29,6 +29,7 @@ QUICK: Mapping[str, Any] = {
 SENSOR_NOISE = ("sensor.noise", "sensor.wander")
 ORIENTATION = ("platform.level", "transducer.noise", "transducer.resolution")
 DRIFT = ("sensor.drift",)
+DRAWN = ("sensor.drift", "platform.level")
 
 GRAVITY_SOURCES = ("gravity model", "orientation", "sensor noise", "drift")
 """What the estimate and the reading get wrong; the other sources are the rig's."""
@@ -98,9 +99,10 @@ class ErrorSources:
     def _drawn(self, name: str) -> FloatArray:
         """A number as it is, or, where commissioning leaves a zero open, one draw of its sd."""
         parameter = self.ideal.parameters[name]
-        generator = np.random.default_rng([self.seed, (*DRIFT, *ORIENTATION).index(name)])
-        drawn = parameter.value + parameter.sd * generator.normal(size=parameter.value.shape)
-        return np.asarray(drawn if name in (*DRIFT, "platform.level") else parameter.value)
+        if name not in DRAWN:
+            return parameter.value
+        generator = np.random.default_rng([self.seed, DRAWN.index(name)])
+        return parameter.value + parameter.sd * generator.normal(size=parameter.value.shape)
 
     def _on(self, names: tuple[str, ...]) -> Plant:
         return _silent(self.ideal).with_values({name: self._drawn(name) for name in names})

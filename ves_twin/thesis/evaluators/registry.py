@@ -12,6 +12,7 @@ from ves_twin.thesis.evaluators.chapter_2 import CHAPTER_2
 from ves_twin.thesis.evaluators.chapter_3 import CHAPTER_3
 from ves_twin.thesis.evaluators.chapter_4 import CHAPTER_4
 from ves_twin.thesis.evaluators.chapter_5 import CHAPTER_5
+from ves_twin.thesis.evaluators.gravity_methods import GRAVITY_METHODS
 
 ANSWERS: Mapping[str, Answer] = {
     **CHAPTER_2,
@@ -21,5 +22,6 @@ ANSWERS: Mapping[str, Answer] = {
     **APPENDIX_A,
     **APPENDIX_B,
     **APPENDICES_C_TO_F,
+    **GRAVITY_METHODS,
 }
 """Claim -> evaluator, or why there is none."""
