@@ -7,6 +7,8 @@ import pytest
 
 from ves_twin.control.gravity import GravityCompensation, GravityTask
 from ves_twin.control.registry import GRAVITY_COMPENSATIONS, PLATFORM_CONTROLLERS
+from ves_twin.errors import InvalidInputError
+from ves_twin.gravity_model.learned import LearnedGravity, PlannedExperiment
 
 PERIOD = 1.0 / 80.0
 
@@ -43,7 +45,14 @@ def controller(request):
 
 @pytest.fixture(params=sorted(GRAVITY_COMPENSATIONS))
 def compensation(request, belief) -> GravityCompensation:
-    return GRAVITY_COMPENSATIONS[request.param](GravityTask(belief, KnownGravity()))
+    planned = PlannedExperiment("sensor", "system", (0.0,) * 6, PERIOD, np.zeros((30, 3)))
+    learned = LearnedGravity(np.random.default_rng(3).normal(size=(30, 6)), planned, "a test")
+    return GRAVITY_COMPENSATIONS[request.param](GravityTask(belief, KnownGravity(), learned))
+
+
+def test_the_learning_method_without_its_wrench_is_refused(belief):
+    with pytest.raises(InvalidInputError, match=r"gravity\.file"):
+        GRAVITY_COMPENSATIONS["learned"](GravityTask(belief, KnownGravity()))
 
 
 def commands(built, series, first=0):
