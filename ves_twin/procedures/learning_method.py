@@ -5,11 +5,12 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from enum import StrEnum
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Any
 
 import numpy as np
 from pydantic import Field
 
+from ves_twin.gravity_model.calibration import GravityCalibration
 from ves_twin.plant.plant import Plant
 from ves_twin.procedures.learning_phases import Changes, LearningPhases, poses_at_cycles
 from ves_twin.procedures.learning_report import Iteration, Learned, account_of, write_report
@@ -86,7 +87,7 @@ class LearningMethod(Procedure):
             last = part_of(conduct.progress, self.iterations, parts)
             ideal = replace(phases, plant=_with_ideal_sensor(phases.plant))
             exact = ideal.run(EXACT, seeds[-1], part_of(last, 0, 2), "gravity known exactly")
-            own = {"gravity": Scenario.load(self.experiment).gravity.model_dump(mode="json")}
+            own = {"gravity": self._own_gravity(phases.plant)}
             model = phases.run(own, seeds[-2], part_of(last, 1, 2), "the scenario's own method")
         learned = Learned(
             tuple(done),
@@ -115,6 +116,15 @@ class LearningMethod(Procedure):
         phases = LearningPhases(scenario, self._graded(world, seed), self.alpha, self.smooth)
         _ = phases.planned
         return phases
+
+    def _own_gravity(self, plant: Plant) -> dict[str, Any]:
+        """The scenario's gravity method; the belief's masses if its file is for another sensor."""
+        gravity = Scenario.load(self.experiment).gravity
+        own = gravity.model_dump(mode="json")
+        if gravity.method == "model" and gravity.file is not None:
+            fits = GravityCalibration.load(gravity.file).sensor == plant.sensor_identity
+            own["file"] = gravity.file if fits else None
+        return own
 
     def _graded(self, plant: Plant, seed: int) -> Plant:
         table = plant.parameters
