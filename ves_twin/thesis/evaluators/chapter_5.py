@@ -8,16 +8,17 @@ import numpy as np
 from scipy.signal import freqs, freqz
 
 from ves_twin.control.emulated import EmulatedSystem
-from ves_twin.control.leg_loop import chebyshev_section
+from ves_twin.control.leg_loop import FilterPlace, chebyshev_section
 from ves_twin.plant.modes import structural_modes
 from ves_twin.plant.statics import check_reach
 from ves_twin.procedures.gravity_shift import gravity_shift
+from ves_twin.procedures.stability_bench import MassLimit, StabilityBench
 from ves_twin.scenario.schema import Scenario
 from ves_twin.simulator.clock import Clock
 from ves_twin.simulator.outcome import Outcome
 from ves_twin.thesis.claim import Claim
 from ves_twin.thesis.context import Context
-from ves_twin.thesis.evaluation import Answer, Evaluation, Evaluator, NotBuilt, NotTestable
+from ves_twin.thesis.evaluation import Answer, Evaluation, Evaluator, NotTestable
 from ves_twin.thesis.evaluators.chapter_2 import model_rates
 from ves_twin.thesis.leg_response import LegSettings, bandwidth, leg_response
 from ves_twin.thesis.standing_rig import StandingRig
@@ -38,7 +39,9 @@ DEFAULT = LegSettings(20.9, filter="error")
 """K1 = 20000 with the filter on the error (5.4, fig. 5-4)."""
 
 RELEASE = "release_table_5_2"
-STABILITY = NotBuilt("lowest stable model mass of the full rig, by growth rate")
+MAP = "ves-twin run stability_map"
+LIGHTEST, HEAVIEST = 10.0, 190.0
+"""Masses of the emulated base between which the limit is sought [kg]: a tenth to twice 93.7."""
 
 
 def _first_mode(context: Context, z: float) -> float:
@@ -191,6 +194,31 @@ def _positioning_error(context: Context, legs: LegSettings) -> tuple[FloatArray,
     return np.sqrt(np.mean(error**2, axis=0)), run.command, run.recording.info.outcome
 
 
+def _mass_limit(context: Context, place: FilterPlace) -> MassLimit:
+    changes = {"legs.gain": DEFAULT.gain, "legs.filter": place.value}
+    scenario = Scenario.load("beam_horizontal_truth", changes)
+
+    def find() -> MassLimit:
+        return StabilityBench(context.plant, scenario).mass_limit(LIGHTEST, HEAVIEST)
+
+    limit: MassLimit = context.once(f"mass limit, filter {place}", find)
+    return limit
+
+
+def _error_limit(context: Context, claim: Claim) -> Evaluation:
+    limit = _mass_limit(context, FilterPlace.ERROR)
+    note = f"whole sampled rig, gain {DEFAULT.gain:g} /s; grows at {limit.frequency:.1f} Hz"
+    return Evaluation((limit.mass / limit.payload,), note=note, runs=(MAP,))
+
+
+def _feedback_limit(context: Context, claim: Claim) -> Evaluation:
+    error, feedback = (
+        _mass_limit(context, place) for place in (FilterPlace.ERROR, FilterPlace.FEEDBACK)
+    )
+    note = f"feedback {feedback.mass / feedback.payload:.2f} of the payload, on the structure"
+    return Evaluation((feedback.mass / error.mass,), note=note, runs=(MAP,))
+
+
 def _error_cut(context: Context, claim: Claim) -> Evaluation:
     before, first, outcome = _positioning_error(context, LOW)
     after, second, outcome_after = _positioning_error(context, DEFAULT)
@@ -267,8 +295,8 @@ CHAPTER_5: Mapping[str, Answer] = {
     "C082": _coefficients(0),
     "C083": _coefficients(1),
     "C084": _laplace,
-    "C085": STABILITY,
-    "C086": STABILITY,
+    "C085": _error_limit,
+    "C086": _feedback_limit,
     "C087": _softness,
     "C088": _error_cut,
     "C089": _start,
