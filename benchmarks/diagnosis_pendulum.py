@@ -197,7 +197,7 @@ def measured(table: list[str], tally: Tally, cases: int) -> list[str]:
         f"Processor time of one diagnosis with the bank cached: median {np.median(cpu):.1f} s,"
         f" longest {np.max(cpu):.1f} s.",
         "",
-        "Every other answer:",
+        "Wrong or withheld names, and what was said of effects outside the library:",
         "",
         *(f"- {text}" for text in tally.other),
         "",
