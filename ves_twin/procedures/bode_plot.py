@@ -7,28 +7,13 @@ from typing import TYPE_CHECKING
 
 from ves_twin.linear.response import FrequencyResponse
 from ves_twin.procedures.sine_fit import MeasuredResponse
+from ves_twin.report.picture import new_picture, save_picture
 
 if TYPE_CHECKING:
-    from matplotlib.figure import Figure
+    pass
 
-WIDTH, HEIGHT, DPI = 7.0, 5.2, 110
-"""Size of a picture [inch] and its resolution."""
-
-
-def new_figure(height: float = HEIGHT) -> Figure:
-    """An empty figure of its own, drawn without a display and without pyplot's global state."""
-    from matplotlib.backends.backend_agg import FigureCanvasAgg  # slow to import
-    from matplotlib.figure import Figure
-
-    figure = Figure(figsize=(WIDTH, height), layout="constrained")
-    FigureCanvasAgg(figure)
-    return figure
-
-
-def save_figure(figure: Figure, path: Path) -> Path:
-    """Write a figure as PNG."""
-    figure.savefig(path, dpi=DPI)
-    return path
+HEIGHT = 5.2
+"""Height of a picture [inch]."""
 
 
 class BodePlot:
@@ -39,7 +24,7 @@ class BodePlot:
     """
 
     def __init__(self, title: str) -> None:
-        self.figure = new_figure()
+        self.figure = new_picture(HEIGHT)
         self._gain, self._phase = self.figure.subplots(2, 1, sharex=True)
         self._gain.set_title(title, fontsize=10)
         self._gain.set_ylabel("gain [dB]")
@@ -75,4 +60,4 @@ class BodePlot:
     def save(self, path: Path) -> Path:
         """Write the picture as PNG."""
         self._phase.legend(fontsize=7, loc="lower left")
-        return save_figure(self.figure, path)
+        return save_picture(self.figure, path)

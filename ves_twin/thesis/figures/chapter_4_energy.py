@@ -8,7 +8,7 @@ import numpy as np
 
 from ves_twin.plant.plant import Plant
 from ves_twin.procedures.coupling_map_paths import CYCLE, CouplingMapPaths, peak_ratio
-from ves_twin.thesis.figures.canvas import new_canvas, save_canvas
+from ves_twin.report.picture import new_picture, save_picture
 from ves_twin.thesis.figures.chapter_4_map import STYLES
 from ves_twin.thesis.figures.chapter_4_shipped import shipped
 from ves_twin.thesis.figures.figure import FigureResult
@@ -19,7 +19,7 @@ def draw_figure_4_2(plant: Plant, folder: Path, quick: bool) -> FigureResult:
     procedure = shipped("coupling_map_paths", CouplingMapPaths)
     if quick:
         procedure = procedure.model_copy(update={"rest": 3.0})
-    figure = new_canvas(7.0, 3.8)
+    figure = new_picture(3.8)
     axes = figure.subplots()
     numbers: dict[str, float] = {}
     ideal, rig = procedure.runs(plant), procedure.rig_runs(plant, bare=()).emulated
@@ -41,7 +41,7 @@ def draw_figure_4_2(plant: Plant, folder: Path, quick: bool) -> FigureResult:
     )
     axes.grid(alpha=0.3)
     axes.legend(fontsize=8)
-    png = save_canvas(figure, folder / "fig-4-2.png")
+    png = save_picture(figure, folder / "fig-4-2.png")
     notes = ("start and end are a choice: those of the thesis are lost",)
     title = "Energy transferred to the flexible beam for two motions"
     return FigureResult("fig-4-2", title, png, numbers, notes)

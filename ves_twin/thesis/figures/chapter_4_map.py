@@ -12,7 +12,7 @@ from ves_twin.planning.coupling_map import CouplingMap, coupling_map
 from ves_twin.planning.puma import puma_chain
 from ves_twin.plant.plant import Plant
 from ves_twin.procedures.coupling_map_paths import CouplingMapPaths
-from ves_twin.thesis.figures.canvas import new_canvas, save_canvas
+from ves_twin.report.picture import new_picture, save_picture
 from ves_twin.thesis.figures.chapter_4_shipped import shipped
 from ves_twin.thesis.figures.figure import FigureResult
 from ves_twin.types import FloatArray
@@ -46,7 +46,7 @@ def draw_figure_4_1(plant: Plant, folder: Path, quick: bool) -> FigureResult:
     }
     shades = np.concatenate([face.most.ravel() for face in maps.values()])
     span = (float(shades.min()), float(shades.max()))
-    figure = new_canvas(11.0, 4.2)
+    figure = new_picture(4.2, 11.0)
     numbers: dict[str, float] = {}
     for axes, (name, face) in zip(figure.subplots(1, 3), maps.items(), strict=True):
         _draw_lines(axes, face, span)
@@ -70,7 +70,7 @@ def draw_figure_4_1(plant: Plant, folder: Path, quick: bool) -> FigureResult:
             axes.text(start[0] - 4, start[1] + 1, "I", fontsize=12)
             axes.text(end[0] + 1, end[1] - 4, "F", fontsize=12)
             axes.legend(fontsize=8, loc="upper right")
-    png = save_canvas(figure, folder / "fig-4-1.png")
+    png = save_picture(figure, folder / "fig-4-1.png")
     notes = (
         "start and end are a choice: those of the thesis are lost",
         "Q in the form 'compliance'; the thesis does not print Q",

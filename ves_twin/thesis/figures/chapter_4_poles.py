@@ -8,7 +8,7 @@ from ves_twin.planning.flexible_base import HIGH_GAINS, PPED_GAINS, JointGains
 from ves_twin.planning.pped import damping_estimator
 from ves_twin.plant.plant import Plant
 from ves_twin.procedures.pped_release import PpedRelease
-from ves_twin.thesis.figures.canvas import new_canvas, save_canvas
+from ves_twin.report.picture import new_picture, save_picture
 from ves_twin.thesis.figures.chapter_4_shipped import shipped
 from ves_twin.thesis.figures.figure import FigureResult
 
@@ -26,7 +26,7 @@ def draw_figure_4_5(plant: Plant, folder: Path, quick: bool) -> FigureResult:
 def _draw(plant: Plant, folder: Path, name: str, title: str, gains: JointGains) -> FigureResult:
     procedure = shipped("pped_release", PpedRelease)
     poles = procedure.builder(plant, printed=True)(gains).poles()
-    figure = new_canvas(7.0, 3.8)
+    figure = new_picture(3.8)
     wide, near = figure.subplots(1, 2)
     for axes in (wide, near):
         axes.plot(poles.real, poles.imag, "x", color="C0", ms=7)
@@ -46,6 +46,6 @@ def _draw(plant: Plant, folder: Path, name: str, title: str, gains: JointGains) 
     for k, pole in enumerate(poles[poles.imag >= 0], 1):
         numbers[f"pole {k}, real [1/s]"] = float(pole.real)
         numbers[f"pole {k}, imaginary [1/s]"] = float(pole.imag)
-    png = save_canvas(figure, folder / f"{name}.png")
+    png = save_picture(figure, folder / f"{name}.png")
     notes = ("printed inertias and base matrices, B46 = 0 (errata E-18, E-28)",)
     return FigureResult(name, title, png, numbers, notes)

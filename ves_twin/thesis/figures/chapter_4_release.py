@@ -10,7 +10,7 @@ import numpy as np
 from ves_twin.planning.flexible_base import HIGH_GAINS, PPED_GAINS
 from ves_twin.plant.plant import Plant
 from ves_twin.procedures.pped_release import CYCLE, PpedRelease, Release
-from ves_twin.thesis.figures.canvas import new_canvas, save_canvas
+from ves_twin.report.picture import new_picture, save_picture
 from ves_twin.thesis.figures.chapter_4_shipped import shipped
 from ves_twin.thesis.figures.figure import FigureResult
 from ves_twin.types import FloatArray
@@ -59,7 +59,7 @@ def _draw(
 ) -> FigureResult:
     procedure = shipped("pped_release", PpedRelease)
     sets = {"pped": PPED_GAINS, "high": HIGH_GAINS, "energy": procedure.least_energy(plant)}
-    figure = new_canvas(7.0, 3.8)
+    figure = new_picture(3.8)
     axes = figure.subplots()
     numbers: dict[str, float] = {}
     for kind, (colour, label) in STYLES.items():
@@ -75,6 +75,6 @@ def _draw(
     axes.set_title(f"Figure {name[4:]}: release from (0.1, 0.1, 0.1) m", fontsize=10)
     axes.grid(alpha=0.3)
     axes.legend(fontsize=8)
-    png = save_canvas(figure, folder / f"{name}.png")
+    png = save_picture(figure, folder / f"{name}.png")
     notes = ("linear dynamics with the printed inertias; the third curve is not in the thesis",)
     return FigureResult(name, title, png, numbers, notes)

@@ -7,7 +7,7 @@ from pathlib import Path
 from ves_twin.plant.plant import Plant
 from ves_twin.procedures.coupling_map_paths import CouplingMapPaths
 from ves_twin.procedures.pped_release_emulated import PpedReleaseEmulated
-from ves_twin.thesis.figures.canvas import new_canvas, save_canvas
+from ves_twin.report.picture import new_picture, save_picture
 from ves_twin.thesis.figures.chapter_4_release import SHOWN, STYLES
 from ves_twin.thesis.figures.chapter_4_shipped import shipped
 from ves_twin.thesis.figures.figure import FigureResult
@@ -23,7 +23,7 @@ def draw_figure_4_3(plant: Plant, folder: Path, quick: bool) -> FigureResult:
         procedure = procedure.model_copy(update={"rest": QUICK_REST})
     runs = procedure.rig_runs(plant, bare=("good",))
     good, bare = runs.emulated["good"], runs.uncompensated["good"]
-    figure = new_canvas(7.0, 3.8)
+    figure = new_picture(3.8)
     axes = figure.subplots()
     floor = 1e-4  # of the picture [J]; the noise of the standing platform is below
     for run, colour, label in (
@@ -38,7 +38,7 @@ def draw_figure_4_3(plant: Plant, folder: Path, quick: bool) -> FigureResult:
     axes.set_title("Figure 4-3: the sensor tared once, then left alone", fontsize=10)
     axes.grid(alpha=0.3)
     axes.legend(fontsize=8, loc="lower right")
-    png = save_canvas(figure, folder / "fig-4-3.png")
+    png = save_picture(figure, folder / "fig-4-3.png")
     numbers = {
         "good, peak energy, not compensated [J]": bare.peak,
         "good, peak energy, Model Method [J]": good.peak,
@@ -56,7 +56,7 @@ def draw_emulated_release(plant: Plant, folder: Path, quick: bool) -> FigureResu
     if quick:
         procedure = procedure.model_copy(update={"duration": QUICK_RELEASE})
     runs = {name: procedure.on_rig(plant, g) for name, g in procedure.gain_sets(plant).items()}
-    figure = new_canvas(7.0, 7.6)
+    figure = new_picture(7.6)
     numbers: dict[str, float] = {}
     heads = ("zero gravity", "leg lag alone", "on the rig, Model Method")
     panels = figure.subplots(3, 1, sharex=True, sharey=True)
@@ -74,7 +74,7 @@ def draw_emulated_release(plant: Plant, folder: Path, quick: bool) -> FigureResu
             numbers[f"{name}, energy integral, {head} [J s]"] = value
     panels[0].legend(fontsize=8)
     panels[-1].set_xlabel("time [s]")
-    png = save_canvas(figure, folder / "fig-4-7-emulated.png")
+    png = save_picture(figure, folder / "fig-4-7-emulated.png")
     notes = ("not in the thesis, which left it undone; joints with their own friction",)
     title = "PPED release on the rig, energy"
     return FigureResult("fig-4-7-emulated", title, png, numbers, notes)

@@ -11,8 +11,8 @@ from ves_twin.linear.admittance_loop import AxisModel, admittance_loop, payload_
 from ves_twin.linear.leg_settings import LegSettings
 from ves_twin.linear.stability_limit import stability_limit
 from ves_twin.plant.plant import Plant
-from ves_twin.procedures.bode_plot import new_figure, save_figure
 from ves_twin.procedures.measured_poles import measure_poles
+from ves_twin.report.picture import new_picture, save_picture
 from ves_twin.thesis.figures.bode import HIGH, legs_of, other_form
 from ves_twin.thesis.figures.figure import FigureResult
 from ves_twin.types import ComplexArray
@@ -38,7 +38,7 @@ def draw_figure_5_10(plant: Plant, folder: Path, quick: bool) -> FigureResult:
 def _draw(plant: Plant, folder: Path, quick: bool, name: str, place: FilterPlace) -> FigureResult:
     settings = LegSettings.of_counts(HIGH, 0, place)
     payload = payload_mass(plant)
-    figure = new_figure(4.6)
+    figure = new_picture(4.6)
     axes = figure.subplots()
     numbers = {"stability limit, model over payload mass": stability_limit(plant, settings, RATE)}
     for n, ratio in enumerate(RATIOS):
@@ -69,7 +69,7 @@ def _draw(plant: Plant, folder: Path, quick: bool, name: str, place: FilterPlace
     axes.grid(alpha=0.3)
     axes.legend(fontsize=7, loc="center left")
     axes.set_title(f"Figure {name[4:]}: poles in heave, filter on {place.value}", fontsize=10)
-    png = save_figure(figure, folder / f"{name}.png")
+    png = save_picture(figure, folder / f"{name}.png")
     note = "model of 0.3 Hz and 5 % damping, K2 = 0; of the simulation the strongest pole"
     title = f"VES pole plot, filter on {place.value} signal"
     return FigureResult(name, title, png, numbers, (note,))

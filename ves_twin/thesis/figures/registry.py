@@ -7,11 +7,7 @@ from pathlib import Path
 
 from ves_twin.plant.plant import Plant
 from ves_twin.thesis.figures.bode import draw_figure_5_2, draw_figure_5_12
-from ves_twin.thesis.figures.chapter_4_energy import draw_figure_4_2
-from ves_twin.thesis.figures.chapter_4_map import draw_figure_4_1
-from ves_twin.thesis.figures.chapter_4_poles import draw_figure_4_4, draw_figure_4_5
-from ves_twin.thesis.figures.chapter_4_release import draw_figure_4_6, draw_figure_4_7
-from ves_twin.thesis.figures.chapter_4_rig import draw_emulated_release, draw_figure_4_3
+from ves_twin.thesis.figures.chapter_4 import CHAPTER_4
 from ves_twin.thesis.figures.figure import FigureResult
 from ves_twin.thesis.figures.leg_filter import draw_figure_5_3, draw_figure_5_5
 from ves_twin.thesis.figures.poles import draw_figure_5_8, draw_figure_5_10
@@ -19,14 +15,7 @@ from ves_twin.thesis.figures.positioning_error import draw_figure_5_11
 from ves_twin.thesis.figures.step import draw_figure_5_13
 
 FIGURES: dict[str, Callable[[Plant, Path, bool], FigureResult]] = {
-    "fig-4-1": draw_figure_4_1,
-    "fig-4-2": draw_figure_4_2,
-    "fig-4-3": draw_figure_4_3,
-    "fig-4-4": draw_figure_4_4,
-    "fig-4-5": draw_figure_4_5,
-    "fig-4-6": draw_figure_4_6,
-    "fig-4-7": draw_figure_4_7,
-    "fig-4-7-emulated": draw_emulated_release,
+    **CHAPTER_4,
     "fig-5-2": draw_figure_5_2,
     "fig-5-3": draw_figure_5_3,
     "fig-5-5": draw_figure_5_5,

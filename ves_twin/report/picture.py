@@ -1,0 +1,34 @@
+"""new_picture and save_picture: a matplotlib figure as PNG, without a display or global state."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from ves_twin.errors import FileAccessError
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+WIDTH, DPI = 7.0, 110
+"""Width of a picture [inch] and its resolution."""
+
+
+def new_picture(height: float, width: float = WIDTH) -> Figure:
+    """An empty figure of a size in inches."""
+    from matplotlib.figure import Figure  # slow to import
+
+    return Figure(figsize=(width, height), layout="constrained")
+
+
+def save_picture(figure: Figure, path: Path) -> Path:
+    """Write a figure as PNG.
+
+    Raises:
+        FileAccessError: the file cannot be written.
+    """
+    try:
+        figure.savefig(path, dpi=DPI)
+    except OSError as error:
+        raise FileAccessError(f"cannot write {path}: {error.strerror}") from None
+    return path
