@@ -46,6 +46,7 @@ def test_vibration_claim_fails_without_the_legs_flexibility():
     assert bench(16.0, changes=RIGID | STIFF_OIL).vibration().growth < 0.0
 
 
+@pytest.mark.slow
 def test_filter_claims_fail_with_the_notch_elsewhere():
     """An octave down the error's limit leaves its range; an octave up feedback is hardly wider."""
     assert 0.45 <= share(19.0, "error") <= 0.65
@@ -54,6 +55,7 @@ def test_filter_claims_fail_with_the_notch_elsewhere():
     assert share(19.0, "feedback", edge=18.0) > 0.75 * share(19.0, "error", edge=18.0)
 
 
+@pytest.mark.slow
 def test_rigid_plant_has_the_limits_of_one_axis():
     """What the full plant adds to the one axis is compliance: without it they agree to 5 %."""
     from ves_twin.procedures.one_axis import OneAxis
