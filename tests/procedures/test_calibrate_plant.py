@@ -41,6 +41,22 @@ def test_fit_brings_a_plant_back_into_its_claims(tmp_path):
     assert 'grade = "calibrated"' in (tmp_path / "entries.toml").read_text()
 
 
+@pytest.mark.parametrize("name", ["calibrate_plant", "calibrate_plant_pressure"])
+def test_shipped_files_name_numbers_and_claims_that_exist(name, tmp_path, monkeypatch):
+    """Everything up to the first measurement, for which there is no time here."""
+
+    class ReachedError(Exception):
+        pass
+
+    def stop(*arguments):
+        raise ReachedError
+
+    procedure = load_procedure(name, {"workers": 1})
+    monkeypatch.setattr("ves_twin.procedures.calibrate_plant.measure_claims", stop)
+    with pytest.raises(ReachedError):
+        procedure.carry_out(Conduct(tmp_path))
+
+
 def test_start_outside_its_range_is_refused(tmp_path):
     procedure = load_procedure("calibrate_plant", SHORT | {"gains.low": 30.0})
     with pytest.raises(InvalidInputError, match=r"gain\.low: got 30"):

@@ -91,7 +91,8 @@ class CalibratePlant(Procedure):
         """Fit, say what pulls against what, and write the plant and its entries."""
         plant = conduct.plant or Plant.load(self.plant)
         for knob in self.knobs:
-            known = {*GAINS, *(n for n, p in plant.parameters.items() if not p.value.shape)}
+            single = (n for n, p in plant.parameters.items() if p.per_leg or not p.value.shape)
+            known = {*GAINS, *single}
             if knob.name not in known:
                 raise UnknownNameError("number to fit", knob.name, known)
         start = np.log([self._present(plant, knob.name) for knob in self.knobs])

@@ -92,7 +92,7 @@ def _entries(fit: Fit) -> str:
     for name, value in _of_plant(fit):
         parameter = fit.plant.parameters[name]
         spread = fit.spread[fit.names.index(name)]
-        sd = float(parameter.sd) if np.isnan(spread) else float(spread)
+        sd = float(np.max(parameter.sd)) if np.isnan(spread) else float(spread)
         low = f"low = {parameter.low:g}\n" if np.isfinite(parameter.low) else ""
         blocks.append(
             f'[{name}]\nvalue = {value:.4g}\nunit = "{parameter.unit}"\nsd = {sd:.2g}\n{low}'
