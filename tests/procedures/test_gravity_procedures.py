@@ -121,7 +121,7 @@ def test_a_calibration_of_another_sensor_is_refused_by_a_run():
 
 
 def test_a_file_without_the_model_is_refused():
-    with pytest.raises(InvalidInputError, match=r"gravity\.file is for method 'model'"):
+    with pytest.raises(InvalidInputError, match=r"gravity\.file is for 'model' or 'learned'"):
         vt.Scenario.load("beam_model_method", {"gravity.method": "truth"})
 
 

@@ -206,7 +206,7 @@ def test_an_arm_has_a_path_or_moves_and_a_path_leaves_its_start():
     arm = Scenario.load(SINE, {"arm": {"path": path}}).arm
     assert arm.path.through == ((math.radians(10), 0.0, 0.0),)
     both = {"arm": {"path": path, "moves": MOVES}}
-    refused(lambda: Scenario.load(SINE, both), "arm.moves or arm.path")
+    refused(lambda: Scenario.load(SINE, both), "arm.moves, arm.path and arm.operator")
     still = {"arm": {"path": {**path, "through": [[0, 0, 0]]}}}
     refused(lambda: Scenario.load(SINE, still), "never leaves")
     refused(lambda: Scenario.load(SINE, {"arm": {"path": {**path, "through": []}}}), "through")

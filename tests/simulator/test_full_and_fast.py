@@ -17,7 +17,10 @@ UNSTABLE = {"beam_horizontal_corrected"}
 
 # Largest difference of truth.pose [mm], [mrad] and of sensor.wrench [N], [N m]: a third above what
 # was measured for seed 0 (docs/fidelity.md). Drift without a spring keeps every difference.
+# The operator's quick moves shake the bending legs at 12 Hz, which fast has no room for.
 AGREEMENT = {
+    "beam_model_method": (0.46, 0.074, 20.0, 10.6),
+    "teleoperation": (0.47, 0.073, 147.0, 72.0),
     "beam_horizontal_truth": (0.48, 0.08, 20.0, 10.6),
     "beam_vertical_truth": (0.42, 0.085, 60.0, 33.0),
     "bent_beam_truth": (0.72, 0.09, 8.4, 4.5),

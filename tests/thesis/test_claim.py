@@ -16,6 +16,7 @@ from ves_twin.thesis.evaluators import (
     chapter_3,
     chapter_4,
     chapter_5,
+    gravity_methods,
 )
 from ves_twin.thesis.evaluators.registry import ANSWERS
 from ves_twin.thesis.tolerance import Comparison
@@ -36,6 +37,7 @@ def test_each_claim_is_answered_exactly_once(claims):
         appendix_a.APPENDIX_A,
         appendix_b.APPENDIX_B,
         appendix_c_to_f.APPENDICES_C_TO_F,
+        gravity_methods.GRAVITY_METHODS,
     )
     assert sorted(name for part in parts for name in part) == IDS
     assert set(ANSWERS) == set(IDS)

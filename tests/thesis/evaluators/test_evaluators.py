@@ -60,6 +60,7 @@ def test_an_evaluation_repeats_to_the_bit_and_has_values_to_compare(claims, nomi
 
 
 @pytest.mark.slow
+@pytest.mark.timeout(1200)  # 132 claims: some 100 s alone on two cores
 def test_every_claim_is_computed_and_its_commands_exist():
     context = Context.nominal(quick=True)
     claims = load_claims()
