@@ -156,3 +156,48 @@ def test_info_names_the_packages_without_loading_them(install, capsys):
     install("bobbing", {"ves_twin.controllers": {"bobbing": "bobbing:Heave"}}, "def (")
     assert main(["info"]) == 0
     assert "ves_twin.controllers: bobbing  bobbing 1.2 (bobbing:Heave)" in capsys.readouterr().out
+
+
+STICKY = '''
+from dataclasses import dataclass
+from typing import ClassVar
+
+from ves_twin.effects.effect import LEGS, Effect
+from ves_twin.effects.magnitude import Magnitude
+
+
+@dataclass(frozen=True)
+class Sticky(Effect):
+    """A leg transducer reads too long."""
+
+    length: float = 0.0
+
+    kind: ClassVar[str] = "sticky"
+    targets: ClassVar[tuple[str, ...]] = LEGS
+    magnitudes: ClassVar[tuple[Magnitude, ...]] = (Magnitude("length", "m", 0.0, 1e-3, 0.1),)
+    channels: ClassVar[tuple[str, ...]] = ("leg.length",)
+    source: ClassVar[str] = "a test"
+
+    def edit_loop(self, parameters):
+        parameters["transducer"]["home"][self.index] += self.length
+
+
+class Vague(Effect):
+    pass
+'''
+
+
+def test_an_installed_effect_acts_like_a_built_in_one(install):
+    install("bobbing", {"ves_twin.effects": {"sticky": "bobbing:Sticky"}}, STICKY)
+    changes = SHORT | {"run.noise": False}
+    plain = vt.simulate(vt.Scenario.load("position_sine", changes))
+    key = {"effects.sticky.leg.2.length": 0.002}
+    moved = vt.simulate(vt.Scenario.load("position_sine", changes | key))
+    assert moved.info.effects == {"sticky": {"leg.2": {"length": 0.002}}}
+    assert np.abs(moved["truth.pose"] - plain["truth.pose"]).max() > 1e-4
+
+
+def test_an_installed_effect_that_declares_nothing_is_one_line(install):
+    install("bobbing_vague", {"ves_twin.effects": {"vague": "bobbing_vague:Vague"}}, STICKY)
+    with pytest.raises(PluginError, match=r"'vague' of bobbing_vague 1\.2 .* lacks kind, targets"):
+        vt.Simulator(None, vt.Scenario.load("position_sine", {"effects.vague.rig.x": 1.0}), 0)

@@ -54,12 +54,12 @@ def general_content() -> dict[str, object]:
         "versions": versions(),
         "plants": {p.stem: Plant.load(p.stem).hash for p in sorted(models.glob("*.toml"))},
         "emulated systems": [p.stem for p in sorted((models / "emulated").glob("*.toml"))],
-        "effects": {kind: ", ".join(_sizes(effect)) for kind, effect in EFFECTS.items()},
+        "effects": {kind: ", ".join(_sizes(EFFECTS[kind])) for kind in EFFECTS.built_in},
         "platform controllers": list(PLATFORM_CONTROLLERS),
         "gravity compensations": list(GRAVITY_COMPENSATIONS),
         "plugins": {
             f"{registry.group}: {name}": origin
-            for registry in (PLATFORM_CONTROLLERS, GRAVITY_COMPENSATIONS)
+            for registry in (PLATFORM_CONTROLLERS, GRAVITY_COMPENSATIONS, EFFECTS)
             for name, origin in registry.plugins().items()
         },
         "scenarios": list(scenario_questions()),

@@ -16,6 +16,7 @@ from ves_twin.effects import (
 )
 from ves_twin.effects.effect import Effect
 from ves_twin.errors import InvalidInputError, UnknownNameError
+from ves_twin.plugins import Registry, lacks
 
 _KINDS: tuple[type[Effect], ...] = (
     valve.ValveNull,
@@ -49,8 +50,20 @@ _KINDS: tuple[type[Effect], ...] = (
     arm.EncoderOffset,
 )
 
-EFFECTS: dict[str, type[Effect]] = {kind.kind: kind for kind in _KINDS}
-"""Kind -> class."""
+
+def _problem(loaded: object) -> str | None:
+    """What an installed class lacks to be a kind of effect."""
+    wrong = lacks(Effect)(loaded)
+    absent = [name for name in _DECLARED if not hasattr(loaded, name)]
+    return wrong or (f"lacks {', '.join(absent)}" if absent else None)
+
+
+_DECLARED = ("kind", "targets", "magnitudes", "channels", "source")
+
+EFFECTS: Registry[type[Effect]] = Registry(
+    "ves_twin.effects", {kind.kind: kind for kind in _KINDS}, _problem
+)
+"""Kind -> class; installed packages add kinds by entry points of this group."""
 
 
 def build_effect(kind: str, target: str, values: Mapping[str, object]) -> Effect:
