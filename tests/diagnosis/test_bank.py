@@ -13,6 +13,7 @@ from ves_twin.diagnosis.runs import Runs
 from ves_twin.diagnosis.screen import Screen
 from ves_twin.diagnosis.whitening import whitening_declared
 from ves_twin.errors import InvalidInputError, UnknownNameError
+from ves_twin.workers import Workers
 
 
 @pytest.fixture(scope="module")
@@ -26,7 +27,7 @@ def test_signatures_are_the_change_at_each_size(runs):
     for k in bank.entries(friction):
         change = runs.forward.simulate(runs.programmes[0], {"friction.size": bank.sizes[k][0]})
         nominal = runs.forward.simulate(runs.programmes[0], {})
-        assert bank.signatures[k] == pytest.approx(change - nominal, abs=1e-5)
+        assert bank.signature(k) == pytest.approx(change - nominal, abs=1e-5)
 
 
 def test_the_screen_finds_the_pair_that_was_added(runs):
@@ -35,7 +36,7 @@ def test_the_screen_finds_the_pair_that_was_added(runs):
     names = [h.effect for h in bank.hypotheses]
     a = next(k for k in bank.entries(names.index("drift")) if bank.sizes[k][0] > 0.01)
     b = next(k for k in bank.entries(names.index("bump")) if bank.sizes[k][0] > 0.01)
-    z = screen.signatures[:, a] + 1.3 * screen.signatures[:, b]
+    z = screen.whitening.apply(bank.signature(a) + 1.3 * bank.signature(b))
     first, second = screen.pairs(z, 3)[0]
     assert {names[first.hypothesis], names[second.hypothesis]} == {"drift", "bump"}
     # the pair explains all of it: its score is the whole of <z, z>
@@ -45,19 +46,20 @@ def test_the_screen_finds_the_pair_that_was_added(runs):
 def test_a_cached_bank_is_the_same_and_another_programme_is_another_bank(runs, tmp_path):
     built = cached_bank(runs, tmp_path, lambda: build_bank(runs))
     read = cached_bank(runs, tmp_path, lambda: pytest.fail("built twice"))
-    assert np.array_equal(read.signatures, built.signatures)
+    assert np.array_equal(read.bent, built.bent)
+    assert np.array_equal(read.factor, built.factor)
     assert np.array_equal(read.owner, built.owner)
     assert all(np.array_equal(a, b) for a, b in zip(read.sizes, built.sizes, strict=True))
     other = Runs(Toy(), (programme(2),), (0, 1))
     assert not np.array_equal(
-        cached_bank(other, tmp_path, lambda: build_bank(other)).signatures, built.signatures
+        cached_bank(other, tmp_path, lambda: build_bank(other)).bent, built.bent
     )
     assert len(list(tmp_path.iterdir())) == 2
 
 
 def test_processes_change_nothing(runs):
-    two = Runs(Toy(), (programme(),), (0, 1), workers=2)
-    assert np.array_equal(build_bank(two).signatures, build_bank(runs).signatures)
+    two = Runs(Toy(), (programme(),), (0, 1), Workers(2))
+    assert np.array_equal(build_bank(two).bent, build_bank(runs).bent)
     alone = null_thresholds(build_bank(runs), whitening_declared(runs), 6, 0.01)
     shared = null_thresholds(build_bank(two), whitening_declared(two), 6, 0.01)
     assert sorted(alone.effects) == pytest.approx(sorted(shared.effects))

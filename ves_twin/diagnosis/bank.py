@@ -5,7 +5,7 @@ from __future__ import annotations
 import hashlib
 import os
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -23,7 +23,7 @@ STRAIGHT = 4.0
 LADDER = 6.0
 """Step between the sizes of a cause that is linear throughout; scaling bridges a factor of 8."""
 
-SCHEMA = 1
+SCHEMA = 2
 """Version of the cached file; another one is built anew."""
 
 
@@ -33,23 +33,36 @@ class Bank:
 
     Derivatives at nominal would miss friction, deadband and everything one-sided.
 
+    Each entry is a shape times a factor: a column of the base where the cause is a commissioning
+    parameter too and proportional to it, else a shape of its own.
+
     Attributes:
         base: prediction and nuisance columns where nothing departs.
         hypotheses: the library.
         owner: hypothesis of each entry (entries,).
         sizes: departure of the hypothesis's parameters of each entry.
-        signatures: change of the channels (entries, rows, c).
+        shape: which shape each entry is: columns of the base first, then `bent` (entries,).
+        factor: of that shape (entries,).
+        bent: change of the channels of those that are no multiple of a column (b, rows, c).
     """
 
     base: Linearisation
     hypotheses: tuple[Hypothesis, ...]
     owner: IntArray
     sizes: tuple[FloatArray, ...]
-    signatures: SingleArray
+    shape: IntArray
+    factor: FloatArray
+    bent: SingleArray
 
     def entries(self, hypothesis: int) -> IntArray:
         """Entries of one hypothesis."""
         return np.flatnonzero(self.owner == hypothesis)
+
+    def signature(self, entry: int) -> SingleArray:
+        """Change of the channels of one entry (rows, c)."""
+        own = int(self.shape[entry]) - len(self.base.columns)
+        shape = self.base.columns[own] if own < 0 else self.bent[own]
+        return np.asarray(np.float32(self.factor[entry]) * shape)
 
     def without(self, labels: tuple[str, ...]) -> Bank:
         """The bank with some causes left out, by effect or by effect@target."""
@@ -59,10 +72,14 @@ class Bank:
             if h.effect not in labels and h.label not in labels
         ]
         rows = np.flatnonzero(np.isin(self.owner, kept))
-        owner = np.searchsorted(np.array(kept, int), self.owner[rows])
-        hypotheses = tuple(self.hypotheses[i] for i in kept)
-        sizes = tuple(self.sizes[i] for i in rows)
-        return Bank(self.base, hypotheses, owner, sizes, self.signatures[rows])
+        return replace(
+            self,
+            hypotheses=tuple(self.hypotheses[i] for i in kept),
+            owner=np.searchsorted(np.array(kept, int), self.owner[rows]),
+            sizes=tuple(self.sizes[i] for i in rows),
+            shape=self.shape[rows],
+            factor=self.factor[rows],
+        )
 
 
 def build_bank(
@@ -100,27 +117,37 @@ def build_bank(
                 sizes.append(moved)
     stacks = runs.many(shifts, progress, "signatures") - base.prediction
     kept = np.flatnonzero(np.all(np.isfinite(stacks), axis=(1, 2)))
-    straight, straight_owner, straight_sizes = _straight(base, library)
+    straight = _straight(base, library)
+    count = len(base.columns)
     return Bank(
         base,
         library,
-        np.array([*(owner[i] for i in kept), *straight_owner], int),
-        (*(sizes[i] for i in kept), *straight_sizes),
-        np.concatenate([stacks[kept], straight]),
+        np.array([*(owner[i] for i in kept), *straight.owner], int),
+        (*(sizes[i] for i in kept), *straight.sizes),
+        np.array([*range(count, count + len(kept)), *straight.column], int),
+        np.array([*np.ones(len(kept)), *straight.factor]),
+        stacks[kept],
     )
 
 
-def _straight(
-    base: Linearisation, library: tuple[Hypothesis, ...]
-) -> tuple[SingleArray, list[int], list[FloatArray]]:
+@dataclass(frozen=True)
+class _Straight:
+    """Entries that are multiples of a nuisance column."""
+
+    owner: list[int]
+    sizes: list[FloatArray]
+    column: list[int]
+    factor: list[float]
+
+
+def _straight(base: Linearisation, library: tuple[Hypothesis, ...]) -> _Straight:
     """Linear signatures of causes that are commissioning parameters too.
 
     Where a tolerance bends the prediction by more than noise, the finite signature holds what its
     own nuisance column cannot explain, though a strong commissioning error would bend as well. A
     record corrected for that is linear, and only the column itself fits it.
     """
-    runs = base.runs
-    found, owner, sizes = [base.columns[:0]], [], []
+    runs, found = base.runs, _Straight([], [], [], [])
     for h, hypothesis in enumerate(library):
         rows = _column(runs, hypothesis)
         if rows is None:
@@ -128,10 +155,11 @@ def _straight(
         sd = runs.sd[runs.nuisances[rows]]
         for spreads in _ladder(hypothesis, float(sd[0])):
             for sign in hypothesis.signs:
-                found.append(np.float32(sign * spreads) * base.columns[rows])
-                owner.append(h)
-                sizes.append(sign * spreads * sd)
-    return np.concatenate(found), owner, sizes
+                found.owner.append(h)
+                found.sizes.append(sign * spreads * sd)
+                found.column.append(int(rows[0]))
+                found.factor.append(sign * spreads)
+    return found
 
 
 def _column(runs: Runs, hypothesis: Hypothesis) -> IntArray | None:
@@ -166,7 +194,9 @@ def cached_bank(runs: Runs, folder: Path | None, build: Callable[[], Bank]) -> B
         columns=bank.base.columns,
         owner=bank.owner,
         sizes=np.concatenate(bank.sizes),
-        signatures=bank.signatures,
+        shape=bank.shape,
+        factor=bank.factor,
+        bent=bank.bent,
     )
     return bank
 
@@ -199,4 +229,5 @@ def _read(path: Path, runs: Runs) -> Bank:
         widths = [len(runs.forward.hypotheses[i].parameters) for i in owner]
         sizes = tuple(np.split(content["sizes"], np.cumsum(widths)[:-1]))
         base = Linearisation(runs, runs.origin, content["prediction"], content["columns"])
-        return Bank(base, runs.forward.hypotheses, owner, sizes, content["signatures"])
+        shape, factor, bent = (content[name] for name in ("shape", "factor", "bent"))
+        return Bank(base, runs.forward.hypotheses, owner, sizes, shape, factor, bent)

@@ -8,12 +8,13 @@ import numpy as np
 from scipy.stats import norm
 
 from ves_twin.diagnosis.adequacy import cells
+from ves_twin.diagnosis.assess import Assessment
 from ves_twin.diagnosis.explain import Explanation
 from ves_twin.diagnosis.findable import findable_sizes, twins
 from ves_twin.diagnosis.forward import Hypothesis
 from ves_twin.diagnosis.gain import Gain
 from ves_twin.diagnosis.leftover import Leftover, describe
-from ves_twin.diagnosis.null import Assessment, Thresholds
+from ves_twin.diagnosis.null import Thresholds
 from ves_twin.diagnosis.observe import Observed
 from ves_twin.diagnosis.refine import Fit, bare_residual
 from ves_twin.diagnosis.settings import Settings

@@ -5,13 +5,14 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import replace
 
+from ves_twin.diagnosis.assess import assess, pull_limit
 from ves_twin.diagnosis.bank import build_bank, cached_bank
 from ves_twin.diagnosis.compose import Findings, compose
 from ves_twin.diagnosis.explain import Explanation, explain
 from ves_twin.diagnosis.forward import Forward, Programme
 from ves_twin.diagnosis.gain import Gain, held_out_gain
 from ves_twin.diagnosis.next_experiment import separations
-from ves_twin.diagnosis.null import assess, cached_thresholds, pull_limit
+from ves_twin.diagnosis.null import cached_thresholds
 from ves_twin.diagnosis.observe import observe
 from ves_twin.diagnosis.runs import Progress, Runs, silent
 from ves_twin.diagnosis.settings import Settings
@@ -20,6 +21,7 @@ from ves_twin.diagnosis.verdict import Basis, Kind, Proposal, Verdict
 from ves_twin.diagnosis.whitening import Whitening, whitening_declared, whitening_measured
 from ves_twin.errors import UnknownNameError
 from ves_twin.recording.recording import Recording
+from ves_twin.workers import Workers
 
 MOST = 0.5
 """Share of the held-out excess that a part of the truth must take, its interval's lower end."""
@@ -63,39 +65,44 @@ def diagnose(
     for name in exclude:
         if name not in known:
             raise UnknownNameError("cause", name, known)
-    seen = observe(forward, recordings, chosen.workers)
-    whitening = _whitening(seen.runs, standstill)
-    built = cached_bank(seen.runs, chosen.cache, lambda: build_bank(seen.runs, progress=progress))
-    bank = built.without(tuple(exclude))
-    limits = cached_thresholds(bank, whitening, chosen, progress)
-    pull = pull_limit(bank, chosen.alpha)
-    first = assess(seen.measured, bank, whitening, limits.effect, limits.misfit, pull)
-    scale = _scale(forward, commissioning)
-    basis = Basis(
-        noise="declared" if standstill is None else "measured",
-        tolerances="declared" if scale is None else "measured",
-        held_out="measured" if held_out else "none",
-    )
-    findings = Findings(seen, first, limits, chosen, naming_limit(bank, scale), scale)
-    if not first.exceeds(limits.effect, limits.misfit, pull):
-        return compose(findings, Kind.NOTHING, basis, tuple(exclude))
-    found = explain(first, limits, chosen, progress)
-    gains = _gains(forward, held_out, standstill, found, chosen) if found and held_out else []
-    gain = gains[0] if gains else None
-    kind = _kind(found, gains)
-    proposals = _next(seen.runs, found, next_programmes) if kind is Kind.AMBIGUOUS else ()
-    findings = replace(findings, found=found, gain=gain, proposals=proposals)
-    return compose(findings, kind, basis, tuple(exclude))
+    with Workers(chosen.workers) as workers:
+        seen = observe(forward, recordings, workers)
+        whitening = _whitening(seen.runs, standstill)
+        built = cached_bank(
+            seen.runs, chosen.cache, lambda: build_bank(seen.runs, progress=progress)
+        )
+        bank = built.without(tuple(exclude))
+        limits = cached_thresholds(bank, whitening, chosen, progress)
+        pull = pull_limit(bank, chosen.alpha)
+        first = assess(seen.measured, bank, whitening, limits.effect, limits.misfit, pull)
+        scale = _scale(forward, commissioning, workers)
+        basis = Basis(
+            noise="declared" if standstill is None else "measured",
+            tolerances="declared" if scale is None else "measured",
+            held_out="measured" if held_out else "none",
+        )
+        findings = Findings(seen, first, limits, chosen, naming_limit(bank, scale), scale)
+        if not first.exceeds(limits.effect, limits.misfit, pull):
+            return compose(findings, Kind.NOTHING, basis, tuple(exclude))
+        found = explain(first, limits, chosen, progress)
+        gains = []
+        if found and held_out:
+            gains = _gains(forward, held_out, standstill, found, chosen, workers)
+        gain = gains[0] if gains else None
+        kind = _kind(found, gains)
+        proposals = _next(seen.runs, found, next_programmes) if kind is Kind.AMBIGUOUS else ()
+        findings = replace(findings, found=found, gain=gain, proposals=proposals)
+        return compose(findings, kind, basis, tuple(exclude))
 
 
 def _whitening(runs: Runs, standstill: Recording | None) -> Whitening:
     return whitening_declared(runs) if standstill is None else whitening_measured(runs, standstill)
 
 
-def _scale(forward: Forward, commissioning: Sequence[Recording]) -> float | None:
+def _scale(forward: Forward, commissioning: Sequence[Recording], workers: Workers) -> float | None:
     if len(commissioning) < FEWEST:
         return None
-    rigs = [observe(forward, [recording]) for recording in commissioning]
+    rigs = [observe(forward, [recording], workers) for recording in commissioning]
     return tolerance_scale([(rig.runs, rig.measured) for rig in rigs])
 
 
@@ -105,9 +112,10 @@ def _gains(
     standstill: Recording | None,
     found: Explanation,
     settings: Settings,
+    workers: Workers,
 ) -> list[Gain]:
     """Gain of the best explanation; of its rivals too, where it leaves something unexplained."""
-    seen = observe(forward, held_out, settings.workers)
+    seen = observe(forward, held_out, workers)
     whitening = _whitening(seen.runs, standstill)
     rivals = [] if found.adequate else [fit for fit in found.fits if fit is not found.best]
     return [

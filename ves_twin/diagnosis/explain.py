@@ -7,9 +7,11 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ves_twin.diagnosis.adequacy import Cell, cells, misfit
+from ves_twin.diagnosis.assess import Assessment, pull_limit
 from ves_twin.diagnosis.bank import build_bank
 from ves_twin.diagnosis.forward import Hypothesis
-from ves_twin.diagnosis.null import Assessment, Thresholds, pull_limit
+from ves_twin.diagnosis.linearise import Linearisation
+from ves_twin.diagnosis.null import Thresholds
 from ves_twin.diagnosis.probability import probabilities
 from ves_twin.diagnosis.refine import Evidence, Fit, bare_residual, refine, residual_about
 from ves_twin.diagnosis.runs import Progress, silent
@@ -22,6 +24,9 @@ HOPELESS = 4.0
 
 LEAST = 0.7
 """Part of the threshold that a cause must take off chi^2: the fit moves the screen's figure."""
+
+CLEAR = 3.0
+"""Times the threshold that a cause must take off chi^2 to make a better fit without it idle."""
 
 PAIRS = 6
 """Pairs of causes that are fitted with the full forward."""
@@ -93,50 +98,91 @@ def explain(
 
 def _singles(desk: _Desk) -> Explanation | None:
     first, settings = desk.first, desk.settings
-    fits = []
+    start = _start(first)
+    jobs, owner = [], []
     for n, suspect in enumerate(first.suspects[: settings.candidates]):
-        desk.progress(n / settings.candidates, "fitting single causes")
         hypothesis = first.screen.bank.hypotheses[suspect.hypothesis]
-        tried = [
-            _fit(first.evidence, (hypothesis,), [sizes], desk, 0)
-            for sizes in _starts(first, suspect)
-        ]
-        fits.append(min(tried, key=lambda fit: fit.chi2))
-    if not fits:
+        for sizes in _starts(first, suspect):
+            jobs.append(_job(first.evidence, (hypothesis,), [sizes], start))
+            owner.append(n)
+    if not jobs:
         return None
-    best = min(fit.chi2 for fit in fits)
-    again = [
-        _again(first.evidence, fit, settings.rounds) for fit in fits if fit.chi2 < HOPELESS * best
+    tried = _refined(jobs, desk, "fitting single causes")
+    fits = [
+        min((f for f, o in zip(tried, owner, strict=True) if o == n), key=lambda fit: fit.chi2)
+        for n in sorted(set(owner))
     ]
-    return _judge(desk, again)
+    return _judge(desk, _settled(first.evidence, fits, desk))
+
+
+@dataclass(frozen=True)
+class _Job:
+    """One fit, as it travels to a process."""
+
+    evidence: Evidence
+    causes: tuple[Hypothesis, ...]
+    shift: FloatArray
+    local: Linearisation
+
+    @staticmethod
+    def run(job: _Job) -> Fit:
+        return refine(job.evidence, job.causes, job.shift, job.local)
+
+
+def _job(
+    evidence: Evidence,
+    causes: tuple[Hypothesis, ...],
+    sizes: list[FloatArray],
+    start: tuple[FloatArray, Linearisation],
+) -> _Job:
+    """From a point and the columns there, with the causes at given sizes."""
+    runs, (shift, local) = evidence.runs, start
+    for cause, size in zip(causes, sizes, strict=True):
+        shift = runs.depart(shift, runs.indices(cause), size)
+    return _Job(evidence, causes, shift, local)
+
+
+def _refined(jobs: list[_Job], desk: _Desk, what: str) -> list[Fit]:
+    fits: list[Fit] = []
+    for fit in desk.first.evidence.runs.workers.map(_Job.run, jobs):
+        desk.progress(len(fits) / len(jobs), what)
+        fits.append(fit)
+    return fits
+
+
+def _start(first: Assessment) -> tuple[FloatArray, Linearisation]:
+    """Commissioning errors as the last look left them, and the newest columns."""
+    if first.commissioning is None:
+        return first.evidence.runs.origin, first.screen.bank.base
+    return first.commissioning.shift, first.commissioning.local
+
+
+def _settled(evidence: Evidence, fits: list[Fit], desk: _Desk) -> list[Fit]:
+    """Fits by columns computed at the leader: what rivals share of the commissioning errors.
+
+    Hopeless rivals stay as they are. Where a rival leads then, once more at its own.
+    """
+    for _ in range(2):
+        leader = min(fits, key=lambda fit: fit.chi2)
+        settled = refine(evidence, leader.causes, leader.shift, leader.local, desk.settings.rounds)
+        near = HOPELESS * settled.chi2
+        others = [fit for fit in fits if fit is not leader]
+        jobs = [_Job(evidence, f.causes, f.shift, settled.local) for f in others if f.chi2 < near]
+        rivals = _refined(jobs, desk, "fitting its rivals")
+        fits = [settled, *rivals, *(fit for fit in others if fit.chi2 >= near)]
+        if all(rival.chi2 >= settled.chi2 for rival in rivals):
+            break
+    return fits
 
 
 def _starts(first: Assessment, suspect: Suspect) -> list[FloatArray]:
     """The screen's scaled size, and the unscaled size of the bank nearest to the record."""
     rows = first.screen.bank.entries(suspect.hypothesis)
-    match = first.screen.projected[:, rows].T @ first.z
+    match = first.screen.match(first.z)[rows]
     nearest = rows[np.argmax(2.0 * match - first.screen.power[rows])]
     other = first.screen.bank.sizes[nearest]
     apart = np.any(np.abs(other - suspect.sizes) > 0.3 * np.abs(suspect.sizes))
     return [suspect.sizes, other] if apart else [suspect.sizes]
-
-
-def _fit(
-    evidence: Evidence,
-    causes: tuple[Hypothesis, ...],
-    sizes: list[FloatArray],
-    desk: _Desk,
-    rounds: int,
-) -> Fit:
-    runs = evidence.runs
-    shift = runs.origin
-    for cause, size in zip(causes, sizes, strict=True):
-        shift = runs.depart(shift, runs.indices(cause), size)
-    return refine(evidence, causes, shift, desk.first.screen.bank.base, rounds)
-
-
-def _again(evidence: Evidence, fit: Fit, rounds: int) -> Fit:
-    return refine(evidence, fit.causes, fit.shift, fit.local, rounds)
 
 
 def _judge(desk: _Desk, fits: list[Fit]) -> Explanation:
@@ -150,7 +196,8 @@ def _judge(desk: _Desk, fits: list[Fit]) -> Explanation:
     evidence = Evidence(runs, first.evidence.measured, own)
     commissioning = _commissioning(desk, evidence, leader)
     near = HOPELESS * leader.chi2
-    ranked = [_again(evidence, fit, 0) for fit in fits if fit.chi2 < near]
+    jobs = [_Job(evidence, fit.causes, fit.shift, fit.local) for fit in fits if fit.chi2 < near]
+    ranked = _refined(jobs, desk, "weighing rivals")
     ranked.sort(key=lambda fit: fit.chi2)
     best = ranked[0]
     allowance = settings.model_error**2 * max(commissioning.chi2 - best.chi2, 0.0)
@@ -178,17 +225,17 @@ def _judge(desk: _Desk, fits: list[Fit]) -> Explanation:
 
 
 def _commissioning(desk: _Desk, evidence: Evidence, leader: Fit) -> Fit:
-    """The best fit without a cause, from nominal, from the first look, and beside the leader.
+    """The best fit without a cause, from the first look, and beside the leader.
 
-    Beside the leader: what it moves, where commissioning may have moved it too, stays.
+    Beside the leader: what it moves, where commissioning may have moved it too, stays. Columns are
+    computed anew only where the cause takes off little.
     """
     first, runs = desk.first, evidence.runs
-    starts = [runs.origin, np.where(runs.sd > 0.0, leader.shift, 0.0)]
-    if first.commissioning is not None:
-        starts.append(first.commissioning.shift)
-    base = first.screen.bank.base
-    tried = [refine(evidence, (), start, base) for start in starts]
-    best = min(tried, key=lambda fit: fit.chi2)
+    beside = _Job(evidence, (), np.where(runs.sd > 0.0, leader.shift, 0.0), leader.local)
+    alone = _Job(evidence, (), *_start(first))
+    best = min(_refined([beside, alone], desk, "commissioning errors alone"), key=lambda f: f.chi2)
+    if best.chi2 - leader.chi2 > CLEAR * desk.thresholds.effect:
+        return best
     return refine(evidence, (), best.shift, best.local, desk.settings.rounds)
 
 
@@ -229,13 +276,17 @@ def _pairs(desk: _Desk, single: Explanation) -> Explanation | None:
                 propose((*fit.causes, rest[suspect.hypothesis]), [fit.sizes, suspect.sizes])
     for one, two in first.screen.pairs(first.z, PAIRS):
         propose((library[one.hypothesis], library[two.hypothesis]), [one.sizes, two.sizes])
-    fits = []
-    for n, (causes, sizes) in enumerate(list(starts.values())[:PAIRS]):
-        desk.progress(n / PAIRS, "fitting pairs of causes")
-        fits.append(_fit(single.evidence, causes, sizes, desk, desk.settings.rounds))
-    if not fits:
+    best = single.best
+    errors = best.shift.copy()
+    errors[best.active[: len(best.sizes)]] = 0.0
+    jobs = [
+        _job(single.evidence, causes, sizes, (errors, best.local))
+        for causes, sizes in list(starts.values())[:PAIRS]
+    ]
+    if not jobs:
         return None
-    double = _judge(desk, fits)
+    fits = _refined(jobs, desk, "fitting pairs of causes")
+    double = _judge(desk, _settled(single.evidence, fits, desk))
     fall = single.best.chi2 - double.best.chi2
     explained = max(double.commissioning.chi2 - double.best.chi2, 0.0)
     least = desk.thresholds.effect + desk.settings.model_error**2 * explained

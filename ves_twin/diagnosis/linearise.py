@@ -36,6 +36,7 @@ def linearise(
     point: FloatArray,
     progress: Progress = silent,
     axes: tuple[IntArray, FloatArray] | None = None,
+    forward_step: float | None = None,
 ) -> Linearisation:
     """Differences over one sd to either side, one-sided at a bound.
 
@@ -44,21 +45,25 @@ def linearise(
         point: where.
         progress: told how far it is.
         axes: coordinates and the sd of each; `runs.nuisances` at their commissioning sd if None.
+        forward_step: difference to one side over this many sd instead, for half the runs: good
+            enough where what moves on from the point is small, as at a fit.
 
     Returns:
         Columns in the order of the coordinates; last (f(h/2) - f(h)) times STEP_SD.
     """
     where, spreads = (runs.nuisances, runs.sd[runs.nuisances]) if axes is None else axes
-    shifts, weights = [], []
+    moves = (1.0, -1.0) if forward_step is None else (forward_step, 0.0)
+    shifts, weights = [point], []
     for i, sd in zip(where, spreads, strict=True):
-        ends = [runs.depart(point, np.array([i]), point[i] + sign * sd) for sign in (1.0, -1.0)]
-        shifts += ends
+        ends = [runs.depart(point, np.array([i]), point[i] + move * sd) for move in moves]
+        if ends[0][i] == ends[1][i]:  # at its upper bound
+            ends[0] = runs.depart(point, np.array([i]), point[i] - moves[0] * sd)
+        shifts += ends if forward_step is None else ends[:1]
         weights.append(sd / (ends[0][i] - ends[1][i]))
-    stacks = runs.many([point, *shifts], progress, "commissioning tolerances")
+    stacks = runs.many(shifts, progress, "commissioning tolerances")
     prediction = stacks[0]
-    columns = [
-        (stacks[1 + 2 * j] - stacks[2 + 2 * j]) * np.float32(weight)
-        for j, weight in enumerate(weights)
-    ]
+    far = stacks[1:] if forward_step is not None else stacks[1::2]
+    near = prediction[None] if forward_step is not None else stacks[2::2]
+    columns = list((far - near) * np.array(weights, np.float32)[:, None, None])
     columns.append(np.float32(STEP_SD) * (runs.one(point, refined=True) - prediction))
     return Linearisation(runs, point, prediction, np.stack(columns))

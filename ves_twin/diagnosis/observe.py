@@ -12,6 +12,7 @@ from ves_twin.diagnosis.runs import Runs
 from ves_twin.errors import InvalidInputError, UnknownNameError
 from ves_twin.recording.recording import Recording
 from ves_twin.types import FloatArray, SingleArray
+from ves_twin.workers import Workers
 
 FEWEST_ROWS = 100
 """Rows of the grid below which bands and stretches of time mean nothing."""
@@ -32,13 +33,15 @@ class Observed:
     unseen: tuple[str, ...]
 
 
-def observe(forward: Forward, recordings: Sequence[Recording], workers: int = 1) -> Observed:
+def observe(
+    forward: Forward, recordings: Sequence[Recording], workers: Workers | None = None
+) -> Observed:
     """Put recordings on the analysis grid.
 
     Args:
         forward: whose channels are compared and whose drive is fed in.
         recordings: one or more.
-        workers: processes for predictions.
+        workers: for predictions; this process if None.
 
     Raises:
         UnknownNameError: a drive signal that is not recorded, or no channel of the plant at all.
@@ -61,7 +64,7 @@ def observe(forward: Forward, recordings: Sequence[Recording], workers: int = 1)
         name = recording.info.scenario or f"recording {k + 1}"
         programmes.append(Programme.of(recording, forward.drive, name))
         rows.append(_rows(recording, channels, forward.drive, name))
-    runs = Runs(forward, tuple(programmes), columns, workers)
+    runs = Runs(forward, tuple(programmes), columns, workers or Workers())
     for programme, time in zip(programmes, runs.times, strict=True):
         if len(time) < FEWEST_ROWS:
             raise InvalidInputError(

@@ -24,6 +24,12 @@ CONVERGED = 0.02
 NEAR = 0.3
 """Commissioning sd within which nuisance columns are taken to hold; absent parameters: 6 %."""
 
+FORWARD_STEP = 0.25
+"""Commissioning sd of a one-sided difference at a fit."""
+
+WORTH = 3e-4
+"""Fall of chi^2, of all of it, below which another linearisation is not worth its runs."""
+
 BENT = 0.01
 """Squared error [sigma^2] of a predicted change above which the Jacobian is turned: single
 precision makes 1e-6 of it, and a smaller error moves no estimate."""
@@ -202,7 +208,7 @@ def refine(
         shift: departures to start from (coordinates,).
         local: nuisance columns to use.
         rounds: how often at most the nuisance columns are computed anew at the fit; ends when
-            it has stayed within NEAR of where they were computed.
+            it has stayed within NEAR of where they were computed, or gains no more by it.
     """
     runs = evidence.runs
     free = (
@@ -216,8 +222,12 @@ def refine(
     for _ in range(rounds):
         if _near(runs, search, point.shift):
             break
-        search = _Search(evidence, free, linearise(runs, point.shift))
+        before = point.chi2
+        local = linearise(runs, point.shift, forward_step=FORWARD_STEP)
+        search = _Search(evidence, free, local)
         point, jacobian = search.run(search.at(point.shift, point.delta))
+        if before - point.chi2 < WORTH * point.chi2:
+            break
     hessian = search.hessian(jacobian)
     spread = np.diag(1.0 / np.sqrt(np.maximum(np.diag(hessian), 1e-30)))
     scaled = spread @ hessian @ spread + 1e-12 * np.eye(len(hessian))  # what nothing shows: wide

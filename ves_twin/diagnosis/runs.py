@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-import multiprocessing
 from collections.abc import Callable, Iterator, Sequence
-from concurrent.futures import ProcessPoolExecutor
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field
 from functools import cached_property
 from itertools import pairwise
 
@@ -14,6 +12,7 @@ import numpy as np
 from ves_twin.diagnosis.forward import Forward, Hypothesis, Parameter, Programme
 from ves_twin.diagnosis.grid import AnalysisGrid
 from ves_twin.types import FloatArray, IntArray, SingleArray
+from ves_twin.workers import Workers
 
 Progress = Callable[[float, str], None]
 """Called with the share done, 0 to 1, and what is being done."""
@@ -42,13 +41,13 @@ class Runs:
         forward: the plant.
         programmes: what was fed in, one for each recording.
         columns: channels of the forward that were recorded.
-        workers: processes; 1 computes here.
+        workers: that share many predictions out.
     """
 
     forward: Forward
     programmes: tuple[Programme, ...]
     columns: tuple[int, ...]
-    workers: int = 1
+    workers: Workers = field(default_factory=Workers, compare=False)
 
     @cached_property
     def coordinates(self) -> tuple[Coordinate, ...]:
@@ -128,7 +127,7 @@ class Runs:
     def many(
         self, shifts: Sequence[FloatArray], progress: Progress = silent, what: str = ""
     ) -> SingleArray:
-        """Predictions (k, rows, channels) at many departures, by `workers` processes."""
+        """Predictions (k, rows, channels) at many departures, by the workers."""
         return np.stack(list(self._each(shifts, progress, what))) if len(shifts) else self._none()
 
     def _none(self) -> SingleArray:
@@ -139,15 +138,7 @@ class Runs:
         self, shifts: Sequence[FloatArray], progress: Progress, what: str
     ) -> Iterator[SingleArray]:
         total = len(shifts)
-        if self.workers == 1 or total == 1:
-            for i, shift in enumerate(shifts):
-                progress(i / total, what)
-                yield self.one(shift)
-            return
-        context = multiprocessing.get_context("spawn")
-        alone = replace(self, workers=1)
-        with ProcessPoolExecutor(self.workers, mp_context=context) as pool:
-            chunk = max(1, total // (8 * self.workers))
-            for i, stack in enumerate(pool.map(alone.one, shifts, chunksize=chunk)):
-                progress(i / total, what)
-                yield stack
+        chunk = max(1, total // (8 * self.workers.count))
+        for i, stack in enumerate(self.workers.map(self.one, shifts, chunk)):
+            progress((i + 1) / total, what)
+            yield stack

@@ -58,24 +58,32 @@ class Screen:
         return Metric(columns)
 
     @cached_property
-    def signatures(self) -> FloatArray:
-        """Whitened signatures (samples, entries)."""
-        return self.whitening.apply(self.bank.signatures).T
+    def shapes(self) -> FloatArray:
+        """Whitened shapes: columns of the base, then the bent ones (samples, shapes)."""
+        columns = self.metric.columns[:, : len(self.bank.base.columns)]
+        return np.concatenate([columns, self.whitening.apply(self.bank.bent).T], axis=1)
 
     @cached_property
     def projected(self) -> FloatArray:
-        """Signatures after the nuisances took what they can (samples, entries)."""
-        return self.metric.project(self.signatures)
+        """Shapes after the nuisances took what they can (samples, shapes)."""
+        return self.metric.project(self.shapes)
 
     @cached_property
     def gram(self) -> FloatArray:
         """<s_j, s_k> (entries, entries)."""
-        return np.asarray(self.signatures.T @ self.projected)
+        gram = self.shapes.T @ self.projected
+        which, factor = self.bank.shape, self.bank.factor
+        return np.asarray(gram[np.ix_(which, which)] * np.outer(factor, factor))
+
+    def match(self, z: FloatArray) -> FloatArray:
+        """<s_k, z> of each entry with a whitened residual (samples,)."""
+        return np.asarray((self.projected.T @ z)[self.bank.shape] * self.bank.factor)
 
     @cached_property
     def power(self) -> FloatArray:
         """d^2 of each entry: its size in sigma, squared."""
-        return np.maximum(np.diag(self.gram), 1e-12)
+        power = np.sum(self.shapes * self.projected, axis=0)
+        return np.asarray(np.maximum(power[self.bank.shape] * self.bank.factor**2, 1e-12))
 
     def suspects(self, z: FloatArray) -> list[Suspect]:
         """Every hypothesis at its best size, by falling score.
@@ -85,7 +93,7 @@ class Screen:
         Args:
             z: whitened residual about the bank's base (samples,).
         """
-        match = self.projected.T @ z
+        match = self.match(z)
         amplitude = np.clip(match / self.power, *AMPLITUDE)
         score = 2.0 * amplitude * match - amplitude**2 * self.power
         best = []
@@ -104,7 +112,7 @@ class Screen:
             z: whitened residual about the bank's base.
             count: how many pairs, each pair of hypotheses once.
         """
-        match, g = self.projected.T @ z, self.gram
+        match, g = self.match(z), self.gram
         p = self.power
         det = p[:, None] * p - g**2
         det = np.where(det < 1e-3 * p[:, None] * p, np.inf, det)

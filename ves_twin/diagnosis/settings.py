@@ -13,6 +13,8 @@ class Settings:
     Attributes:
         alpha: probability that a rig with nothing wrong passes a threshold.
         nulls: rigs of the null distribution.
+        simulated_nulls: whether those rigs are simulated and fitted, or drawn from the
+            linearisation, which costs no runs.
         candidates: hypotheses that are fitted with the full forward.
         rounds: linearisations at most at a fit.
         model_error: relative error that the simulated change due to a cause may have. Of a cause
@@ -26,6 +28,7 @@ class Settings:
 
     alpha: float = 0.002
     nulls: int = 100
+    simulated_nulls: bool = True
     candidates: int = 6
     rounds: int = 3
     model_error: float = 0.02

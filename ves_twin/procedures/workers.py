@@ -2,17 +2,15 @@
 
 from __future__ import annotations
 
-import os
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Sequence
 from concurrent.futures import ProcessPoolExecutor, as_completed
-from contextlib import contextmanager
 from multiprocessing import get_context
 from typing import TypeVar
 
+from ves_twin.workers import single_threads
+
 Job = TypeVar("Job")
 Result = TypeVar("Result")
-
-_THREADS = ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS")
 
 
 def carry_out_jobs(
@@ -39,7 +37,7 @@ def carry_out_jobs(
             progress((i + 1) / len(jobs))
     else:
         with (
-            _single_threads(),
+            single_threads(),
             ProcessPoolExecutor(min(workers, len(jobs)), mp_context=get_context("spawn")) as pool,
         ):
             numbers = {pool.submit(function, job): i for i, job in enumerate(jobs)}
@@ -51,18 +49,3 @@ def carry_out_jobs(
                 pool.shutdown(wait=False, cancel_futures=True)
                 raise
     return [results[i] for i in range(len(jobs))]
-
-
-@contextmanager
-def _single_threads() -> Iterator[None]:
-    """Environment of processes that start meanwhile: one thread of linear algebra."""
-    before = {name: os.environ.get(name) for name in _THREADS}
-    os.environ.update(dict.fromkeys(_THREADS, "1"))
-    try:
-        yield
-    finally:
-        for name, value in before.items():
-            if value is None:
-                del os.environ[name]
-            else:
-                os.environ[name] = value

@@ -1,0 +1,131 @@
+"""assess: a record before any cause is named: what the screen sees, commissioning errors fitted."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.stats import norm
+
+from ves_twin.diagnosis.adequacy import cells, misfit
+from ves_twin.diagnosis.bank import Bank
+from ves_twin.diagnosis.metric import Metric
+from ves_twin.diagnosis.refine import Evidence, Fit, bare_residual, refine, residual_about
+from ves_twin.diagnosis.screen import Screen, Suspect
+from ves_twin.diagnosis.whitening import Whitening
+from ves_twin.types import FloatArray, SingleArray
+
+ROUNDS = 3
+"""Linearisations at most for the commissioning errors of one record."""
+
+PROGRESS = 0.5
+"""A further linearisation of the nuisances that leaves more of the score than this was the last:
+what stays is no commissioning error."""
+
+
+@dataclass(frozen=True)
+class Assessment:
+    """A record before any cause is fitted.
+
+    Attributes:
+        evidence: with the whitening as the record itself has it.
+        screen: the bank under that whitening.
+        z: whitened residual about the bank's base (samples,).
+        left: z less what the nuisances explain.
+        suspects: hypotheses by falling score.
+        misfit: largest cell score.
+        commissioning: fit of commissioning errors alone; None while it was not needed.
+    """
+
+    evidence: Evidence
+    screen: Screen
+    z: FloatArray
+    left: FloatArray
+    suspects: list[Suspect]
+    misfit: float
+    commissioning: Fit | None
+
+    @property
+    def score(self) -> float:
+        """The best hypothesis's chi^2."""
+        return self.suspects[0].score if self.suspects else 0.0
+
+    @property
+    def pull(self) -> float:
+        """Largest most probable commissioning error, in declared sd (the step's share is none)."""
+        errors = self.screen.metric.nuisances(self.z)[: len(self.evidence.runs.nuisances)]
+        return float(np.max(np.abs(errors), initial=0.0))
+
+    def exceeds(self, effect: float, misfit: float, pull: float) -> bool:
+        """Whether something is there."""
+        return self.score > effect or self.misfit > misfit or self.pull > pull
+
+
+def assess(
+    measured: SingleArray,
+    bank: Bank,
+    whitening: Whitening,
+    effect: float,
+    level: float,
+    pull: float,
+) -> Assessment:
+    """Screen a record; where it looks faulty, once more with the nuisances fitted in full.
+
+    Args:
+        measured: channels on the grid (rows, c).
+        bank: the library's signatures.
+        whitening: noise as declared or measured.
+        effect: score that leads to the second look.
+        level: misfit that leads to it.
+        pull: commissioning error [sd] that leads to it.
+    """
+    runs = bank.base.runs
+    first = first_look(measured, bank, whitening)
+    if not first.exceeds(effect, level, pull):
+        return first
+    look = first
+    for number in range(ROUNDS + 1):
+        fit = _fitted(look, min(number, 1))
+        own = whitening.adapted(whitening.apply(bare_residual(look.evidence, fit)))
+        before, look = look, _look(Evidence(runs, measured, own), Screen(bank, own), fit)
+        if not look.exceeds(effect, level, pull):
+            break
+        if number > 0 and look.score > PROGRESS * before.score:
+            break
+    return look
+
+
+def first_look(measured: SingleArray, bank: Bank, whitening: Whitening) -> Assessment:
+    """With the nuisances as the linearisation at nominal has them, and the record's own noise."""
+    raw = whitening.apply(measured - bank.base.prediction)
+    metric = Metric(whitening.apply(bank.base.columns).T)
+    own = whitening.adapted(metric.project(raw))
+    return _look(Evidence(bank.base.runs, measured, own), Screen(bank, own), None)
+
+
+def _fitted(look: Assessment, rounds: int) -> Fit:
+    """Commissioning errors alone, from where the last look left them."""
+    base = look.screen.bank.base
+    if look.commissioning is None:
+        return refine(look.evidence, (), base.runs.origin, base, rounds)
+    return refine(look.evidence, (), look.commissioning.shift, look.commissioning.local, rounds)
+
+
+def _look(evidence: Evidence, screen: Screen, fit: Fit | None) -> Assessment:
+    base = screen.bank.base
+    if fit is None:
+        z = evidence.whitening.apply(evidence.measured - base.prediction)
+    else:
+        z = residual_about(evidence, fit, base)
+    left = screen.metric.project(z)
+    worst = misfit(cells(evidence.whitening, left))
+    return Assessment(evidence, screen, z, left, screen.suspects(z), worst, fit)
+
+
+def pull_limit(bank: Bank, alpha: float) -> float:
+    """Declared sd that the largest commissioning error of a rig in order passes with alpha.
+
+    It catches what the library lacks and the commissioning parameters would swallow: a cause that
+    was left out, or a tolerance that is wrong.
+    """
+    return float(norm.isf(alpha / (2.0 * max(len(bank.base.runs.nuisances), 1))))
