@@ -36,9 +36,11 @@ STATE = np.dtype(
         ("zero", np.float64, 6),
         ("reading", np.float64, 6),
         ("true", np.float64, 6),
+        ("raw", np.float64, 6),
     ]
 )
-"""Low-pass registers, slow noise, filtered signal, zero, calibrated reading, true wrench."""
+"""Low-pass registers, slow noise, filtered signal, zero, calibrated reading, true wrench, signal
+before the low-pass."""
 
 
 @compiled
@@ -93,9 +95,12 @@ def sample_wrench(
     inside = True
     for i in range(6):
         s.true[i] = wrench[i]
-        x = p.offset[i] + p.drift[i] * time + s.wander[i] + p.noise[i] * white[i]
-        for j in range(6):
-            x += p.gain[i, j] * wrench[j]
+        s.raw[i] = p.offset[i] + p.drift[i] * time + s.wander[i] + p.noise[i] * white[i]
+    for j in range(6):  # six sums side by side do not wait for each other
+        for i in range(6):
+            s.raw[i] += p.gain[i, j] * wrench[j]
+    for i in range(6):
+        x = s.raw[i]
         y = b[0] * x + s.z1[i]
         s.z1[i] = b[1] * x - a[1] * y + s.z2[i]
         s.z2[i] = b[2] * x - a[2] * y
@@ -103,9 +108,9 @@ def sample_wrench(
             inside = False
             y = min(max(y, -p.range[i]), p.range[i])
         s.signal[i] = np.rint(y / p.resolution[i]) * p.resolution[i] if p.resolution[i] > 0.0 else y
-    for i in range(6):
-        total = 0.0
-        for j in range(6):
-            total += p.calibration[i, j] * (s.signal[j] - s.zero[j])
-        s.reading[i] = total
+        s.reading[i] = 0.0
+    for j in range(6):
+        signal = s.signal[j] - s.zero[j]
+        for i in range(6):
+            s.reading[i] += p.calibration[i, j] * signal
     return inside

@@ -20,8 +20,17 @@ PARAMETERS = np.dtype(
 lands on each side; gain: flow per nominal flow; limit: largest travel. All but lag are shares of
 full opening."""
 
-STATE = np.dtype([("spool", np.float64, 6), ("mean", np.float64, 6)])
-"""spool: travel, -1 to 1; mean: opening that the flow sees, mean over the last step."""
+STATE = np.dtype(
+    [
+        ("spool", np.float64, 6),
+        ("mean", np.float64, 6),
+        ("step", np.float64),
+        ("decay", np.float64, 6),
+        ("share", np.float64, 6),
+    ]
+)
+"""spool: travel, -1 to 1; mean: opening that the flow sees, mean over the last step; decay: of a
+gap over a step of length `step` [s]; share: mean of the gap over it."""
 
 
 @compiled
@@ -37,19 +46,22 @@ def move_spool(p: Record, s: Record, current: FloatArray, step: float) -> None:
     mean of D only in steps that cross an edge of the deadband.
 
     Args:
-        p: PARAMETERS.
+        p: PARAMETERS; the lags may not change within a run.
         s: STATE.
         current: amplifier output, -1 to 1 (6,).
         step: physics step h [s].
 
     Source: Merritt, Hydraulic Control Systems (1967), chapter 5 (overlap, null shift).
     """
+    if s.step != step:  # at the first step: six exponentials a tick cost a fifth of the loop
+        s.step = step
+        for i in range(6):
+            s.decay[i] = np.exp(-step / p.lag[i])
+            s.share[i] = (1.0 - s.decay[i]) * p.lag[i] / step
     for i in range(6):
-        decay = np.exp(-step / p.lag[i])
         command = min(max(current[i], -p.limit[i]), p.limit[i])
         gap = s.spool[i] - command
-        mean = command + gap * (1.0 - decay) * p.lag[i] / step
-        s.spool[i] = command + gap * decay
-        open_by = mean + p.null[i]
+        open_by = command + gap * s.share[i] + p.null[i]
+        s.spool[i] = command + gap * s.decay[i]
         beyond = max(abs(open_by) - p.deadband[i], 0.0)
         s.mean[i] = p.gain[i] * (beyond if open_by >= 0.0 else -beyond)
