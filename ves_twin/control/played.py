@@ -14,6 +14,13 @@ from ves_twin.errors import InvalidInputError
 from ves_twin.types import FloatArray
 
 
+AHEAD = 3
+"""Points beyond a record's end: the spline looks two ahead, from the last cycle on."""
+
+FEWEST = 4
+"""Commands below which a record has no curvature to go by."""
+
+
 @final
 @dataclass(frozen=True)
 class PlayedPoses(PlatformMotion):
@@ -90,16 +97,24 @@ def spline_points(commands: FloatArray) -> FloatArray:
         commands: values of the spline at the cycles (n, width).
 
     Returns:
-        Control points (n, width); the spline has no curvature beyond its ends.
+        Control points (n + AHEAD, width); beyond either end the curvature stays, so that a record
+        cut in a motion ends in it.
     """
     from scipy.linalg import solve_banded  # slow to import
 
     n = len(commands)
-    bands = np.zeros((3, n))
-    bands[0, 1:], bands[1], bands[2, :-1] = 1.0, 4.0, 1.0
-    bands[1, 0] = bands[1, -1] = 6.0  # p[-1] = 2 p[0] - p[1]: no curvature at the ends
-    bands[0, 1] = bands[2, n - 2] = 0.0
-    return np.asarray(solve_banded((1, 1), bands, 6.0 * commands))
+    if n < FEWEST:
+        return np.concatenate([commands, np.repeat(commands[-1:], AHEAD, axis=0)])
+    bands = np.zeros((5, n))
+    bands[1, 1:], bands[2], bands[3, :-1] = 1.0, 4.0, 1.0
+    # a parabola beyond the ends: p[-1] = 3 p[0] - 3 p[1] + p[2]
+    bands[2, 0] = bands[2, -1] = 7.0
+    bands[1, 1] = bands[3, n - 2] = -2.0
+    bands[0, 2] = bands[4, n - 3] = 1.0
+    points = list(solve_banded((2, 2), bands, 6.0 * commands))
+    for _ in range(AHEAD):
+        points.append(3.0 * points[-1] - 3.0 * points[-2] + points[-3])
+    return np.array(points)
 
 
 def _cycle(time: float, period: float, count: int) -> int:
