@@ -13,7 +13,6 @@ from ves_twin.control.readings import Readings
 from ves_twin.errors import InvalidInputError
 from ves_twin.types import FloatArray
 
-
 AHEAD = 3
 """Points beyond a record's end: the spline looks two ahead, from the last cycle on."""
 
