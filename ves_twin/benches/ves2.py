@@ -10,11 +10,15 @@ from functools import cached_property
 import numpy as np
 
 from ves_twin.benches.sensor_change import SensorChange, without_sensor_kinds
+from ves_twin.benches.slow_noise import MODES, slow_modes
 from ves_twin.benches.ves2_library import (
+    AXES,
+    WANDER,
     hypotheses_of,
     offset_parameters,
     parameters_of,
     table_parameters,
+    wander_parameters,
     with_departures,
 )
 from ves_twin.diagnosis.forward import Channel, Hypothesis, Parameter, Programme
@@ -82,6 +86,7 @@ class RigForward:
             *parameters_of(self.plant),
             *table_parameters(self.plant),
             *offset_parameters(self.plant),
+            *wander_parameters(),
         )
 
     @cached_property
@@ -106,8 +111,22 @@ class RigForward:
             at_rest = programme.drive["gravity.estimate"][0] * float(self.scenario.gravity.zero)
             change = SensorChange.between(hardware, plant)
             rows[:, WRENCH] = change.apply(rows[:, WRENCH], at_rest)
-        rows[:, WRENCH] += offsets
+        rows[:, WRENCH] += offsets + self._wander(programme, values)
         return rows
+
+    def _wander(self, programme: Programme, values: Mapping[str, float]) -> FloatArray:
+        """The sensor's slow noise [N, N m] (n, 6), or zeros (6,) where its modes have no weight."""
+        weights = np.array(
+            [
+                [values.get(f"{WANDER}{axis}.{mode + 1}", 0.0) for axis in AXES]
+                for mode in range(MODES)
+            ]
+        )
+        if not weights.any():
+            return np.zeros(6)
+        parameters = self.plant.parameters
+        shapes = slow_modes(programme.time, parameters.number("sensor.wander_time"))
+        return np.asarray(shapes @ weights * parameters.array("sensor.wander"))
 
     def _rates(self, refined: bool) -> Scenario:
         if not refined:

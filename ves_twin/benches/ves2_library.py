@@ -6,6 +6,7 @@ from collections.abc import Iterator, Mapping
 
 import numpy as np
 
+from ves_twin.benches.slow_noise import MODES
 from ves_twin.diagnosis.forward import Hypothesis, Parameter
 from ves_twin.effects.effect import Effect
 from ves_twin.effects.magnitude import Magnitude, Sign
@@ -55,6 +56,9 @@ AXES = ("fx", "fy", "fz", "mx", "my", "mz")
 OFFSET = "zero@sensor."
 """Prefix of what zeroing leaves on an axis of a recording."""
 
+WANDER = "wander@sensor."
+"""Prefix of a mode of the sensor's slow noise on an axis of a recording, in its own sd."""
+
 
 def places(plant: Plant) -> Iterator[tuple[type[Effect], str]]:
     """Every kind of effect that a plant can have, on every target."""
@@ -102,6 +106,15 @@ def offset_parameters(plant: Plant) -> tuple[Parameter, ...]:
     )
 
 
+def wander_parameters() -> tuple[Parameter, ...]:
+    """Modes of the sensor's slow noise, anew for each recording: too slow for the whitening."""
+    return tuple(
+        Parameter(f"{WANDER}{axis}.{mode + 1}", "1", 0.0, -10.0, 10.0, 1.0, True)
+        for axis in AXES
+        for mode in range(MODES)
+    )
+
+
 def hypotheses_of(plant: Plant, exclude: frozenset[str] = frozenset()) -> tuple[Hypothesis, ...]:
     """One cause for each magnitude of each effect; a tilt leans any way, so its two go together."""
     found = []
@@ -128,11 +141,16 @@ def hypotheses_of(plant: Plant, exclude: frozenset[str] = frozenset()) -> tuple[
 
 
 def with_departures(plant: Plant, values: Mapping[str, float]) -> tuple[Plant, FloatArray]:
-    """A plant with named values, and the offsets (6,) [N, N m] that its wrench is read with."""
+    """A plant with named values, and the offsets (6,) [N, N m] that its wrench is read with.
+
+    Modes of the slow noise are no part of either.
+    """
     sizes: dict[tuple[str, str], dict[str, object]] = {}
     factors: dict[str, object] = {}
     offsets = np.zeros(6)
     for name, value in values.items():
+        if name.startswith(WANDER):
+            continue
         if name.startswith(OFFSET):
             offsets[AXES.index(name.removeprefix(OFFSET))] = value
         elif name.startswith("table@"):

@@ -10,7 +10,7 @@ from collections.abc import Sequence
 from typing import NoReturn
 
 from ves_twin import __version__
-from ves_twin.cli import compare, diagnose, info, reproduce, run, scenarios, view
+from ves_twin.cli import blind, compare, diagnose, info, reproduce, run, scenarios, view
 from ves_twin.errors import UnknownNameError, VesTwinError, one_line
 
 COMMANDS = {
@@ -18,6 +18,7 @@ COMMANDS = {
     "run": run,
     "diagnose": diagnose,
     "compare": compare,
+    "blind": blind,
     "reproduce": reproduce,
     "view": view,
     "info": info,

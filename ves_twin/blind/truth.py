@@ -1,0 +1,80 @@
+"""Truth: what was hidden in one case."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass
+from enum import StrEnum
+
+
+class Hidden(StrEnum):
+    """What a case hides.
+
+    outside: a kind that the library lacks, or one of the library that the diagnosis must exclude.
+    confusable: one of a group that a programme hardly tells apart.
+    """
+
+    NONE = "none"
+    SINGLE = "single"
+    PAIR = "pair"
+    OUTSIDE = "outside"
+    CONFUSABLE = "confusable"
+
+
+@dataclass(frozen=True)
+class HiddenCause:
+    """One effect of the library at a size.
+
+    Attributes:
+        effect, target: as the library names it.
+        departures: parameter -> departure from nominal.
+        d: size in sigma of the noise that commissioning errors cannot take away.
+    """
+
+    effect: str
+    target: str
+    departures: Mapping[str, float]
+    d: float
+
+    @property
+    def label(self) -> str:
+        """effect@target."""
+        return f"{self.effect}@{self.target}"
+
+
+@dataclass(frozen=True)
+class Truth:
+    """What was hidden, and how loud it is.
+
+    Attributes:
+        case: name of the case.
+        hidden: which sort.
+        causes: effects of the library.
+        outside: kind outside the library and its size; empty if none.
+        outside_size: in the kind's unit.
+        spread: commissioning errors, in declared sd.
+    """
+
+    case: str
+    hidden: Hidden
+    causes: tuple[HiddenCause, ...] = ()
+    outside: str = ""
+    outside_size: float = 0.0
+    spread: float = 1.0
+
+    @property
+    def d(self) -> float:
+        """The smallest of its causes' sizes in sigma; 0 without one."""
+        return min((cause.d for cause in self.causes), default=0.0)
+
+    def to_json(self) -> str:
+        """As text, to be sealed."""
+        return json.dumps(asdict(self))
+
+    @staticmethod
+    def from_json(text: str) -> Truth:
+        """From text."""
+        content = json.loads(text)
+        causes = tuple(HiddenCause(**cause) for cause in content.pop("causes"))
+        return Truth(causes=causes, hidden=Hidden(content.pop("hidden")), **content)
