@@ -69,7 +69,9 @@ _NAME = r"[A-Za-zµμ°%]+(?:(?:\^|\*\*)-?[1-4])?"
 _UNIT = re.compile(rf"{_NAME}(?:\s*[*/·]\s*{_NAME}|\s+{_NAME}){{0,6}}")
 """Names with small exponents: the unit library would evaluate an expression."""
 
-_ANGLE = re.compile(r"rad|deg|°|turn|rev|cycle|circle|rpm|rps|arcmin|arcsec", re.IGNORECASE)
+_ANGLE = re.compile(
+    r"rad|deg(?![CF])|°(?![CF])|turn|rev|cycle|circle|rpm|rps|arcmin|arcsec", re.IGNORECASE
+)
 
 
 def _parse(text: str, unit: str, what: str) -> float:
@@ -89,3 +91,33 @@ def _parse(text: str, unit: str, what: str) -> float:
         return float(_registry().Quantity(number, given.replace("%", "percent")).to(unit).magnitude)
     except Exception:  # pint raises tokenizer, syntax and attribute errors alike
         raise wrong from None
+
+
+def check_known(unit: str) -> str:
+    """The unit, if it is one at all; raises InvalidInputError."""
+    if unit in SI_UNITS:
+        return unit
+    wrong = InvalidInputError("unit", unit, 'a unit, as in "mm", "deg", "N*m", "A"')
+    if not _UNIT.fullmatch(unit):
+        raise wrong
+    try:
+        _registry().parse_units(unit.replace("%", "percent"))
+    except Exception:  # as in _parse
+        raise wrong from None
+    return unit
+
+
+def to_unit(given: str, unit: str, what: str) -> tuple[float, float]:
+    """Factor and offset that turn numbers in one unit into another: y = factor x + offset.
+
+    Raises:
+        InvalidInputError: a unit of another dimension.
+    """
+    if given == unit:
+        return 1.0, 0.0
+    zero, one = to_si(f"0 {_named(given)}", unit, what), to_si(f"1 {_named(given)}", unit, what)
+    return one - zero, zero
+
+
+def _named(unit: str) -> str:
+    return "dimensionless" if unit == "1" else unit

@@ -10,7 +10,19 @@ from collections.abc import Sequence
 from typing import NoReturn
 
 from ves_twin import __version__
-from ves_twin.cli import blind, compare, diagnose, info, reproduce, run, scenarios, view
+from ves_twin.cli import (
+    blind,
+    compare,
+    diagnose,
+    export,
+    import_log,
+    info,
+    inspect,
+    reproduce,
+    run,
+    scenarios,
+    view,
+)
 from ves_twin.errors import UnknownNameError, VesTwinError, one_line
 
 COMMANDS = {
@@ -20,6 +32,9 @@ COMMANDS = {
     "compare": compare,
     "blind": blind,
     "reproduce": reproduce,
+    "inspect": inspect,
+    "import": import_log,
+    "export": export,
     "view": view,
     "info": info,
 }

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from pathlib import Path
 
 import pyarrow as pa
@@ -9,7 +10,7 @@ import pyarrow.parquet as pq
 
 from ves_twin.errors import FileAccessError, InvalidInputError
 from ves_twin.recording.recording import Recording
-from ves_twin.recording.stream import FILE_NAME, STREAM_NAME, stream_batches
+from ves_twin.recording.stream import FILE_NAME, ROW_GROUP, STREAM_NAME, stream_batches
 from ves_twin.recording.table import batch_of, recording_of, schema_of
 
 
@@ -37,12 +38,15 @@ def load_recording(path: str | Path) -> Recording:
 
 
 def save_recording(recording: Recording, path: Path) -> None:
-    """Write a recording of known signals to a Parquet file."""
+    """Write a recording to a Parquet file; the file appears when it is whole."""
     schema = schema_of(recording.signals, recording.info)
     table = pa.Table.from_batches([batch_of(schema, recording.time, recording.signals)])
+    partial = path.with_name(f"{path.name}.partial")
     try:
-        pq.write_table(table, path, compression="zstd")
+        pq.write_table(table, partial, compression="zstd", row_group_size=ROW_GROUP)
+        os.replace(partial, path)
     except OSError as error:
+        partial.unlink(missing_ok=True)
         raise FileAccessError(f"cannot write {path}: {error.strerror}") from None
 
 

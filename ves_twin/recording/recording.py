@@ -4,10 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass, field, fields
+from typing import Any
 
 import numpy as np
 
 from ves_twin.errors import InvalidInputError, UnknownNameError
+from ves_twin.signals import SIGNALS, Role, Signal
 from ves_twin.types import FloatArray
 
 
@@ -40,6 +42,8 @@ class RecordingInfo:
         held: slower signals -> time between their changes [s].
         outcome: how the run ended; "unfinished" while it runs or if it was killed.
         events: what happened.
+        own_signals: signals that the rig's table lacks: another machine's, or extra sensors.
+        imported: where measured data come from and what was done to them.
     """
 
     origin: str
@@ -57,6 +61,15 @@ class RecordingInfo:
     held: Mapping[str, float] = field(default_factory=dict)
     outcome: str = "unfinished"
     events: tuple[Event, ...] = ()
+    own_signals: tuple[Signal, ...] = ()
+    imported: Mapping[str, object] = field(default_factory=dict)
+
+    def signal(self, name: str) -> Signal:
+        """What a signal is: one of its own, or of the rig's table; raises UnknownNameError."""
+        known = SIGNALS | {signal.name: signal for signal in self.own_signals}
+        if name not in known:
+            raise UnknownNameError("signal", name, known)
+        return known[name]
 
     def to_dict(self) -> dict[str, object]:
         """Plain values for JSON."""
@@ -76,11 +89,22 @@ class RecordingInfo:
             "parameters": Mapping,
             "held": Mapping,
             "period": float | int,
+            "imported": Mapping,
         }
         for key, kind in kinds.items():
             if key in values and not isinstance(values[key], kind):
                 raise InvalidInputError(f"{key} of a recording", values[key], "another type")
-        return RecordingInfo(**values, events=tuple(Event(**e) for e in events))  # type: ignore[arg-type]
+        own = values.pop("own_signals", ()) or ()
+        if not isinstance(own, list | tuple):
+            raise InvalidInputError("own_signals of a recording", own, "a list")
+        told = tuple(Event(**e) for e in events)
+        return RecordingInfo(**values, events=told, own_signals=tuple(map(_signal, own)))  # type: ignore[arg-type]
+
+
+def _signal(content: Mapping[str, Any]) -> Signal:
+    axes, units = tuple(map(str, content["axes"])), tuple(map(str, content["units"]))
+    words = {key: str(content[key]) for key in ("name", "frame", "meaning")}
+    return Signal(axes=axes, units=units, role=Role(content["role"]), **words)
 
 
 @dataclass(frozen=True)
@@ -89,7 +113,7 @@ class Recording:
 
     Attributes:
         time: time of the rows [s], strictly increasing (n,).
-        signals: name -> values (n, width), units of `ves_twin.signals`.
+        signals: name -> values (n, width), units of `info.signal(name)`.
         info: where the recording comes from.
 
     Raises:

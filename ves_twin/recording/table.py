@@ -8,9 +8,8 @@ from collections.abc import Iterable, Mapping
 import numpy as np
 import pyarrow as pa
 
-from ves_twin.errors import InvalidInputError, one_line
+from ves_twin.errors import InvalidInputError, UnknownNameError, one_line
 from ves_twin.recording.recording import Recording, RecordingInfo
-from ves_twin.signals import SIGNALS
 from ves_twin.types import FloatArray
 
 KEY = b"ves_twin"
@@ -21,7 +20,7 @@ def schema_of(names: Iterable[str], info: RecordingInfo) -> pa.Schema:
     """Columns `t` and those of the named signals, numbered from 1; metadata on each."""
     columns = [pa.field("t", pa.float64(), metadata={"unit": "s"})]
     for name in names:
-        signal = SIGNALS[name]
+        signal = info.signal(name)
         for column, axis, unit in zip(signal.columns, signal.axes, signal.units, strict=True):
             metadata = {
                 "signal": name,
@@ -68,20 +67,20 @@ def recording_of(table: pa.Table, where: object) -> Recording:
             f"metadata of {where}", str(error), "a ves-twin recording"
         ) from None
     try:
-        return Recording(_column(table, "t"), _signals(table), info)
-    except (KeyError, TypeError, ValueError, pa.ArrowException) as error:
+        return Recording(_column(table, "t"), _signals(table, info), info)
+    except (KeyError, TypeError, ValueError, UnknownNameError, pa.ArrowException) as error:
         raise InvalidInputError(str(where), one_line(error), "a ves-twin recording") from None
 
 
-def _signals(table: pa.Table) -> dict[str, FloatArray]:
+def _signals(table: pa.Table, info: RecordingInfo) -> dict[str, FloatArray]:
     groups: dict[str, list[str]] = {}
     for column in table.column_names:
         if column != "t":
             metadata = table.schema.field(column).metadata or {}
             groups.setdefault(metadata.get(b"signal", b"").decode(), []).append(column)
     for name, columns in groups.items():
-        if name not in SIGNALS or tuple(columns) != SIGNALS[name].columns:
-            raise ValueError(f"columns {', '.join(columns[:3])} are no signal of the rig")
+        if not name or tuple(columns) != info.signal(name).columns:
+            raise ValueError(f"columns {', '.join(columns[:3])} are no signal of the recording")
     return {
         name: np.column_stack([_column(table, c) for c in columns])
         for name, columns in groups.items()

@@ -1,0 +1,1 @@
+"""Measured data: lab files read in pieces, inspected, mapped, imported and exported."""
