@@ -61,7 +61,9 @@ def _compare(arguments: argparse.Namespace) -> Comparison:
     given = arguments.experiment
     experiment = Experiment.load(given) if given else Experiment()
     if arguments.standstill:
-        experiment = experiment.model_copy(update={"noise": arguments.standstill})
+        everyone = {"noise": arguments.standstill}
+        own = {n: d.model_copy(update=everyone) for n, d in experiment.recordings.items()}
+        experiment = experiment.model_copy(update={**everyone, "recordings": own})
     tolerance = Tolerance.load(arguments.tolerance) if arguments.tolerance else None
     plant = Plant.load(arguments.plant) if arguments.plant else None
     recordings = [_named(path) for path in arguments.recordings]
@@ -72,11 +74,9 @@ def _compare(arguments: argparse.Namespace) -> Comparison:
 
 def _named(path: str) -> Named:
     from ves_twin.comparison.compare import Named
-    from ves_twin.recording.files import load_recording
+    from ves_twin.recording.files import load_recording, recording_name
 
-    file = Path(path)
-    own = file.name in {"recording.parquet", "recording.arrows"}
-    return Named(file.parent.name if own and file.parent.name else file.name, load_recording(file))
+    return Named(recording_name(path), load_recording(path))
 
 
 def _text(comparison: Comparison, folder: Path) -> str:

@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import argparse
 import os
+from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from ves_twin.benches.diagnose_rig import RigDiagnosis
+    from ves_twin.benches.told import Told
     from ves_twin.plant.plant import Plant
     from ves_twin.recording.recording import Recording
 
@@ -27,6 +29,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--exclude", metavar="EFFECT", action="append", default=[], help="a cause not considered"
     )
+    parser.add_argument("--experiment", metavar="FILE", help="how they were made (TOML)")
     parser.add_argument("--plant", metavar="FILE", help="the nominal plant (default: as recorded)")
     parser.add_argument("--out", metavar="DIR", help="output folder (default: runs/diagnosis)")
     parser.add_argument("--json", action="store_true", help="the verdict as JSON on stdout")
@@ -46,7 +49,16 @@ def execute(arguments: argparse.Namespace) -> int:
     held_out = [load_recording(name) for name in arguments.held_out]
     commissioning = [load_recording(name) for name in arguments.commissioning]
     standstill = load_recording(arguments.standstill) if arguments.standstill else None
-    plant = _nominal(arguments.plant, measured[0])
+    scenario = None
+    if arguments.experiment:
+        files = (*arguments.measured, *arguments.held_out)
+        told = _told(arguments, files, (*measured, *held_out))
+        measured = list(told.recordings[: len(measured)])
+        held_out = list(told.recordings[len(measured) :])
+        plant, scenario = told.plant, told.scenario
+        standstill = standstill or told.standstill
+    else:
+        plant = _nominal(arguments.plant, measured[0])
     folder = output_folder(arguments.out, "diagnosis")
     make_folder(folder)
     settings = Settings(workers=os.cpu_count() or 1, cache=cache_folder().parent / "banks")
@@ -58,6 +70,7 @@ def execute(arguments: argparse.Namespace) -> int:
             commissioning=commissioning,
             standstill=standstill,
             exclude=arguments.exclude,
+            scenario=scenario,
             settings=settings,
             progress=progress.share,
         )
@@ -67,6 +80,23 @@ def execute(arguments: argparse.Namespace) -> int:
     else:
         print(_text(found, folder))
     return 0
+
+
+def _told(
+    arguments: argparse.Namespace, files: Sequence[str], recordings: Sequence[Recording]
+) -> Told:
+    """Recordings, scenario and plant as the experiment file says."""
+    from ves_twin.benches.told import tell
+    from ves_twin.errors import InvalidInputError
+    from ves_twin.plant.plant import Plant
+    from ves_twin.recording.files import recording_name
+    from ves_twin.scenario.experiment import Experiment
+
+    plant = Plant.load(arguments.plant) if arguments.plant else None
+    named = dict(zip(map(recording_name, files), recordings, strict=True))
+    if len(named) < len(recordings):
+        raise InvalidInputError("recordings", "two of one name", "names that tell them apart")
+    return tell(named, Experiment.load(arguments.experiment), plant)
 
 
 def _nominal(given: str | None, recording: Recording) -> Plant:

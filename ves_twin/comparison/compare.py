@@ -69,12 +69,16 @@ def compare(
         raise InvalidInputError("recordings", "none", "at least one")
     told = experiment or Experiment()
     say = progress or (lambda share, what: None)
-    prepared = [prepare(n.name, n.recording, told, plant) for n in recordings]
-    other = None if against is None else prepare(against.name, against.recording, told, plant)
+    told.check_names([n.name for n in (*recordings, *([against] if against else []))])
+    prepared = [prepare(n.name, n.recording, told.of(n.name), plant) for n in recordings]
+    other = None
+    if against is not None:
+        other = prepare(against.name, against.recording, told.of(against.name), plant)
     found = []
     for k, one in enumerate(prepared):
         say(k / len(prepared), one.name)
-        found.append(_against(one, other, told) if other else _one(one, told))
+        own = told.of(one.name)
+        found.append(_against(one, other, own, told) if other else _one(one, own))
     say(1.0, "done")
     excesses = None
     if tolerance is not None:
@@ -87,7 +91,9 @@ def _one(one: Prepared, told: Experiment) -> RecordingComparison:
     return _compared(one, dict(one.recording.signals), one.simulated(), noises, Basis.PLANT)
 
 
-def _against(one: Prepared, other: Prepared, told: Experiment) -> RecordingComparison:
+def _against(
+    one: Prepared, other: Prepared, told: Experiment, all_told: Experiment
+) -> RecordingComparison:
     """Against another recording: directly, or each less the plant's answer to its set-points."""
     common = tuple(n for n in one.compared if n in other.compared)
     if not common:
@@ -99,7 +105,8 @@ def _against(one: Prepared, other: Prepared, told: Experiment) -> RecordingCompa
     if count < one.rows.start + FEWEST:
         came = f"{count} rows, the comparison begins at row {one.rows.start}"
         raise InvalidInputError("length of --against", came, f"at least {FEWEST} rows in common")
-    mine, theirs = noise_of_columns(one, told.noise), noise_of_columns(other, told.noise)
+    mine = noise_of_columns(one, told.noise)
+    theirs = noise_of_columns(other, all_told.of(other.name).noise)
     noises = {
         column: _both(noise, theirs[column]) for column, noise in mine.items() if column in theirs
     }

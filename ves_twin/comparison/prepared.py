@@ -12,7 +12,6 @@ from ves_twin.comparison.loop_noise import with_loop_noise
 from ves_twin.comparison.noise import Noise, NoiseSource, measured_noise, standing_rows
 from ves_twin.comparison.predict import predict
 from ves_twin.errors import InvalidInputError, UnknownNameError
-from ves_twin.plant.known_weight import hang_weight
 from ves_twin.plant.plant import Plant
 from ves_twin.quality.check import Check
 from ves_twin.quality.gate import quality_gate
@@ -88,10 +87,7 @@ def prepare(
     compared = tuple(n for n in wanted if n in recording.signals)
     if not compared:
         raise UnknownNameError("signal in the recording", wanted[0], recording.signals)
-    rig = plant or Plant.load(experiment.plant or scenario.plant)
-    rig = rig.with_values(experiment.parameters)
-    if experiment.payload:
-        rig = hang_weight(rig, experiment.payload)
+    rig = experiment.rig(plant, scenario)
     even = even_clock(recording, drive)
     rows = _rows(even.time, scenario, experiment)
     notes = _notes(recording, even, drive, experiment)

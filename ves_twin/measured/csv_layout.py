@@ -118,8 +118,8 @@ def _splits(texts: list[str], separator: str) -> list[_Split]:
             continue
         width = _usual([len(cells[i]) for i in full])
         first = next(i for i in full if len(cells[i]) == width)
-        rows = [i for i in range(first, len(cells)) if cells[i]]
-        fit = sum(good[i] for i in rows if len(cells[i]) == width) / len(rows)
+        rows = [i for i in range(len(cells)) if cells[i]]
+        fit = sum(good[i] for i in rows[rows.index(first) :] if len(cells[i]) == width) / len(rows)
         commas = decimal == "," and any("," in c for c in cells[first])
         if fit > 0.0 and (decimal == "." or commas):
             found.append(_Split(separator, decimal, first, width, (round(fit, 2), width)))
@@ -148,7 +148,10 @@ def _is_number(cell: str, decimal: str) -> bool:
 
 def _columns(texts: list[str], split: _Split) -> tuple[tuple[Column, ...], frozenset[str]]:
     above = [i for i in range(split.first) if texts[i].strip()]
-    rows = [split_line(_COMMENT.sub("", texts[i]), split.separator) for i in above]
+    heads = [_COMMENT.sub("", texts[i]) for i in above]
+    if split.separator == SPACES:  # "x [mm]" is one name
+        heads = [re.sub(r"\s+(?=[\[(])", "", head) for head in heads]
+    rows = [split_line(head, split.separator) for head in heads]
     rows = [row for row in rows if len(row) == split.width]
     units = [""] * split.width
     if len(rows) > 1 and _is_unit_row(rows[-1]):

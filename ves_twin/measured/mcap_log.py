@@ -72,8 +72,8 @@ class McapLog(Log):
         factories = (Ros2Factory(), ProtobufFactory())
         self.tables = tuple(self._table(c, factories) for c in self._channels.values())
         if not any(self._counts.values()):
-            faults = "; ".join(self.faults)
-            raise InvalidInputError(path.name, faults or "0 messages", "an MCAP file with messages")
+            came = "; ".join(["0 messages", *self.faults])
+            raise InvalidInputError(path.name, came, "an MCAP file with messages")
         self.form = f"MCAP, times from {self.origin} ns on"
 
     def blocks(self, table: str, columns: Sequence[str]) -> Iterator[Block]:

@@ -37,6 +37,13 @@ def load_recording(path: str | Path) -> Recording:
     return recording_of(_table(file), file)
 
 
+def recording_name(path: str | Path) -> str:
+    """What a recording is called: its file, or the folder of the run that the file lies in."""
+    file = Path(path)
+    own = file.name in {FILE_NAME, STREAM_NAME}
+    return file.parent.name if own and file.parent.name else file.name
+
+
 def save_recording(recording: Recording, path: Path) -> None:
     """Write a recording to a Parquet file; the file appears when it is whole."""
     schema = schema_of(recording.signals, recording.info)

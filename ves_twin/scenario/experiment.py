@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Sequence
 from enum import StrEnum
 from pathlib import Path
 from typing import Annotated, Any, Self
@@ -10,6 +11,8 @@ from typing import Annotated, Any, Self
 from pydantic import Field, ValidationError, field_validator, model_validator
 
 from ves_twin.errors import InvalidInputError, UnknownNameError
+from ves_twin.plant.known_weight import hang_weight
+from ves_twin.plant.plant import Plant
 from ves_twin.recording.recording import Recording
 from ves_twin.scenario.fields import Joints, Part, Pose, Seconds, named, si
 from ves_twin.scenario.load import refusal
@@ -81,13 +84,24 @@ class Window(Part):
         return self
 
 
+class Differences(Part):
+    """What one recording has of its own: what is not said is as the experiment says."""
+
+    parameters: dict[str, Any] = Field(default_factory=dict)
+    payload: Annotated[float, si("kg"), Field(ge=0, le=50)] | None = None
+    noise: str | None = None
+    start: Start | None = None
+    window: Window | None = None
+
+
 class Experiment(Part):
     """How a recording was made, as far as its own metadata do not say.
 
     `scenario` gives clocks, leg gains, belief and the emulated system; `settings` are dotted keys
     changed in it. `parameters` are numbers of the plant in these recordings only; `payload` is a
     known mass at the tool. `noise` is "auto" (a part that stands still if there is one, else
-    declared), "declared", or a recording of the rig standing still.
+    declared), "declared", or a recording of the rig standing still. `recordings` holds by name
+    what single recordings have of their own.
     """
 
     drive: tuple[Annotated[str, named("signal to feed in", DRIVES)], ...] = ()
@@ -100,6 +114,7 @@ class Experiment(Part):
     noise: str = "auto"
     start: Start = Start()
     window: Window = Window()
+    recordings: dict[str, Differences] = Field(default_factory=dict)
 
     @field_validator("drive")
     @classmethod
@@ -128,6 +143,33 @@ class Experiment(Part):
             return Experiment.model_validate(content)
         except ValidationError as error:
             raise refusal(error, Path(path).name, Experiment) from None
+
+    def of(self, name: str) -> Experiment:
+        """The experiment of one recording, by its name with or without its ending."""
+        own = self.recordings.get(name) or self.recordings.get(Path(name).stem)
+        if own is None:
+            return self
+        said = {k: v for k in Differences.model_fields if (v := getattr(own, k)) is not None}
+        said["parameters"] = {**self.parameters, **own.parameters}
+        return self.model_copy(update=said)
+
+    def check_names(self, names: Sequence[str]) -> None:
+        """Raise UnknownNameError if it speaks of a recording that is not there."""
+        known = {*names, *(Path(name).stem for name in names)}
+        for name in self.recordings:
+            if name not in known:
+                raise UnknownNameError("recording in the experiment", name, names)
+
+    def rig(self, given: Plant | None, scenario: Scenario) -> Plant:
+        """The plant that is tried, with the numbers and the payload of the experiment.
+
+        Args:
+            given: by the caller; else the experiment's own, else the scenario's.
+            scenario: that the recording is replayed by.
+        """
+        rig = given or Plant.load(self.plant or scenario.plant)
+        rig = rig.with_values(self.parameters)
+        return hang_weight(rig, self.payload) if self.payload else rig
 
     def scenario_of(self, recording: Recording) -> Scenario:
         """The scenario that a recording is replayed by, started as the experiment says.
