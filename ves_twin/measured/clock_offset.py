@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from scipy.interpolate import CubicSpline
-from scipy.signal import correlate
+from scipy.signal import coherence, correlate, csd, firwin, oaconvolve
 
 from ves_twin.errors import InvalidInputError
 from ves_twin.types import FloatArray
@@ -16,6 +16,9 @@ ALIKE = 0.6
 
 LONELY = 0.95
 """A second peak as high as this share of the first makes the offset a guess among several."""
+
+SHARED = 0.99
+"""Share of the cross-spectrum that the band of a fit holds."""
 
 MOST = 2_000_000
 """Rows of the correlation at most."""
@@ -64,9 +67,10 @@ def clock_offset(
 ) -> ClockOffset:
     """Estimate the offset d with own(t) = a + g main(t + d).
 
-    The cross-correlation of the two, divided by the power of the overlap, gives whole rows; then
-    a, g and d are fitted by Gauss-Newton. The sd of d comes from the residual times the slope with
-    its autocorrelation counted (Newey and West 1987), since residuals of motion are coloured.
+    The cross-correlation of the two over the power of the overlap gives whole rows. Both are
+    smoothed to the band in which they are coherent, for the slope of noise tells no time; then a,
+    g and d are fitted by Gauss-Newton. The sd of d comes from the residual times the slope with its
+    autocorrelation counted (Newey and West 1987), since residuals of motion are coloured.
 
     Args:
         own_time: times on the other clock [s] (k,), increasing.
@@ -88,13 +92,15 @@ def clock_offset(
     if abs(height) < ALIKE:
         came = f"a correlation of {abs(height):.2f} at best"
         raise InvalidInputError("columns to align by", came, f"at least {ALIKE}")
-    value, sd, correlation = _refined(a_time, a, b_time, b, coarse)
+    band = _band(a_time + coarse, a, b_time, b, step)
+    a, b = _smooth(a_time, a, band), _smooth(b_time, b, band)
+    value, sd, correlation = _refined(a_time, a, b_time, b, coarse, band)
     middle = 0.5 * (max(a_time[0], b_time[0] - value) + min(a_time[-1], b_time[-1] - value))
     early, late = a_time < middle, a_time >= middle
     drift, drift_sd = 0.0, np.inf
     if min(early.sum(), late.sum()) >= 2 * FEWEST:
-        first, sd_first, _ = _refined(a_time[early], a[early], b_time, b, value)
-        second, sd_second, _ = _refined(a_time[late], a[late], b_time, b, value)
+        first, sd_first, _ = _refined(a_time[early], a[early], b_time, b, value, band)
+        second, sd_second, _ = _refined(a_time[late], a[late], b_time, b, value, band)
         apart = float(a_time[late].mean() - a_time[early].mean())
         drift, drift_sd = (second - first) / apart, float(np.hypot(sd_first, sd_second)) / apart
     return ClockOffset(value, sd, correlation, rival, drift, drift_sd)
@@ -134,12 +140,46 @@ def _coarse(
     return float(offsets[best]), float(shape[best]), rival
 
 
+def _band(
+    a_time: FloatArray, a: FloatArray, b_time: FloatArray, b: FloatArray, step: float
+) -> float:
+    """Frequency below which nearly all that the two share lies [Hz]."""
+    grid = np.arange(max(a_time[0], b_time[0]), min(a_time[-1], b_time[-1]), step)
+    x, y = np.interp(grid, a_time, a), np.interp(grid, b_time, b)
+    length = max(FEWEST, len(grid) // 8)
+    if len(grid) < 2 * length:
+        return 0.5 / step
+    frequency, cross = csd(x, y, 1.0 / step, nperseg=length)
+    shared = np.abs(cross) * (coherence(x, y, 1.0 / step, nperseg=length)[1] > 0.5)
+    if not shared.any():
+        return 0.5 / step
+    share = np.cumsum(shared) / shared.sum()
+    return float(frequency[np.searchsorted(share, SHARED)] + frequency[1])
+
+
+def _smooth(time: FloatArray, values: FloatArray, band: float) -> FloatArray:
+    """A zero-phase low-pass at twice the band, on an even grid; back on the rows."""
+    step = float(np.median(np.diff(time)))
+    if 2.0 * band > 0.4 / step:
+        return values
+    grid = time[0] + np.arange(round((time[-1] - time[0]) / step) + 1) * step
+    half = min(round(1.0 / (band * step)), len(grid) - 1)
+    window = firwin(2 * half + 1, 2.0 * band, fs=1.0 / step)
+    padded = np.pad(np.interp(grid, time, values), half, mode="reflect", reflect_type="odd")
+    return np.asarray(np.interp(time, grid, oaconvolve(padded, window, mode="valid")))
+
+
 def _refined(
-    a_time: FloatArray, a: FloatArray, b_time: FloatArray, b: FloatArray, offset: float
+    a_time: FloatArray,
+    a: FloatArray,
+    b_time: FloatArray,
+    b: FloatArray,
+    offset: float,
+    band: float,
 ) -> tuple[float, float, float]:
     curve = CubicSpline(b_time, b)
     sd, correlation = np.inf, 0.0
-    for _ in range(4):
+    for _ in range(8):
         there = a_time + offset
         inside = (there > b_time[0]) & (there < b_time[-1])
         y, model, slope = a[inside], curve(there[inside]), curve(there[inside], 1)
@@ -152,15 +192,16 @@ def _refined(
         if power == 0.0:
             break
         offset += float(tangent @ residual) / power
-        sd = _sd(tangent, residual - tangent * float(tangent @ residual) / power, power)
+        memory = 2.0 / (band * float(np.median(np.diff(a_time))))
+        sd = _sd(tangent, residual - tangent * float(tangent @ residual) / power, power, memory)
         correlation = float(np.corrcoef(y, model)[0, 1])
     return float(offset), sd, correlation
 
 
-def _sd(tangent: FloatArray, residual: FloatArray, power: float) -> float:
-    """Newey-West sd of the least-squares step."""
+def _sd(tangent: FloatArray, residual: FloatArray, power: float, memory: float) -> float:
+    """Newey-West sd of the least-squares step; `memory` is that of the smoothing [rows]."""
     score = tangent * residual
-    reach = min(len(score) // 4, int(8.0 * len(score) ** (1.0 / 3.0)))
+    reach = min(len(score) // 4, int(max(8.0 * len(score) ** (1.0 / 3.0), memory)))
     spectrum = np.abs(np.fft.rfft(score, 2 * len(score))) ** 2
     covariance = np.fft.irfft(spectrum)[: reach + 1]
     weights = 1.0 - np.arange(reach + 1) / (reach + 1)

@@ -100,7 +100,7 @@ def _exact(name: str) -> str | None:
         if bare in signal.columns and signal.role is not Role.TRUTH:
             return bare
         for i, column in enumerate(signal.columns):
-            if bare == f"{signal.field}.{i + 1}":
+            if bare == (signal.field if signal.width == 1 else f"{signal.field}.{i + 1}"):
                 return column
     return None
 

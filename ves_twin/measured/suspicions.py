@@ -23,7 +23,10 @@ FACTORS = {
 """SI unit -> other units, and how many of them make one."""
 
 USUAL = 3.0
-"""A range this many times the plausible one still passes: plants differ."""
+"""A range about zero so many times the plausible one still passes: plants differ."""
+
+NEAR = 2.0
+"""So does one that misses a range away from zero by less than this factor."""
 
 
 def suspicions(
@@ -59,7 +62,7 @@ def suspicions(
 
 def _fits(here: tuple[float, float], there: tuple[float, float], factor: float) -> bool:
     """Whether values divided by a factor lie within the plausible range, widened."""
-    middle, half = 0.5 * (there[0] + there[1]), 0.5 * (there[1] - there[0])
     low, high = here[0] / factor, here[1] / factor
-    reach = USUAL * half if there[0] <= 0.0 <= there[1] else half + 0.25 * abs(middle)
-    return middle - reach <= low and high <= middle + reach
+    if there[0] > 0.0:
+        return there[0] / NEAR <= low and high <= NEAR * there[1]
+    return USUAL * there[0] <= low and high <= USUAL * there[1]

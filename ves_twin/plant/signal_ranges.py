@@ -16,7 +16,7 @@ def signal_ranges(plant: Plant) -> dict[str, tuple[FloatArray, FloatArray]]:
     """Least and largest value of each column, by signal, in SI.
 
     Legs: home length and half a stroke. Sensor: its range. Arm: one turn either way, and the
-    torque limit of the drives. Supply: up to twice the rated pressure.
+    torque limit of the drives. Supply: a tenth of the nominal pressure to twice of it.
     """
     array, number = plant.parameters.array, plant.parameters.number
     g = plant.geometry
@@ -36,5 +36,5 @@ def signal_ranges(plant: Plant) -> dict[str, tuple[FloatArray, FloatArray]]:
         "arm.command": (-turn, turn),
         "arm.q": (-turn, turn),
         "arm.torque": (-torque, torque),
-        "supply.pressure": (0.0 * supply, supply),
+        "supply.pressure": (0.05 * supply, supply),
     }
