@@ -31,6 +31,7 @@ layers: .venv/.dev
 bench: .venv/.dev
 	$(BIN)/python benchmarks/loop_speed.py
 	$(BIN)/python benchmarks/memory.py
+	$(BIN)/python benchmarks/measured.py
 
 picture: .venv/.dev
 	$(BIN)/python benchmarks/picture.py docs/run.png

@@ -41,6 +41,19 @@ def test_fewer_than_two_times_are_refused():
         line([5.0])
 
 
+def test_stamps_in_whole_milliseconds_tell_the_true_rate_and_can_be_drawn_straight():
+    true = np.arange(3000) * 0.0126173  # the admittance cycle
+    kept = np.delete(true, slice(1000, 1020))
+    raw = np.floor(1e3 * kept)
+    plain, straight = line(raw), line(raw, even=True)
+    assert plain.period == pytest.approx(0.0126173, rel=1e-4)
+    assert plain.jitter == straight.jitter > 0.02
+    assert straight.gaps == 1
+    # whole milliseconds are half of one late, all alike
+    assert np.ptp(straight.time - kept) < 2e-5
+    assert np.ptp(plain.time - kept) > 9e-4
+
+
 def onto(values, time, rows, way=Way.AUTO, role=MEASURED, gaps=Gaps.NAN):
     period, step = float(np.median(np.diff(time))), float(np.median(np.diff(rows)))
     return resample(values, time, period, rows, step, way, role, gaps)

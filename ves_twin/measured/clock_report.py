@@ -33,7 +33,7 @@ class ClockReport:
         guessed: the unit is a guess, the file does not say it.
         start, stop: first and last time [s].
         rows: that hold a time.
-        period: median step of its begin [s].
+        period: usual step of its begin [s].
         jitter: largest deviation of a step that is no gap, in periods.
         gaps: number of steps longer than 1.5 periods.
         longest: the longest of them.
@@ -143,7 +143,13 @@ class ClockCounter:
 
 
 def usual_step(time: FloatArray) -> float:
-    """Median of the steps forward [s]; 0 where there is none."""
+    """Mean of the steps near the median one [s]; 0 where no step goes forward.
+
+    Stamps that count whole milliseconds have a median step that is off by up to half of one.
+    """
     steps = np.diff(time)
     steps = steps[steps > 0.0]
-    return float(np.median(steps)) if len(steps) else 0.0
+    if not len(steps):
+        return 0.0
+    median = float(np.median(steps))
+    return float(np.mean(steps[np.abs(steps - median) < (GAP - 1.0) * median]))

@@ -25,6 +25,9 @@ from ves_twin.signals import Signal
 from ves_twin.types import FloatArray
 from ves_twin.units import to_unit
 
+JITTER = 0.02
+"""Jitter of the steps [periods] from which on an import says what can be done about it."""
+
 FEWEST = 2
 """Rows of a recording."""
 
@@ -73,7 +76,13 @@ def import_log(
         for name, values in signals.items()
         for words in suspicions(values, kinds[name], plausible or {})
     ]
-    even = told.rate is not None or aligned.rows_of_main.gaps == 0
+    line = aligned.rows_of_main
+    if told.rate is None and not told.clock.even and line.jitter > JITTER:
+        notes.append(
+            f"the rows come with {line.jitter:.0%} jitter: even = true in [clock] draws their"
+            f' stamps straight, or rate = "{1.0 / step:.5g} Hz" gives even rows'
+        )
+    even = told.rate is not None or line.gaps == 0
     info = RecordingInfo(
         origin="measured",
         versions={"ves_twin": version("ves_twin"), "pyarrow": version("pyarrow")},

@@ -66,13 +66,18 @@ class Keep(StrEnum):
 
 
 class ClockMap(Part):
-    """A clock of the file: a column, or a rate where no column tells the time."""
+    """A clock of the file: a column, or a rate where no column tells the time.
+
+    `even` says that the rows were taken evenly and only their stamps jitter: a straight line is
+    drawn through the stamps, with the rows that gaps swallowed counted.
+    """
 
     column: str | None = None
     unit: Annotated[str, named("unit of time", TIME)] | None = None
     rate: Annotated[Hertz, Field(gt=0)] | None = None
     repeats: Annotated[Repeats, named("choice", list(Repeats))] = Repeats.FIRST
     backward: Annotated[Backward, named("choice", list(Backward))] = Backward.REFUSE
+    even: bool = False
 
     @model_validator(mode="after")
     def _one_of_two(self) -> Self:

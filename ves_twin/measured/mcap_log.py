@@ -80,7 +80,8 @@ class McapLog(Log):
         """Messages of a topic in the file's order."""
         self.table(table)
         topic = self._topics[table]
-        if list(columns) == [LOG] and self._chunks:
+        indexed = bool(self._chunks) and all(c.message_index_offsets for c in self._chunks)
+        if list(columns) == [LOG] and indexed:
             yield {LOG: self._indexed_times(topic.id)}
             return
         rows: list[list[float]] = []

@@ -34,6 +34,9 @@ def npz_log(path: Path) -> ArrayLog:
         except (ValueError, OSError, EOFError, KeyError, zipfile.BadZipFile, zlib.error) as error:
             faults.append(f"{name}: {_words(error)}, left out")
             continue
+        if not isinstance(array, np.ndarray):
+            faults.append(f"{name}: no array, left out")
+            continue
         parts = {name: array}
         if array.dtype.names is not None:
             parts = {f"{name}.{field}": array[field] for field in array.dtype.names}

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -25,6 +25,7 @@ class Timeline:
         missing: rows without a time, left out.
         gaps: steps longer than 1.5 periods.
         longest: the longest of them [s].
+        jitter: sd of the steps that are no gaps, in periods; of the file, also where `even`.
     """
 
     time: FloatArray
@@ -35,6 +36,7 @@ class Timeline:
     missing: int
     gaps: int
     longest: float
+    jitter: float
 
     @staticmethod
     def of(raw: FloatArray, scale: float, told: ClockMap, where: str) -> Timeline:
@@ -67,21 +69,26 @@ class Timeline:
         if len(time) < 2:
             raise InvalidInputError(where, f"{len(time)} rows with a time", "at least 2")
         period = usual_step(time)
-        wide = np.diff(time)
-        wide = wide[wide > GAP * period]
+        steps = np.diff(time)
+        wide = steps[steps > GAP * period]
         longest = float(wide.max()) if len(wide) else 0.0
-        return Timeline(time, good, period, len(same), len(back), missing, len(wide), longest)
+        even = steps[steps <= GAP * period]
+        jitter = float(np.std(even)) / period if len(even) else 0.0
+        if told.even:
+            time = _straightened(time, period)
+        return Timeline(
+            time, good, period, len(same), len(back), missing, len(wide), longest, jitter
+        )
 
     @staticmethod
     def even(rows: int, rate: float) -> Timeline:
         """Rows at an even rate [Hz] that the map declares."""
         time = np.asarray(np.arange(rows) / rate, np.float64)
-        return Timeline(time, np.arange(rows), 1.0 / rate, 0, 0, 0, 0, 0.0)
+        return Timeline(time, np.arange(rows), 1.0 / rate, 0, 0, 0, 0, 0.0, 0.0)
 
     def shifted(self, by: float) -> Timeline:
         """The same rows with a time added [s]."""
-        parts = (self.repeats, self.back, self.missing, self.gaps, self.longest)
-        return Timeline(self.time + by, self.rows, self.period, *parts)
+        return replace(self, time=self.time + by)
 
     def to_dict(self) -> dict[str, object]:
         """Plain values for an account."""
@@ -95,7 +102,15 @@ class Timeline:
             "missing": self.missing,
             "gaps": self.gaps,
             "longest_gap": self.longest,
+            "jitter": self.jitter,
         }
+
+
+def _straightened(time: FloatArray, period: float) -> FloatArray:
+    """Stamps on the straight line through them; a gap counts as the rows that fit into it."""
+    count = np.concatenate([[0.0], np.cumsum(np.maximum(np.round(np.diff(time) / period), 1.0))])
+    slope, start = np.polyfit(count, time - time[0], 1)
+    return np.asarray(time[0] + start + slope * count)
 
 
 def _ordered(

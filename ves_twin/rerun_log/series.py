@@ -77,7 +77,7 @@ def emulated_signal(recording: Recording) -> str | None:
 
 
 def _signal_series(recording: Recording, name: str) -> list[Series]:
-    signal = SIGNALS[name]
+    signal = recording.info.signal(name)
     units = tuple(dict.fromkeys(signal.units))
     result = []
     for unit in units:
