@@ -33,7 +33,7 @@ class Answer:
         causes: effect@target of each, the most probable first.
         firm: whether each is called a fault for sure.
         probability: of the first.
-        sizes: parameter -> (value, low, high), of all causes.
+        sizes: parameter -> (value, low, high, nominal), of all causes.
         gain: share of the excess on held-out data that the extension took; None without.
         seconds: that it took.
     """
@@ -50,7 +50,7 @@ class Answer:
     def of(verdict: Verdict, seconds: float) -> Answer:
         """From a verdict."""
         sizes = {
-            f"{cause.effect}@{cause.target}:{name}": (p.value, p.low, p.high)
+            f"{cause.effect}@{cause.target}:{name}": (p.value, p.low, p.high, p.nominal)
             for cause in verdict.causes
             for name, p in cause.parameters.items()
         }

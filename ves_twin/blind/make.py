@@ -134,6 +134,7 @@ def _keep(recording: Recording, path: Path) -> None:
         settings=recording.info.settings,
         log=recording.info.log,
         period=recording.info.period,
+        own_signals=recording.info.own_signals,
     )
     try:
         path.parent.mkdir(parents=True, exist_ok=True)

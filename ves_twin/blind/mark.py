@@ -166,9 +166,9 @@ def _coverage(single: Sequence[tuple[Truth, Answer]]) -> Rate:
     inside = []
     for truth, answer in filter(_exact, single):
         for name, departure in truth.causes[0].departures.items():
-            for said, (_, low, high) in (answer.sizes or {}).items():
+            for said, (_, low, high, nominal) in (answer.sizes or {}).items():
                 if said.split(":")[-1] == name.split(":")[-1]:
-                    inside.append(low <= departure <= high)
+                    inside.append(low <= nominal + departure <= high)
     return Rate(sum(inside), len(inside))
 
 

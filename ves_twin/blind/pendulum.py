@@ -13,6 +13,7 @@ from scipy.signal import lfilter
 from ves_twin.benches.pendulum import CHANNELS, STEP, Pendulum, edited
 from ves_twin.blind.bench import BlindBench, BlindRig
 from ves_twin.recording.recording import Recording, RecordingInfo
+from ves_twin.signals import Role, Signal
 from ves_twin.types import FloatArray
 
 COUNT = 2e-4
@@ -23,6 +24,12 @@ DISTURBANCE = 2e-4
 
 SECONDS = 4.0
 """Length of a record [s]."""
+
+SIGNALS_OF_ITS_OWN = (
+    Signal("joint.torque", ("",), ("N*m",), Role.COMMAND, "joint", "torque that was asked for"),
+    Signal("joint.angle", ("",), ("rad",), Role.MEASUREMENT, "joint", "encoder"),
+    Signal("joint.rate", ("",), ("rad/s",), Role.MEASUREMENT, "joint", "rate sensor"),
+)
 
 OUTSIDE = {
     "quadratic_drag": (0.005, 0.05),
@@ -77,7 +84,10 @@ class BlindPendulum(BlindBench):
             "joint.angle": read[:, :1],
             "joint.rate": read[:, 1:],
         }
-        return Recording(_rows(n), signals, RecordingInfo("measured", scenario="pendulum"))
+        info = RecordingInfo(
+            "measured", scenario="pendulum", period=STEP, own_signals=SIGNALS_OF_ITS_OWN
+        )
+        return Recording(_rows(n), signals, info)
 
 
 def asked_torque(seed: int, amplitude: float = 0.45) -> FloatArray:

@@ -136,7 +136,7 @@ def _run(sim: Simulator, rig: BlindRig, rng: np.random.Generator) -> None:
     slow = np.exp(-2.0 * np.pi * 1.0 * period)
     kick = SHAKEN * np.sqrt(1.0 - slow**2)
     pushes = lfilter([kick], [1.0, -slow], rng.standard_normal((count, 3)), axis=0)
-    body = sim.model.body("platform").id
+    body = sim.model.body("platform/top").id
     for k in range(count):
         if sim.done:
             break
