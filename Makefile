@@ -6,10 +6,20 @@ PYTHON ?= $(shell for p in python3.12 python3.11 python3 python; do \
 BIN := .venv/bin
 PIP := $(BIN)/python -m pip install --quiet --disable-pip-version-check
 
-.PHONY: demo test check fast types lint layers bench figures fidelity scorecard picture clean
+.PHONY: demo demo-diagnosis test check fast types lint layers bench figures fidelity scorecard picture clean
 
 demo: .venv/.run
 	$(BIN)/ves-twin run beam_horizontal_truth --out runs/demo
+
+# An effect chosen by the clock is hidden in a run of VES II and found from the recordings alone.
+HIDDEN := runs/demo-diagnosis
+demo-diagnosis: .venv/.run
+	rm -rf $(HIDDEN) $(HIDDEN).key
+	$(BIN)/ves-twin blind make --bench ves2_fast --cases 1 --none 0 --outside 0 --pair 0 --out $(HIDDEN)
+	$(BIN)/ves-twin diagnose $(HIDDEN)/case-0001/recording.parquet --plant ves2_pressure_fast \
+		--held-out $(HIDDEN)/case-0001/held_out.parquet --standstill $(HIDDEN)/standstill.parquet \
+		--out $(HIDDEN)/diagnosis
+	$(BIN)/ves-twin blind reveal --out $(HIDDEN)
 
 test: .venv/.dev lint layers types
 	$(BIN)/python -m pytest -n 2 --dist loadgroup

@@ -32,9 +32,10 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     score = verbs.add_parser("score", help="mark answers")
     score.add_argument("--page", metavar="FILE", help="write the marks as a page, too")
     score.add_argument("--json", action="store_true", help="the marks as JSON on stdout")
-    for verb in (make, answer, score):
+    reveal = verbs.add_parser("reveal", help="open the seal: what was hidden, case by case")
+    for verb in (make, answer, score, reveal):
         verb.add_argument("--out", metavar="DIR", default="runs/blind", help="folder of the suite")
-    for verb in (make, score):
+    for verb in (make, score, reveal):
         verb.add_argument("--key", metavar="FILE", help="key of the seal (default: DIR.key)")
     for verb in (answer, score):
         verb.add_argument("--answers", metavar="FILE", help="answers (default: DIR.answers.json)")
@@ -45,6 +46,8 @@ def execute(arguments: argparse.Namespace) -> int:
     folder = Path(arguments.out)
     if arguments.verb == "make":
         return _make(arguments, folder, _beside(folder, arguments.key, ".key"))
+    if arguments.verb == "reveal":
+        return _reveal(folder, _beside(folder, arguments.key, ".key"))
     answers = _beside(folder, arguments.answers, ".answers.json")
     if arguments.verb == "answer":
         return _answer(folder, answers, arguments.nulls)
@@ -98,16 +101,35 @@ def _answer(folder: Path, answers: Path, nulls: int) -> int:
     return 0
 
 
-def _score(arguments: argparse.Namespace, folder: Path, key: Path, answers: Path) -> int:
-    from ves_twin.blind.answer import read_answers
-    from ves_twin.blind.mark import mark, read_truths
+def _reveal(folder: Path, key: Path) -> int:
+    from ves_twin.blind.mark import read_truths
+
+    for truth in read_truths(folder, _read_key(key)):
+        hidden = [
+            f"{cause.label} ({', '.join(f'{v:.4g}' for v in cause.departures.values())};"
+            f" {cause.d:.1f} sigma)"
+            for cause in truth.causes
+        ]
+        if truth.outside:
+            hidden.append(f"{truth.outside} ({truth.outside_size:.3g}), outside the library")
+        print(f"{truth.case}  {' and '.join(hidden) or 'nothing'}")
+    return 0
+
+
+def _read_key(key: Path) -> str:
     from ves_twin.errors import FileAccessError
 
     try:
-        text = key.read_text(encoding="utf-8").strip()
+        return key.read_text(encoding="utf-8").strip()
     except OSError as error:
         raise FileAccessError(f"cannot read the key {key}: {error.strerror}") from None
-    marks = mark(read_truths(folder, text), read_answers(answers))
+
+
+def _score(arguments: argparse.Namespace, folder: Path, key: Path, answers: Path) -> int:
+    from ves_twin.blind.answer import read_answers
+    from ves_twin.blind.mark import mark, read_truths
+
+    marks = mark(read_truths(folder, _read_key(key)), read_answers(answers))
     if arguments.page:
         Path(arguments.page).write_text(_text(marks), encoding="utf-8")
     if arguments.json:
