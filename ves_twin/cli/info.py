@@ -6,8 +6,11 @@ import argparse
 import json
 from typing import TYPE_CHECKING
 
+from ves_twin.errors import InvalidInputError
+
 if TYPE_CHECKING:
     from ves_twin.effects.effect import Effect
+    from ves_twin.plant.parameters import ParameterTable
     from ves_twin.plant.plant import Plant
 
 SUMMARY = "versions, models and controllers; with --plant what differs from nominal"
@@ -16,12 +19,19 @@ SUMMARY = "versions, models and controllers; with --plant what differs from nomi
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Options of the command."""
     parser.add_argument("--plant", metavar="FILE", help="a plant: a name or a TOML file")
+    parser.add_argument(
+        "--mjcf", metavar="OUT", help="with --plant: write it as MJCF, and say what MJCF lacks"
+    )
     parser.add_argument("--json", action="store_true", help="one JSON object on stdout")
 
 
 def execute(arguments: argparse.Namespace) -> int:
     """Print what is installed and known."""
+    if arguments.mjcf and not arguments.plant:
+        raise InvalidInputError("--mjcf", "no --plant", "--plant NAME or FILE beside it")
     content = plant_content(arguments.plant) if arguments.plant else general_content()
+    if arguments.mjcf:
+        content |= mjcf_content(arguments.plant, arguments.mjcf)
     if arguments.json:
         print(json.dumps(content, indent=2))
         return 0
@@ -96,24 +106,55 @@ def plant_content(name: str) -> dict[str, object]:
             f"{e.kind} on {e.target}": ", ".join(
                 f"{m.name} = {e.values[m.name]:g} {m.unit}" for m in e.magnitudes
             )
+            + f". {_meaning(e)}"
             for e in plant.effects
         },
+        "numbers that the effects change": _changed(plant.actual, plant.parameters),
     }
+
+
+def mjcf_content(name: str, out: str) -> dict[str, object]:
+    """Write a plant as MJCF; what the file has of its changes, and what it has not."""
+    from pathlib import Path
+
+    from ves_twin.plant.mjcf_export import export_mjcf
+    from ves_twin.plant.plant import Plant
+
+    export = export_mjcf(Plant.load(name), Path(out))
+    return {
+        "MJCF": out,
+        "changes that the MJCF has": list(export.carried),
+        "changes that it cannot carry": list(export.lost),
+        "what no MJCF carries": {str(n): what for n, what in enumerate(export.never, 1)},
+    }
+
+
+def _meaning(effect: Effect) -> str:
+    """What an effect is, in the first line of its class."""
+    return (type(effect).__doc__ or "").strip().splitlines()[0]
 
 
 def _differences(plant: Plant) -> dict[str, object]:
     from ves_twin.plant.plant import NOMINAL, Plant
 
-    nominal = Plant.load(NOMINAL).parameters
+    return _changed(plant.parameters, Plant.load(NOMINAL).parameters)
+
+
+def _changed(here: ParameterTable, there: ParameterTable) -> dict[str, object]:
     return {
-        name: {
-            "nominal": there.tolist(),
-            "here": here.tolist(),
-            "unit": plant.parameters[name].unit,
-        }
-        for name, (here, there) in plant.parameters.differences(nominal).items()
+        name: {"nominal": before.tolist(), "here": now.tolist(), "unit": here[name].unit}
+        for name, (now, before) in here.differences(there).items()
     }
 
 
 def _words(difference: dict[str, object]) -> str:
-    return f"{difference['nominal']} -> {difference['here']} {difference['unit']}"
+    """Nominal and present value; of a list that changes in part only those entries, from 1."""
+    before, now, unit = difference["nominal"], difference["here"], difference["unit"]
+    if isinstance(before, list) and isinstance(now, list):
+        pairs = list(zip(before, now, strict=True))
+        if len(set(map(str, pairs))) == 1:
+            return f"each {before[0]} -> {now[0]} {unit}"
+        if not any(isinstance(value, list) for value in before):
+            moved = [f"{k}: {a} -> {b}" for k, (a, b) in enumerate(pairs, 1) if a != b]
+            return f"{', '.join(moved)} {unit}"
+    return f"{before} -> {now} {unit}"
