@@ -10,7 +10,6 @@ import numpy as np
 from ves_twin.comparison.channel import ChannelComparison, Column, compare_column
 from ves_twin.comparison.coherence import Companions
 from ves_twin.comparison.emulation_cost import EmulationCost, emulation_cost
-from ves_twin.comparison.even_clock import FEWEST
 from ves_twin.comparison.noise import Noise, NoiseSource
 from ves_twin.comparison.prepared import POSE, Prepared, noise_of_columns, prepare
 from ves_twin.comparison.programme import same_programme
@@ -18,6 +17,7 @@ from ves_twin.comparison.result import Basis, Comparison, RecordingComparison, T
 from ves_twin.comparison.tolerance import Tolerance
 from ves_twin.errors import InvalidInputError
 from ves_twin.plant.plant import Plant
+from ves_twin.recording.even_clock import FEWEST
 from ves_twin.recording.recording import Recording
 from ves_twin.scenario.experiment import Experiment
 from ves_twin.signals import SIGNALS

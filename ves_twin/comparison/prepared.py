@@ -7,19 +7,19 @@ from dataclasses import dataclass
 import numpy as np
 
 from ves_twin.comparison.declared_noise import declared_noise
-from ves_twin.comparison.even_clock import FEWEST, WAKE, even_clock, holes
 from ves_twin.comparison.loop_noise import with_loop_noise
 from ves_twin.comparison.noise import Noise, NoiseSource, measured_noise, standing_rows
-from ves_twin.comparison.predict import predict
 from ves_twin.errors import InvalidInputError, UnknownNameError
 from ves_twin.plant.plant import Plant
 from ves_twin.quality.check import Check
 from ves_twin.quality.gate import quality_gate
+from ves_twin.recording.even_clock import FEWEST, WAKE, even_clock, holes
 from ves_twin.recording.files import load_recording
 from ves_twin.recording.recording import Recording
 from ves_twin.scenario.experiment import COMPARED, Experiment, StartState
 from ves_twin.scenario.schema import Scenario
 from ves_twin.signals import SIGNALS
+from ves_twin.simulator.predict import predict
 from ves_twin.simulator.replay import replay_scenario
 from ves_twin.types import FloatArray
 
