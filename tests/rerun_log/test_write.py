@@ -15,7 +15,7 @@ from ves_twin.plant.assembly import assemble
 from ves_twin.plant.layout import Layout
 from ves_twin.plant.statics import place_rig
 from ves_twin.recording.recording import Event
-from ves_twin.rerun_log import write
+from ves_twin.rerun_log import whole_file, write
 from ves_twin.rerun_log.write import write_rrd
 from ves_twin.signals import SIGNALS
 
@@ -229,7 +229,7 @@ def test_a_plant_that_is_gone_is_replaced_and_said_so(beam, tmp_path):
 def test_a_read_only_target_gives_one_line(beam, tmp_path, monkeypatch):
     target = tmp_path / "kept.rrd"
     target.write_text("kept")
-    monkeypatch.setattr(write.os, "access", lambda *_: False)  # also where root may write
+    monkeypatch.setattr(whole_file.os, "access", lambda *_: False)  # also where root may write
     with pytest.raises(FileAccessError, match="read-only") as caught:
         write_rrd(beam, target)
     assert "\n" not in str(caught.value)
@@ -250,7 +250,7 @@ def test_a_disk_that_fills_up_leaves_no_file_behind(beam, tmp_path, monkeypatch)
     def full(_: object) -> None:
         raise OSError("File-writer thread shut down prematurely")
 
-    monkeypatch.setattr(write, "_flush", full)
+    monkeypatch.setattr(write, "flush", full)
     with pytest.raises(FileAccessError, match="cannot write"):
         write_rrd(beam, tmp_path / "a.rrd")
     assert not list(tmp_path.iterdir())

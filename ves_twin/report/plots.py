@@ -72,7 +72,13 @@ def draw_traces(
     for side in ("top", "right"):
         axes.spines[side].set_visible(False)
     if len(traces) > 1:
-        axes.legend(fontsize=7, loc="upper right", ncols=len(traces), frameon=False)
+        axes.legend(
+            fontsize=7,
+            loc="lower right",
+            bbox_to_anchor=(1.0, 0.98),
+            ncols=len(traces),
+            frameon=False,
+        )
 
 
 def draw_levels(names: Sequence[str], levels: Sequence[float], unit: str, mark: float) -> Figure:
@@ -97,6 +103,40 @@ def draw_levels(names: Sequence[str], levels: Sequence[float], unit: str, mark: 
     axes.invert_yaxis()
     axes.set_xlabel(unit, fontsize=8)
     axes.tick_params(axis="x", labelsize=8)
+    for side in ("top", "right"):
+        axes.spines[side].set_visible(False)
+    return figure
+
+
+def draw_change(
+    names: Sequence[str], before: Sequence[float], after: Sequence[float], unit: str, mark: float
+) -> Figure:
+    """Where each of many levels was and where it is now, on a logarithmic axis.
+
+    Args:
+        names: of the lines, from the top.
+        before: levels there were, positive.
+        after: levels there are now.
+        unit: label of the axis.
+        mark: a line across, for instance 1 sigma.
+    """
+    figure = new_figure(0.9 + 0.2 * len(names))
+    axes = figure.add_subplot()
+    there, here = np.maximum(before, LEAST * mark), np.maximum(after, LEAST * mark)
+    place = np.arange(len(names))
+    axes.hlines(place, there, here, color="#c3cad1", linewidth=2.0)
+    axes.plot(there, place, "o", color=SIMULATED, markersize=6, label="before")
+    axes.plot(here, place, "o", color=MEASURED, markersize=6, label="after")
+    axes.set_xscale("log")
+    both = np.concatenate([there, here, [mark]])
+    axes.set_xlim(both.min() / 1.5, both.max() * 1.5)
+    axes.axvline(mark, color="#a32020", linewidth=1.0)
+    axes.set_yticks(place, list(names), fontsize=8)
+    axes.set_ylim(len(names) - 0.4, -0.6)
+    axes.set_xlabel(unit, fontsize=8)
+    axes.tick_params(axis="x", labelsize=8)
+    axes.grid(axis="y", color="#eef0f2", linewidth=0.6)
+    figure.legend(fontsize=8, loc="outside upper right", ncols=2, frameon=False)
     for side in ("top", "right"):
         axes.spines[side].set_visible(False)
     return figure

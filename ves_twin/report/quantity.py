@@ -18,7 +18,8 @@ def quantity(value: float | None, unit: str) -> str:
 
     Args:
         value: in `unit`.
-        unit: SI unit; a product such as N*m takes the prefix on its first factor.
+        unit: SI unit; a product such as N*m takes the prefix on its first factor. Powers and
+            products of kilograms take none.
     """
     if value is None or not math.isfinite(value):
         return UNSURE
@@ -27,6 +28,11 @@ def quantity(value: float | None, unit: str) -> str:
     size = abs(value)
     if size == 0.0:
         return f"0 {_shown(unit)}"
+    if unit == "kg" and size < 0.9995:
+        value, unit, size = 1e3 * value, "g", 1e3 * size
+    first = unit.split("/")[0].split("*")[0]
+    if first.startswith("kg") or "^" in first:
+        return f"{value:.3g} {_shown(unit)}"
     factor, prefix = next(((f, p) for f, p in PREFIXES if size >= 0.9995 * f), PREFIXES[-1])
     if prefix == "k" and unit.startswith("N") and size < 1e4:
         return f"{value:.4g} {_shown(unit)}"  # 1500 N reads better than 1.5 kN

@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-import os
 from collections.abc import Iterator
 from pathlib import Path
 
 import numpy as np
 import rerun as rr
 
-from ves_twin.errors import FileAccessError
 from ves_twin.recording.recording import Recording
 from ves_twin.rerun_log.account import account
 from ves_twin.rerun_log.blueprint import blueprint_of
@@ -24,6 +22,7 @@ from ves_twin.rerun_log.poses import (
 from ves_twin.rerun_log.rig import DrawnRig
 from ves_twin.rerun_log.series import Series, series_of
 from ves_twin.rerun_log.shapes import send_shapes
+from ves_twin.rerun_log.whole_file import whole_file
 from ves_twin.simulator.outcome import Outcome
 from ves_twin.types import IntArray
 
@@ -54,27 +53,9 @@ def write_rrd(recording: Recording, path: Path) -> Path:
     Raises:
         FileAccessError: the file cannot be written.
     """
-    partial = path.with_name(path.name + ".partial")
-    _check_target(path, partial)
-    try:
+    with whole_file(path) as partial:
         _write(recording, partial)
-        os.replace(partial, path)
-    except OSError as error:
-        raise FileAccessError(f"cannot write '{path}': {error.strerror or error}") from None
-    finally:
-        partial.unlink(missing_ok=True)
     return path
-
-
-def _check_target(path: Path, partial: Path) -> None:
-    if path.is_dir():
-        raise FileAccessError(f"cannot write '{path}': it is a folder")
-    if path.exists() and not os.access(path, os.W_OK):
-        raise FileAccessError(f"cannot write '{path}': the file is read-only")
-    try:
-        partial.touch()
-    except OSError as error:
-        raise FileAccessError(f"cannot write '{path}': {error.strerror}") from None
 
 
 def _write(recording: Recording, path: Path) -> None:
@@ -95,7 +76,7 @@ def _write(recording: Recording, path: Path) -> None:
         _send_ghost(stream, recording, rig)
     for lines in series:
         _send_series(stream, recording, lines)
-    _flush(stream)
+    flush(stream)
     stream.disconnect()
 
 
@@ -126,7 +107,7 @@ def _send_frames(
                 translation=frames.position[:, i], quaternion=frames.turn[:, i]
             )
             stream.send_columns(f"{root}/{body}", times, poses)
-        _flush(stream)
+        flush(stream)
 
 
 def _send_series(stream: rr.RecordingStream, recording: Recording, lines: Series) -> None:
@@ -135,7 +116,7 @@ def _send_series(stream: rr.RecordingStream, recording: Recording, lines: Series
     for rows in _chunks(len(recording)):
         times = _times(recording, np.arange(rows.start, rows.stop))
         stream.send_columns(lines.entity, times, rr.Scalars.columns(scalars=lines.values(rows)))
-    _flush(stream)
+    flush(stream)
 
 
 def _send_events(stream: rr.RecordingStream, recording: Recording) -> None:
@@ -150,7 +131,8 @@ def _send_events(stream: rr.RecordingStream, recording: Recording) -> None:
     stream.send_columns("events", times, rr.TextLog.columns(text=texts, level=levels))
 
 
-def _flush(stream: rr.RecordingStream) -> None:
+def flush(stream: rr.RecordingStream) -> None:
+    """Send what waits; raises OSError where it cannot be written."""
     try:
         stream.flush()
     except RuntimeError as error:  # the writer's thread has ended: disk full, quota
