@@ -1,10 +1,21 @@
-"""The diagnose command: bad input is one line, before anything is computed."""
+"""The diagnose and plan commands: bad input is one line; what is found is written as files."""
 
+import json
+from pathlib import Path
+
+import numpy as np
 import pytest
 
 import ves_twin as vt
+from ves_twin.benches.diagnose_rig import RigDiagnosis
+from ves_twin.benches.pendulum import Pendulum
+from ves_twin.benches.ves2 import DRIVE
 from ves_twin.cli.main import main
-from ves_twin.recording.files import save_recording
+from ves_twin.diagnosis.diagnose import diagnose
+from ves_twin.diagnosis.forward import Programme
+from ves_twin.diagnosis.settings import Settings
+from ves_twin.recording.files import load_recording, save_recording
+from ves_twin.recording.recording import Recording, RecordingInfo
 
 SHORT = {"run.duration": 2.0, "run.settle": 0.3}
 
@@ -31,3 +42,54 @@ def test_bad_input_is_one_line_and_exit_2(capsys, tmp_path, recording, options, 
     error = capsys.readouterr().err.strip()
     assert words in error
     assert "\n" not in error
+
+
+@pytest.fixture
+def found(monkeypatch, recording):
+    """A diagnosis whose verdict was made of a pendulum, so that it takes seconds."""
+    fed = Programme("pendulum", 0.002 * np.arange(2000), {"joint.torque": TORQUE})
+    rows = Pendulum().simulate(fed, {"joint.friction": 0.1})
+    rows += np.random.default_rng(0).normal(size=rows.shape) * [0.001, 0.01]
+    signals = {"joint.torque": TORQUE, "joint.angle": rows[:, :1], "joint.rate": rows[:, 1:]}
+    data = Recording(fed.time, signals, RecordingInfo("measured"))
+    verdict = diagnose(Pendulum(), [data], settings=Settings(nulls=20))
+    setpoints = Programme.of(load_recording(Path(recording)), DRIVE, "next")
+    plant = vt.Plant.load("ves2").extended(vt.effects.CoulombFriction("leg.3", level=60.0))
+    result = RigDiagnosis(verdict, plant, "there were no held-out recordings", setpoints)
+    monkeypatch.setattr("ves_twin.benches.diagnose_rig.diagnose_rig", lambda *a, **k: result)
+    return verdict
+
+
+TORQUE = np.sin(2 * np.pi * 0.7 * 0.002 * np.arange(2000))[:, None]
+
+
+def test_a_diagnosis_writes_what_the_contract_names(capsys, tmp_path, recording, found):
+    out = tmp_path / "out"
+    assert main(["diagnose", recording, "--out", str(out), "--json"]) == 0
+    said = json.loads(capsys.readouterr().out)
+    assert said == json.loads((out / "verdict.json").read_text())
+    assert set(said) >= {
+        *("schema", "verdict", "basis", "causes", "residuals", "gain", "leftover"),
+        *("smallest_findable", "next_experiment", "rivals"),
+    }
+    assert {path.name for path in out.iterdir()} == {
+        *("verdict.json", "report.html", "diagnosis.rrd", "plant.candidate.toml"),
+        "next_experiment.csv",
+    }
+    page = (out / "report.html").read_text()
+    assert "Coulomb friction at joint" in page
+    assert "plant.candidate.toml: there were no held-out recordings" in page
+
+
+@pytest.mark.parametrize(
+    ("options", "words"),
+    [
+        (["--channels", "leg.lenght"], "did you mean 'leg.length"),
+        (["--scenario", "identify_fats"], "did you mean 'identify_fast'"),
+        (["--seconds", "0.01"], "seconds: got 0.01"),
+    ],
+)
+def test_a_plan_refuses_bad_input_in_one_line(capsys, options, words):
+    assert main(["plan", *options]) == 2
+    error = capsys.readouterr().err.strip().splitlines()[-1]
+    assert words in error

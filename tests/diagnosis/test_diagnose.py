@@ -221,10 +221,6 @@ def test_bad_input_is_one_clear_line(settings):
     data = record(np.random.default_rng(1))
     with pytest.raises(UnknownNameError, match="did you mean 'friction'"):
         diagnose(Toy(), [data], exclude=["fricton"], settings=settings)
-    holed = data["out"].copy()
-    holed[5] = np.nan
-    with pytest.raises(InvalidInputError, match="rows without a value"):
-        diagnose(Toy(), [Recording(data.time, {**data.signals, "out": holed}, data.info)])
     with pytest.raises(UnknownNameError, match=r"drive\.u"):
         diagnose(Toy(), [Recording(data.time, {"out": data["out"]}, data.info)])
     with pytest.raises(InvalidInputError, match="at least one"):

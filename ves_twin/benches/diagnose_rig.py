@@ -6,7 +6,10 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 from ves_twin.benches.ves2 import RigForward
+from ves_twin.benches.ves2_input import prepare_inputs
+from ves_twin.benches.ves2_menu import offered_programmes
 from ves_twin.diagnosis.diagnose import diagnose
+from ves_twin.diagnosis.forward import Programme
 from ves_twin.diagnosis.runs import Progress, silent
 from ves_twin.diagnosis.settings import Settings
 from ves_twin.diagnosis.verdict import Cause, Kind, Verdict
@@ -30,11 +33,13 @@ class RigDiagnosis:
         verdict: with the magnitudes of the effects as the names of its parameters.
         extended: the nominal plant with the causes; None where no causes are named.
         refused: why the extension is only a candidate; empty where it passed on held-out data.
+        next_programme: set-points that should part the causes, where they cannot be told apart.
     """
 
     verdict: Verdict
     extended: Plant | None
     refused: str
+    next_programme: Programme | None = None
 
 
 def diagnose_rig(
@@ -63,28 +68,43 @@ def diagnose_rig(
         progress: told what is being done.
 
     Raises:
+        VesTwinError: recordings whose columns look swapped, turned or in other units.
         InvalidInputError: no recording, or recordings made with other rates or leg settings.
         UnknownNameError: an unknown cause in `exclude`, or a set-point that is not recorded.
     """
     if not recordings:
         raise InvalidInputError("recordings", "none", "at least one")
-    setting = _one_step(replay_scenario(recordings[0], scenario))
+    measured = prepare_inputs(recordings, plant, "recording")
+    others = prepare_inputs(held_out, plant, "held-out recording")
+    rigs = prepare_inputs(commissioning, plant, "commissioning recording")
+    setting = one_step(replay_scenario(measured.recordings[0], scenario))
     if scenario is None:
-        _check_settings((*recordings, *held_out, *commissioning), setting)
+        every = (*measured.recordings, *others.recordings, *rigs.recordings)
+        _check_settings(every, setting)
     forward = RigForward(plant, setting)
+    offered: list[Programme] = []
+
+    def menu() -> list[Programme]:
+        offered.extend(offered_programmes(plant, setting))
+        return offered
+
     verdict = diagnose(
         forward,
-        recordings,
-        held_out=held_out,
-        commissioning=commissioning,
+        measured.recordings,
+        held_out=others.recordings,
+        commissioning=rigs.recordings,
         standstill=standstill,
+        next_programmes=menu,
         exclude=exclude,
         settings=settings,
         progress=progress,
     )
-    verdict = replace(verdict, causes=tuple(map(_shortened, verdict.causes)))
+    flaws = (*measured.flaws, *others.flaws, *rigs.flaws)
+    verdict = replace(verdict, causes=tuple(map(_shortened, verdict.causes)), quality=flaws)
     if verdict.verdict not in NAMES_A_PLANT:
-        return RigDiagnosis(verdict, None, f"the verdict is {verdict.verdict.value}")
+        best = verdict.next_experiment[0].programme if verdict.next_experiment else ""
+        chosen = next((p for p in offered if p.name == best), None)
+        return RigDiagnosis(verdict, None, f"the verdict is {verdict.verdict.value}", chosen)
     extended = plant.extended(*map(effect_of, verdict.causes))
     return RigDiagnosis(verdict, extended, _refused(verdict))
 
@@ -112,8 +132,8 @@ def _refused(verdict: Verdict) -> str:
     return ""
 
 
-def _one_step(scenario: Scenario) -> Scenario:
-    """The model's own step, whatever a simulated recording was made with."""
+def one_step(scenario: Scenario) -> Scenario:
+    """A scenario with the model's own step, whatever a recording was made with."""
     return scenario.model_copy(update={"run": scenario.run.model_copy(update={"substeps": 1})})
 
 

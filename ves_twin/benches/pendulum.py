@@ -11,10 +11,14 @@ import numpy as np
 from mujoco import rollout
 
 from ves_twin.diagnosis.forward import Channel, Hypothesis, Parameter, Programme
+from ves_twin.errors import InvalidInputError
 from ves_twin.types import FloatArray
 
 STEP = 0.002
-"""Integration step and period of the rows [s]."""
+"""Integration step [s]; rows of a recording are a whole number of steps apart."""
+
+NEAR = 1e-3
+"""Relative error of a period that is round-off of recorded times."""
 
 _XML = """
 <mujoco>
@@ -117,14 +121,24 @@ class Pendulum:
     def simulate(
         self, programme: Programme, values: Mapping[str, float], refined: bool = False
     ) -> FloatArray:
-        """Angle [rad] and rate [rad/s] at each row, whose torque holds from then on (n, 2)."""
+        """Angle [rad] and rate [rad/s] at each row, whose torque holds from then on (n, 2).
+
+        Raises:
+            InvalidInputError: rows that are no whole number of steps apart.
+        """
+        period = programme.period
+        per_row = round(period / STEP)
+        if per_row < 1 or abs(period / (per_row * STEP) - 1.0) > NEAR:
+            raise InvalidInputError(
+                "time between rows [s]", round(period, 6), f"a whole multiple of {STEP} s"
+            )
         value = {p.name: p.nominal for p in self.parameters} | dict(values)
         asked = programme.drive["joint.torque"][:, 0]
-        torque = value["drive.gain"] * _delayed(asked, value.get("command.delay", 0.0))
+        torque = value["drive.gain"] * _delayed(asked, value.get("command.delay", 0.0), period)
         torque = torque + value["drive.offset"]
         model = edited(value)
-        steps = 2 if refined else 1
-        model.opt.timestep = STEP / steps
+        steps = per_row * (2 if refined else 1)
+        model.opt.timestep = per_row * STEP / steps
         state = np.zeros(mujoco.mj_stateSize(model, mujoco.mjtState.mjSTATE_FULLPHYSICS))
         state[1], state[2] = value["start.angle"], value["start.rate"]
         control = np.repeat(torque, steps)[None, :, None]
@@ -132,7 +146,9 @@ class Pendulum:
             model, mujoco.MjData(model), initial_state=state[None], control=control
         )
         rows = np.concatenate([state[None], path[0][steps - 1 :: steps][:-1]])[:, 1:3]
-        read = np.stack([_delayed(column, value["sensor.delay"]) for column in rows.T], axis=1)
+        read = np.stack(
+            [_delayed(column, value["sensor.delay"], period) for column in rows.T], axis=1
+        )
         read[:, 0] += value["encoder.bias"]
         return np.asarray(read)
 
@@ -149,9 +165,9 @@ def edited(value: Mapping[str, float]) -> mujoco.MjModel:
     return spec.compile()
 
 
-def _delayed(column: FloatArray, delay: float) -> FloatArray:
-    """The column a delay [s] ago, linear between rows, its ends held."""
+def _delayed(column: FloatArray, delay: float, period: float) -> FloatArray:
+    """The column a delay [s] ago, linear between rows a period [s] apart, its ends held."""
     if delay == 0.0:
         return column
-    time = STEP * np.arange(len(column))
+    time = period * np.arange(len(column))
     return np.asarray(np.interp(time - delay, time, column))

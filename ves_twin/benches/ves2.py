@@ -26,7 +26,7 @@ from ves_twin.plant.plant import Plant
 from ves_twin.recording.recording import Recording, RecordingInfo
 from ves_twin.scenario.schema import Scenario
 from ves_twin.signals import SIGNALS
-from ves_twin.simulator.replay import replay
+from ves_twin.simulator.predict import predict
 from ves_twin.simulator.simulate import versions
 from ves_twin.types import FloatArray
 
@@ -157,7 +157,7 @@ class LastRun:
             return kept[2]
         info = RecordingInfo("measured")
         recording = Recording(programme.time - programme.time[0], programme.drive, info)
-        answer = replay(recording, plant, DRIVE, COMPARED, scenario)
+        answer = predict(recording, plant, scenario, DRIVE, COMPARED)
         rows = np.concatenate([answer[name] for name in COMPARED], axis=1)
         self._kept[programme.identity] = (asked, scenario, rows)
         return rows

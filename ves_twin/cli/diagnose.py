@@ -16,6 +16,8 @@ if TYPE_CHECKING:
 
 SUMMARY = "name what the simulation gets wrong in recordings, extend the plant, measure the gain"
 
+SETPOINTS = "next_experiment.csv"
+
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Options of the command."""
@@ -42,7 +44,7 @@ def execute(arguments: argparse.Namespace) -> int:
     from ves_twin.cli.run import output_folder
     from ves_twin.compiled import cache_folder
     from ves_twin.diagnosis.settings import Settings
-    from ves_twin.recording.files import load_recording
+    from ves_twin.recording.files import load_recording, recording_name
     from ves_twin.simulator.simulate import make_folder
 
     measured = [load_recording(name) for name in arguments.measured]
@@ -74,7 +76,7 @@ def execute(arguments: argparse.Namespace) -> int:
             settings=settings,
             progress=progress.share,
         )
-    _write(found, folder)
+    _write(found, folder, ", ".join(map(recording_name, arguments.measured)))
     if arguments.json:
         print(found.verdict.to_json())
     else:
@@ -106,12 +108,21 @@ def _nominal(given: str | None, recording: Recording) -> Plant:
     return Plant.load(given or recording.info.plant_base or "ves2")
 
 
-def _write(found: RigDiagnosis, folder: Path) -> None:
+def _write(found: RigDiagnosis, folder: Path, names: str) -> None:
+    from ves_twin.benches.ves2_menu import write_setpoints
+    from ves_twin.diagnosis.report.page import diagnosis_page
     from ves_twin.plant.write_plant import write_plant
+    from ves_twin.report.page import write_page
+    from ves_twin.rerun_log.diagnosis import write_diagnosis_rrd
 
-    for name in ("plant.toml", "plant.candidate.toml"):  # of an earlier diagnosis
+    for name in ("plant.toml", "plant.candidate.toml", SETPOINTS):  # of an earlier diagnosis
         (folder / name).unlink(missing_ok=True)
     found.verdict.save(folder / "verdict.json")
+    page = diagnosis_page(found.verdict, f"Diagnosis of {names}", _plant_sentence(found))
+    write_page(folder / "report.html", page)
+    write_diagnosis_rrd(found.verdict, folder / "diagnosis.rrd")
+    if found.next_programme is not None:
+        write_setpoints(found.next_programme, folder / SETPOINTS)
     if found.extended is None:
         return
     note = f"Extended by ves-twin diagnose: {found.verdict.words}"
@@ -123,6 +134,15 @@ def _write(found: RigDiagnosis, folder: Path) -> None:
         )
     else:
         write_plant(found.extended, folder / "plant.toml", note)
+
+
+def _plant_sentence(found: RigDiagnosis) -> str:
+    """What became of the extended plant."""
+    if found.extended is None:
+        return "No extended plant was written: no cause is named."
+    if found.refused:
+        return f"The extended plant is a candidate, plant.candidate.toml: {found.refused}."
+    return "The extended plant is plant.toml; it passed on held-out recordings."
 
 
 def _text(found: RigDiagnosis, folder: Path) -> str:

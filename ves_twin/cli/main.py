@@ -18,6 +18,7 @@ from ves_twin.cli import (
     import_log,
     info,
     inspect,
+    plan,
     reproduce,
     run,
     scenarios,
@@ -28,6 +29,7 @@ from ves_twin.errors import UnknownNameError, VesTwinError, one_line
 COMMANDS = {
     "scenarios": scenarios,
     "run": run,
+    "plan": plan,
     "diagnose": diagnose,
     "compare": compare,
     "blind": blind,

@@ -18,6 +18,10 @@ BLOCKS = 8
 """Stretches of time."""
 
 
+FEWEST = 8
+"""Samples of a stretch of time, most of it a hole, below which it is not judged."""
+
+
 @dataclass(frozen=True)
 class Cell:
     """Energy of a whitened residual in one channel and band, or channel and stretch of time.
@@ -52,8 +56,10 @@ class Cell:
 def cells(whitening: Whitening, z: FloatArray) -> list[Cell]:
     """All cells of a whitened residual (samples,)."""
     found = []
+    kept = whitening.blocks(whitening.freedom)
     for k, (block, time) in enumerate(zip(whitening.blocks(z), whitening.times(), strict=True)):
         rows = len(block)
+        share = np.mean(kept[k], axis=0)
         spectrum = 2.0 * np.abs(np.fft.rfft(block, axis=0)) ** 2 / rows
         frequency = np.fft.rfftfreq(rows, whitening.runs.grids[k].step)
         last = (rows - 1) // 2  # the line at the Nyquist rate has half the freedom
@@ -62,13 +68,15 @@ def cells(whitening: Whitening, z: FloatArray) -> list[Cell]:
         stretches = np.linspace(0, rows, BLOCKS + 1).astype(int)
         for c in range(block.shape[1]):
             for a, b in pairwise(edges):
-                energy = float(np.sum(spectrum[a:b, c]))
+                energy = float(np.sum(spectrum[a:b, c]) / share[c])
                 ends = float(frequency[a]), float(frequency[b - 1])
                 found.append(Cell(k, c, "band", *ends, energy, 2 * int(b - a)))
             for a, b in pairwise(stretches):
                 energy = float(np.sum(block[a:b, c] ** 2))
                 ends = float(time[a]), float(time[b - 1])
-                found.append(Cell(k, c, "time", *ends, energy, int(b - a)))
+                count = int(np.sum(kept[k][a:b, c]))
+                if count >= FEWEST:
+                    found.append(Cell(k, c, "time", *ends, energy, count))
     return found
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -9,6 +10,8 @@ from scipy.stats import norm
 
 from ves_twin.diagnosis.adequacy import cells
 from ves_twin.diagnosis.assess import Assessment
+from ves_twin.diagnosis.disagreement import Alone
+from ves_twin.diagnosis.exhibit import Exhibit, exhibit_of
 from ves_twin.diagnosis.explain import Explanation
 from ves_twin.diagnosis.findable import findable_sizes, twins
 from ves_twin.diagnosis.forward import Hypothesis
@@ -16,7 +19,8 @@ from ves_twin.diagnosis.gain import Gain
 from ves_twin.diagnosis.leftover import Leftover, describe
 from ves_twin.diagnosis.null import Thresholds
 from ves_twin.diagnosis.observe import Observed
-from ves_twin.diagnosis.refine import Fit, bare_residual
+from ves_twin.diagnosis.refine import Fit
+from ves_twin.diagnosis.rivals import rivals_of
 from ves_twin.diagnosis.settings import Settings
 from ves_twin.diagnosis.verdict import (
     Basis,
@@ -46,6 +50,7 @@ class Findings:
         found: the explanation; None if nothing is wrong or nothing fits.
         gain: on held-out recordings.
         proposals: next programmes.
+        apart: what each recording says alone.
     """
 
     seen: Observed
@@ -57,6 +62,7 @@ class Findings:
     found: Explanation | None = None
     gain: Gain | None = None
     proposals: tuple[Proposal, ...] = ()
+    apart: tuple[Alone, ...] = ()
 
 
 def compose(
@@ -66,6 +72,7 @@ def compose(
     first, found, limits = findings.first, findings.found, findings.limits
     named = found is not None and kind not in (Kind.NOTHING, Kind.UNKNOWN)
     causes, alternatives = _causes(findings, found) if named and found else ((), ())
+    exhibit = exhibit_of(findings.seen, first, found)
     sizes = findable_sizes(first.screen, limits.effect)
     units = {h.label: _unit(findings, h) for h in first.screen.bank.hypotheses}
     suspect = "" if found is None or named else _label(found.best)
@@ -85,15 +92,19 @@ def compose(
         statistics=statistics,
         causes=causes,
         alternatives=alternatives,
-        residuals=_residuals(findings),
+        residuals=_residuals(exhibit),
         gain=findings.gain,
         leftover=None if kind is Kind.NOTHING else _leftover(findings),
         suspect=suspect,
+        rivals=rivals_of(first, found),
         smallest_findable={label: Findable(v, units[label]) for label, v in sizes.items()},
         twins=tuple(twins(first.screen)),
         next_experiment=findings.proposals,
         unseen=findings.seen.unseen,
+        holes=findings.seen.holes,
         excluded=excluded,
+        alone=findings.apart,
+        exhibit=exhibit,
     )
 
 
@@ -147,40 +158,24 @@ def _cause(
     )
 
 
-def _residuals(findings: Findings) -> dict[str, ChannelError]:
+def _residuals(exhibit: Exhibit) -> dict[str, ChannelError]:
     """Before: the model as it is. After: with commissioning errors, and the causes, fitted."""
-    runs, measured = findings.seen.runs, findings.seen.measured
-    plain = measured - findings.first.screen.bank.base.prediction
-    found, first = findings.found, findings.first
-    whitening = found.evidence.whitening if found else first.evidence.whitening
-    before = whitening.apply(plain)
-    if found:
-        after, bare = found.best.residual, bare_residual(found.evidence, found.best)
-    elif first.commissioning:
-        after = first.commissioning.residual
-        bare = bare_residual(first.evidence, first.commissioning)
-    else:
-        after = first.left
-        columns = first.screen.bank.base.columns
-        nuisances = first.screen.metric.nuisances(first.z)
-        bare = plain - np.tensordot(nuisances.astype(np.float32), columns, axes=1)
-    sigma = [_rms(np.concatenate(whitening.blocks(z))) for z in (before, after)]
-    unit = [_rms(plain), _rms(bare)]
-    channels = [runs.forward.channels[c] for c in runs.columns]
-    return {
-        channel.name: ChannelError(
-            float(sigma[0][c]),
-            float(sigma[1][c]),
-            float(unit[0][c]),
-            float(unit[1][c]),
-            channel.unit,
+    found = {}
+    for c, channel in enumerate(exhibit.channels):
+        traces = exhibit.traces
+        found[channel.name] = ChannelError(
+            before=_rms([t.before[:, c] for t in traces]),
+            after=_rms([t.after[:, c] for t in traces]),
+            before_si=_rms([t.measured[:, c] - t.nominal[:, c] for t in traces]),
+            after_si=_rms([t.measured[:, c] - t.fitted[:, c] for t in traces]),
+            unit=channel.unit,
+            spread=_rms([t.measured[:, c] - np.nanmean(t.measured[:, c]) for t in traces]),
         )
-        for c, channel in enumerate(channels)
-    }
+    return found
 
 
-def _rms(rows: FloatArray | SingleArray) -> FloatArray:
-    return np.asarray(np.sqrt(np.mean(np.square(rows, dtype=float), axis=0)))
+def _rms(pieces: Sequence[FloatArray | SingleArray]) -> float:
+    return float(np.sqrt(np.nanmean(np.square(np.concatenate(pieces), dtype=float))))
 
 
 def _leftover(findings: Findings) -> Leftover:

@@ -2,15 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 
 from ves_twin.diagnosis.assess import assess, pull_limit
-from ves_twin.diagnosis.bank import build_bank, cached_bank
+from ves_twin.diagnosis.bank import Bank, build_bank, cached_bank
 from ves_twin.diagnosis.compose import Findings, compose
+from ves_twin.diagnosis.disagreement import Alone, disagreement
 from ves_twin.diagnosis.explain import Explanation, explain
 from ves_twin.diagnosis.forward import Forward, Programme
 from ves_twin.diagnosis.gain import Gain, held_out_gain
+from ves_twin.diagnosis.likeness import check_likeness
 from ves_twin.diagnosis.next_experiment import separations
 from ves_twin.diagnosis.null import cached_thresholds
 from ves_twin.diagnosis.observe import observe
@@ -34,7 +36,7 @@ def diagnose(
     held_out: Sequence[Recording] = (),
     commissioning: Sequence[Recording] = (),
     standstill: Recording | None = None,
-    next_programmes: Sequence[Programme] = (),
+    next_programmes: Sequence[Programme] | Callable[[], Sequence[Programme]] = (),
     exclude: Sequence[str] = (),
     settings: Settings | None = None,
     progress: Progress = silent,
@@ -51,13 +53,15 @@ def diagnose(
         commissioning: of independent rigs in order, or of re-mountings of this one; five or more
             tell how true the declared tolerances are.
         standstill: tells the noise; the declared one is taken without it.
-        next_programmes: candidates for the next experiment where causes cannot be told apart.
+        next_programmes: candidates for the next experiment where causes cannot be told apart; or
+            what makes them, called only then.
         exclude: causes that are not considered, by effect or effect@target.
         settings: how sure, how many.
         progress: told what is being done.
 
     Raises:
-        InvalidInputError: recordings that cannot be compared.
+        InvalidInputError: recordings that cannot be compared, or columns that look swapped, turned
+            or in other units.
         UnknownNameError: a signal that is not recorded, or an unknown cause in `exclude`.
     """
     chosen = settings or Settings()
@@ -68,9 +72,13 @@ def diagnose(
     with Workers(chosen.workers) as workers:
         seen = observe(forward, recordings, workers)
         whitening = _whitening(seen.runs, standstill)
-        built = cached_bank(
-            seen.runs, chosen.cache, lambda: build_bank(seen.runs, progress=progress)
-        )
+
+        def build() -> Bank:
+            check_likeness(seen, seen.runs.one(seen.runs.origin))  # before minutes of simulation
+            return build_bank(seen.runs, progress=progress)
+
+        built = cached_bank(seen.runs, chosen.cache, build)
+        check_likeness(seen, built.base.prediction)
         bank = built.without(tuple(exclude))
         limits = cached_thresholds(bank, whitening, chosen, progress)
         pull = pull_limit(bank, chosen.alpha)
@@ -91,7 +99,10 @@ def diagnose(
         gain = gains[0] if gains else None
         kind = _kind(found, gains)
         proposals = _next(seen.runs, found, next_programmes) if kind is Kind.AMBIGUOUS else ()
-        findings = replace(findings, found=found, gain=gain, proposals=proposals)
+        apart: tuple[Alone, ...] = ()
+        if found is None or not found.adequate:
+            apart = disagreement(seen, bank, whitening, limits, chosen, progress)
+        findings = replace(findings, found=found, gain=gain, proposals=proposals, apart=apart)
         return compose(findings, kind, basis, tuple(exclude))
 
 
@@ -151,9 +162,12 @@ def _beats(found: Explanation, gains: Sequence[Gain]) -> bool:
 
 
 def _next(
-    runs: Runs, found: Explanation | None, programmes: Sequence[Programme]
+    runs: Runs,
+    found: Explanation | None,
+    programmes: Sequence[Programme] | Callable[[], Sequence[Programme]],
 ) -> tuple[Proposal, ...]:
     if found is None:
         return ()
-    ranked = separations(runs, found.chosen, programmes)
+    offered = programmes() if callable(programmes) else programmes
+    ranked = separations(runs, found.chosen, offered)
     return tuple(Proposal(s.programme.name, s.chi2) for s in ranked)

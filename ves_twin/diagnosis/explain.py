@@ -46,6 +46,8 @@ class Explanation:
         score: largest cell score it leaves.
         second: best score of a further cause beside it.
         before, after: cells without and with it.
+        alone: fits of single causes, where only two together are adequate.
+        hopeless: fits that were given up, under the first whitening.
     """
 
     evidence: Evidence
@@ -58,6 +60,8 @@ class Explanation:
     second: float
     before: tuple[Cell, ...]
     after: tuple[Cell, ...]
+    alone: tuple[Fit, ...] = ()
+    hopeless: tuple[Fit, ...] = ()
 
     @property
     def best(self) -> Fit:
@@ -76,7 +80,11 @@ class _Desk:
 
 
 def explain(
-    first: Assessment, thresholds: Thresholds, settings: Settings, progress: Progress = silent
+    first: Assessment,
+    thresholds: Thresholds,
+    settings: Settings,
+    progress: Progress = silent,
+    pairs: bool = True,
 ) -> Explanation | None:
     """Single causes, then pairs where no single one leaves noise.
 
@@ -85,13 +93,14 @@ def explain(
         thresholds: what noise and commissioning errors do.
         settings: how many and how much.
         progress: told how far it is.
+        pairs: whether two causes together are tried.
 
     Returns:
         The best explanation, adequate or not; None if the library is empty or fits nothing.
     """
     desk = _Desk(first, thresholds, settings, progress)
     single = _singles(desk)
-    if single is None or single.adequate:
+    if single is None or single.adequate or not pairs:
         return single
     return _pairs(desk, single) or single
 
@@ -112,7 +121,9 @@ def _singles(desk: _Desk) -> Explanation | None:
         min((f for f, o in zip(tried, owner, strict=True) if o == n), key=lambda fit: fit.chi2)
         for n in sorted(set(owner))
     ]
-    return _judge(desk, _settled(first.evidence, fits, desk))
+    found = _judge(desk, _settled(first.evidence, fits, desk))
+    judged = {fit.causes for fit in found.fits}
+    return replace(found, hopeless=tuple(fit for fit in fits if fit.causes not in judged))
 
 
 @dataclass(frozen=True)
@@ -290,4 +301,6 @@ def _pairs(desk: _Desk, single: Explanation) -> Explanation | None:
     fall = single.best.chi2 - double.best.chi2
     explained = max(double.commissioning.chi2 - double.best.chi2, 0.0)
     least = desk.thresholds.effect + desk.settings.model_error**2 * explained
-    return double if double.adequate and fall > least else None
+    if not (double.adequate and fall > least):
+        return None
+    return replace(double, alone=(*single.fits, *single.hopeless))

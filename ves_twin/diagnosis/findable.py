@@ -15,7 +15,7 @@ MARGIN = 0.5
 
 
 def findable_sizes(screen: Screen, threshold: float) -> dict[str, float | None]:
-    """Smallest size of each one-parameter cause that this recording would have shown.
+    """Smallest size of each cause that this recording would have shown.
 
     Its d is the square root of the threshold plus MARGIN, in the less visible of its directions;
     None where even the bank's largest size stays below: nothing can be said about that cause.
@@ -30,16 +30,32 @@ def findable_sizes(screen: Screen, threshold: float) -> dict[str, float | None]:
         seen = np.minimum(np.sqrt(screen.power[rows]), np.abs(sizes) / max(sd, 1e-30))
         if len(hypothesis.parameters) == 1:
             ends = [
-                _crossing(np.abs(sizes[sizes * sign > 0]), seen[sizes * sign > 0], goal)
+                crossing(np.abs(sizes[sizes * sign > 0]), seen[sizes * sign > 0], goal)
                 for sign in hypothesis.signs
                 if np.any(sizes * sign > 0)
             ]
             lost = not ends or any(end is None for end in ends)
             found[hypothesis.label] = None if lost else max(e for e in ends if e is not None)
+        else:
+            found[hypothesis.label] = _together(screen, h, goal)
     return found
 
 
-def _crossing(sizes: FloatArray, seen: FloatArray, goal: float) -> float | None:
+def _together(screen: Screen, number: int, goal: float) -> float | None:
+    """Smallest length of a departure of several parameters, in its least visible direction.
+
+    Each entry of the bank is a direction, along which d is taken as proportional to size.
+    """
+    rows, hypothesis = screen.bank.entries(number), screen.bank.hypotheses[number]
+    if not len(rows):
+        return None
+    sizes = np.array([np.linalg.norm(screen.bank.sizes[k]) for k in rows])
+    needed = float(np.max(sizes * goal / np.sqrt(screen.power[rows])))
+    return needed if needed < np.linalg.norm(hypothesis.largest) else None
+
+
+def crossing(sizes: FloatArray, seen: FloatArray, goal: float) -> float | None:
+    """Size at which what is seen reaches a goal; None if it does at none of the sizes."""
     order = np.argsort(sizes)
     sizes, seen = sizes[order], np.maximum.accumulate(seen[order])
     if seen[-1] < goal:

@@ -128,13 +128,9 @@ def _starts(runs: Runs, k: int, rows: int) -> IntArray:
 
 def _stretches(runs: Runs, whitening: Whitening) -> FloatArray:
     """Samples in each stretch."""
-    ones = np.ones(len(whitening.apply(np.zeros(_rows(runs), np.float32))))
+    ones = whitening.freedom
     parts = [
         np.add.reduceat(np.sum(block, axis=1), _starts(runs, k, len(block)))
         for k, block in enumerate(whitening.blocks(ones))
     ]
     return np.concatenate(parts)
-
-
-def _rows(runs: Runs) -> tuple[int, int]:
-    return runs.slices[-1].stop, len(runs.columns)

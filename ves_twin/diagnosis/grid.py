@@ -8,7 +8,7 @@ from functools import cached_property
 import numpy as np
 from scipy import signal
 
-from ves_twin.types import FloatArray, SingleArray
+from ves_twin.types import BoolArray, FloatArray, SingleArray
 
 RATE = 100.0
 """Analysis rate aimed at [Hz]: the rig's modes end near 40 Hz (thesis 5.2)."""
@@ -52,6 +52,12 @@ class AnalysisGrid:
             return np.asarray(rows, np.float32)
         filtered = signal.fftconvolve(rows, self.taps[:, None], mode="valid", axes=0)
         return np.asarray(filtered[:: self.factor], np.float32)
+
+    def touched(self, rows: BoolArray) -> BoolArray:
+        """Rows of the grid (m, c) that any marked row of the data (n, c) goes into."""
+        ones = np.ones((len(self.taps), 1))
+        spread = signal.fftconvolve(rows.astype(float), ones, mode="valid", axes=0) > 0.5
+        return np.asarray(spread[:: self.factor])
 
     def times(self, time: FloatArray) -> FloatArray:
         """Times [s] of the grid's rows (m,)."""

@@ -78,7 +78,8 @@ def describe(
     stretches = [c.low for c in loud if c.kind == "time"]
     features = _features(evidence, residual, names) if loud else ()
     onset = min(stretches) if stretches else None
-    return Leftover(float(np.mean(residual**2)), tuple(told), onset, features)
+    square = float(np.sum(residual**2) / np.sum(evidence.whitening.freedom))
+    return Leftover(square, tuple(told), onset, features)
 
 
 def _features(

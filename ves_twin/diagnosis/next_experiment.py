@@ -13,7 +13,11 @@ from ves_twin.diagnosis.metric import Metric
 from ves_twin.diagnosis.refine import Fit
 from ves_twin.diagnosis.runs import Runs
 from ves_twin.diagnosis.whitening import whitening_declared
-from ves_twin.types import FloatArray
+from ves_twin.types import FloatArray, IntArray
+
+NUISANCES = 16
+"""Commissioning parameters of the plant that are marginalised where there are more: those that go
+along most with what parts the rivals. Each costs two runs of every programme."""
 
 
 @dataclass(frozen=True)
@@ -38,15 +42,45 @@ def separations(
         programmes: what could be fed in next.
     """
     found = []
+    axes = _axes(there, rivals) if programmes else None
     for programme in programmes:
         runs = Runs(there.forward, (programme,), there.columns, there.workers)
-        base = linearise(runs, runs.origin)
+        base = linearise(runs, runs.origin, axes=_on(runs, there, axes))
         whitening = whitening_declared(runs)
         metric = Metric(whitening.apply(base.columns).T)
         shifts = [_carry(there, fit, runs) for fit in rivals]
         changes = whitening.apply(runs.many(shifts) - base.prediction).T
         found.append(Separation(programme, _closest(changes.T @ metric.project(changes))))
     return sorted(found, key=lambda separation: -separation.chi2)
+
+
+def _axes(there: Runs, rivals: Sequence[Fit]) -> IntArray | None:
+    """Coordinates of the plant that could stand for the difference of the rivals; None for all.
+
+    In the recordings that are there, the difference of two rivals' traces is small because
+    commissioning errors make up for it; those with the largest share in that count.
+    """
+    own = np.array([i for i in there.nuisances if there.coordinates[i].recording == -1], int)
+    if len(own) <= NUISANCES or len(rivals) < 2:
+        return None
+    pulls = [fit.shift[own] / there.sd[own] for fit in rivals[:2]]
+    local = rivals[0].local
+    whitening = whitening_declared(there)
+    rows = np.searchsorted(there.nuisances, own)
+    columns = whitening.apply(local.columns[rows])
+    share = np.abs(pulls[0] - pulls[1]) * np.linalg.norm(columns, axis=1)
+    return np.sort(own[np.argsort(-share)[:NUISANCES]])
+
+
+def _on(runs: Runs, there: Runs, axes: IntArray | None) -> tuple[IntArray, FloatArray] | None:
+    """The same coordinates in other runs, and what is drawn anew in each recording."""
+    if axes is None:
+        return None
+    names = [axis.parameter.name for axis in runs.coordinates]
+    shared = [names.index(there.coordinates[i].parameter.name) for i in axes]
+    new = [int(i) for i in runs.nuisances if runs.coordinates[i].recording != -1]
+    where = np.array(sorted([*shared, *new]), int)
+    return where, runs.sd[where]
 
 
 def _carry(there: Runs, fit: Fit, runs: Runs) -> FloatArray:

@@ -43,6 +43,11 @@ class Thresholds:
     misfits: FloatArray
 
 
+def noise_floor(bank: Bank, alpha: float) -> float:
+    """chi^2 of the best of a bank's independent hypotheses that white noise passes with alpha."""
+    return float(chi2.isf(alpha / max(len(bank.hypotheses), 1), 1))
+
+
 def null_thresholds(
     bank: Bank,
     whitening: Whitening,
@@ -71,8 +76,7 @@ def null_thresholds(
         progress: told how far it is.
         simulated: rigs by the forward; else by its linearisation.
     """
-    library = max(len(bank.hypotheses), 1)
-    floor = float(chi2.isf(alpha / library, 1))
+    floor = noise_floor(bank, alpha)
     samples = len(whitening.apply(bank.base.prediction))
     floor_misfit = misfit_floor(len(cells(whitening, np.zeros(samples))), alpha)
     study = _NullStudy(bank, whitening, floor, floor_misfit, alpha, simulated)
@@ -162,6 +166,7 @@ def cached_thresholds(
     asked = (settings.nulls, settings.simulated_nulls, settings.alpha, settings.seed)
     content = repr((labels, *asked)).encode()
     content += whitening.filters.tobytes() + whitening.mixing.tobytes()
+    content += b"".join(bad.tobytes() for bad in bank.base.runs.holes if bad.any())
     path = settings.cache / f"null-{bank_key(bank.base.runs, content)}.npz"
     if path.is_file():
         with np.load(path) as kept:

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -13,6 +13,9 @@ from ves_twin.errors import InvalidInputError, UnknownNameError
 from ves_twin.recording.recording import Recording
 from ves_twin.types import FloatArray, SingleArray
 from ves_twin.workers import Workers
+
+MOST_EMPTY = 0.5
+"""Share of a channel's rows that must have values; else it counts as not recorded."""
 
 FEWEST_ROWS = 100
 """Rows of the grid below which bands and stretches of time mean nothing."""
@@ -26,11 +29,13 @@ class Observed:
         runs: predictions of all recordings.
         measured: channels on the grid (rows, c).
         unseen: channels of the plant that are not in every recording.
+        holes: share of the rows without a value, of each channel that has some.
     """
 
     runs: Runs
     measured: SingleArray
     unseen: tuple[str, ...]
+    holes: Mapping[str, float] = field(default_factory=dict)
 
 
 def observe(
@@ -45,7 +50,8 @@ def observe(
 
     Raises:
         UnknownNameError: a drive signal that is not recorded, or no channel of the plant at all.
-        InvalidInputError: no recording, gaps, values that are not finite, or too short a one.
+        InvalidInputError: no recording, rows that are missing, set-points without a value, or too
+            short a recording.
     """
     check_forward(forward)
     if not recordings:
@@ -62,29 +68,48 @@ def observe(
     programmes, rows = [], []
     for k, recording in enumerate(recordings):
         name = recording.info.scenario or f"recording {k + 1}"
+        _check_drive(recording, forward.drive, name)
         programmes.append(Programme.of(recording, forward.drive, name))
-        rows.append(_rows(recording, channels, forward.drive, name))
+        rows.append(np.stack([recording[c.signal][:, c.column] for c in channels], axis=1))
     runs = Runs(forward, tuple(programmes), columns, workers or Workers())
+    empty = [~np.isfinite(piece) for piece in rows]
+    marked = [grid.touched(bad) for grid, bad in zip(runs.grids, empty, strict=True)]
+    if any(bad.any() for bad in marked):
+        runs = replace(runs, holes=tuple(marked))
     for programme, time in zip(programmes, runs.times, strict=True):
         if len(time) < FEWEST_ROWS:
             raise InvalidInputError(
                 f"rows of {programme.name} on the grid", len(time), f"at least {FEWEST_ROWS}"
             )
-    stacks = [grid.reduce(piece) for grid, piece in zip(runs.grids, rows, strict=True)]
+    stacks = [grid.reduce(_bridged(piece)) for grid, piece in zip(runs.grids, rows, strict=True)]
+    lost = np.mean(np.concatenate(empty), axis=0)
+    holes = {c.name: float(share) for c, share in zip(channels, lost, strict=True) if share > 0.0}
     unseen = [channel.name for c, channel in enumerate(forward.channels) if c not in columns]
-    return Observed(runs, np.concatenate(stacks), tuple(unseen))
+    return Observed(runs, np.concatenate(stacks), tuple(unseen), holes)
 
 
 def _holds(recording: Recording, channel: Channel) -> bool:
+    """Whether a recording has a channel, with values in most of its rows."""
     values = recording.signals.get(channel.signal)
-    return values is not None and values.shape[1] > channel.column
+    if values is None or values.shape[1] <= channel.column:
+        return False
+    return bool(np.mean(np.isfinite(values[:, channel.column])) > MOST_EMPTY)
 
 
-def _rows(
-    recording: Recording, channels: Sequence[Channel], drive: Sequence[str], name: str
-) -> FloatArray:
-    for signal in {*drive, *(channel.signal for channel in channels)}:
+def _check_drive(recording: Recording, drive: Sequence[str], name: str) -> None:
+    """Without a set-point nobody knows what was predicted from."""
+    for signal in drive:
         bad = np.count_nonzero(~np.isfinite(recording[signal]).all(axis=1))
         if bad:
-            raise InvalidInputError(f"{signal} of {name}", f"{bad} rows without a value", "numbers")
-    return np.stack([recording[c.signal][:, c.column] for c in channels], axis=1)
+            raise InvalidInputError(
+                f"{signal} of {name}", f"{bad} rows without a value", "set-points in every row"
+            )
+
+
+def _bridged(rows: FloatArray) -> FloatArray:
+    """Rows (n, c) with lines across what is missing, which keeps the low-pass finite."""
+    at, filled = np.arange(len(rows)), rows.copy()
+    for column in filled.T:
+        bad = ~np.isfinite(column)
+        column[bad] = np.interp(at[bad], at[~bad], column[~bad])
+    return filled

@@ -11,7 +11,7 @@ import numpy as np
 
 from ves_twin.diagnosis.forward import Forward, Hypothesis, Parameter, Programme
 from ves_twin.diagnosis.grid import AnalysisGrid
-from ves_twin.types import FloatArray, IntArray, SingleArray
+from ves_twin.types import BoolArray, FloatArray, IntArray, SingleArray
 from ves_twin.workers import Workers
 
 Progress = Callable[[float, str], None]
@@ -42,12 +42,14 @@ class Runs:
         programmes: what was fed in, one for each recording.
         columns: channels of the forward that were recorded.
         workers: that share many predictions out.
+        holes: rows of the grid without a measurement, (rows, c) of each recording; () for none.
     """
 
     forward: Forward
     programmes: tuple[Programme, ...]
     columns: tuple[int, ...]
     workers: Workers = field(default_factory=Workers, compare=False)
+    holes: tuple[BoolArray, ...] = ()
 
     @cached_property
     def coordinates(self) -> tuple[Coordinate, ...]:

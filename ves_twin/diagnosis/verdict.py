@@ -4,13 +4,17 @@ from __future__ import annotations
 
 import json
 from collections.abc import Mapping
-from dataclasses import asdict, dataclass, field
+from dataclasses import asdict, dataclass, field, replace
 from enum import StrEnum
 from pathlib import Path
 
+from ves_twin.diagnosis.disagreement import Alone
+from ves_twin.diagnosis.exhibit import Exhibit
 from ves_twin.diagnosis.gain import Gain
 from ves_twin.diagnosis.leftover import Leftover
+from ves_twin.diagnosis.rivals import Rival
 from ves_twin.errors import FileAccessError
+from ves_twin.quality.check import Check
 
 SCHEMA = 1
 """Version of verdict.json; fields are added without a new one, never changed."""
@@ -73,13 +77,17 @@ class Cause:
 
 @dataclass(frozen=True)
 class ChannelError:
-    """Rms error of a channel before and after, in noise sigma (whitened) and in its unit."""
+    """Rms error of a channel before and after, in noise sigma (whitened) and in its unit.
+
+    `spread` is the sd of what was measured, in that unit.
+    """
 
     before: float
     after: float
     before_si: float
     after_si: float
     unit: str
+    spread: float = 0.0
 
 
 @dataclass(frozen=True)
@@ -126,7 +134,10 @@ class Verdict:
     """What was found, how sure it is, and what it rests on.
 
     `alternatives` are numbers of `causes`: each alternative explains the record by itself, by one
-    cause or by two together; one alternative unless ambiguous.
+    cause or by two together; one alternative unless ambiguous. `quality`
+    has the checks that a recording failed; `alone` what each recording says
+    by itself, where all together have no explanation. `exhibit` has the traces of the
+    report, and stays out of verdict.json.
     """
 
     verdict: Kind
@@ -138,16 +149,23 @@ class Verdict:
     gain: Gain | None = None
     leftover: Leftover | None = None
     suspect: str = ""
+    rivals: tuple[Rival, ...] = ()
     smallest_findable: Mapping[str, Findable] = field(default_factory=dict)
     twins: tuple[tuple[str, str, float], ...] = ()
     next_experiment: tuple[Proposal, ...] = ()
     unseen: tuple[str, ...] = ()
+    holes: Mapping[str, float] = field(default_factory=dict)
     excluded: tuple[str, ...] = ()
+    quality: tuple[Check, ...] = ()
+    alone: tuple[Alone, ...] = ()
+    exhibit: Exhibit | None = field(default=None, repr=False, compare=False)
     schema: int = SCHEMA
 
     def to_dict(self) -> dict[str, object]:
-        """Plain values for JSON."""
-        return asdict(self)
+        """Plain values for JSON, without the traces."""
+        content = asdict(replace(self, exhibit=None))
+        del content["exhibit"]
+        return content
 
     def to_json(self) -> str:
         """The text of verdict.json."""

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 from scipy.linalg import solve_toeplitz
@@ -62,7 +63,32 @@ class Whitening:
         for k, rows in enumerate(self.runs.slices):
             piece = self._one(k, stack[..., rows, :])
             parts.append(piece.reshape(*piece.shape[:-2], -1))
-        return np.concatenate(parts, axis=-1)
+        z = np.concatenate(parts, axis=-1)
+        return z if self.weights is None else z * self.weights
+
+    @cached_property
+    def weights(self) -> FloatArray | None:
+        """1 for samples (samples,) that rest on measurements alone, 0 for others; None if all do.
+
+        A sample rests on ORDER + 2 rows, and where channels are mixed on all of them.
+        """
+        if not any(bad.any() for bad in self.runs.holes):
+            return None
+        parts = []
+        for bad, mixing in zip(self.runs.holes, self.mixing, strict=True):
+            mixed = np.count_nonzero(mixing - np.diag(np.diag(mixing))) > 0
+            each = np.repeat(bad.any(axis=1, keepdims=True), bad.shape[1], 1) if mixed else bad
+            lost = [each[j : len(each) - ORDER - 1 + j] for j in range(ORDER + 2)]
+            parts.append(1.0 - np.any(lost, axis=0).astype(float).ravel())
+        return np.concatenate(parts)
+
+    @cached_property
+    def freedom(self) -> FloatArray:
+        """Samples that count (samples,), as 1 and 0."""
+        if self.weights is not None:
+            return self.weights
+        count = sum(s.stop - s.start - ORDER - 1 for s in self.runs.slices)
+        return np.ones(count * self.mixing.shape[1])
 
     def blocks(self, z: FloatArray) -> list[FloatArray]:
         """Whitened samples by recording: (samples,) -> (rows, c) each."""
@@ -87,8 +113,11 @@ class Whitening:
             z: whitened residual of this record.
         """
         colour, level = self.colour.copy(), self.level.copy()
-        for k, block in enumerate(self.blocks(z)):
+        for k, (block, kept) in enumerate(
+            zip(self.blocks(z), self.blocks(self.freedom), strict=True)
+        ):
             power, angle = _periodogram(block)
+            power = power / np.mean(kept, axis=0)
             shapes = 1.0 / np.abs(1.0 - COLOURS[:, None] * np.exp(-1j * angle)) ** 2
             scale = np.mean(power[None] / shapes[:, :, None], axis=1)
             cost = np.log(scale) + np.mean(np.log(shapes), axis=1)[:, None]
@@ -142,6 +171,8 @@ def whitening_measured(runs: Runs, standstill: Recording) -> Whitening:
     """
     channels = [runs.forward.channels[c] for c in runs.columns]
     rows = np.stack([standstill[c.signal][:, c.column] for c in channels], axis=1)
+    if not np.all(np.isfinite(rows)):
+        raise InvalidInputError("standstill recording", "rows without a value", "numbers")
     grid = runs.grids[0]
     period = float(np.mean(np.diff(standstill.time)))
     if any(abs(g.period / period - 1.0) > 0.01 for g in runs.grids):

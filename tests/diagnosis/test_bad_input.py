@@ -1,0 +1,194 @@
+"""Bad input of a diagnosis: clear words, and never a confident wrong name."""
+
+import numpy as np
+import pytest
+from toy import QUICK, Toy, programme, record
+
+from ves_twin.diagnosis import observe
+from ves_twin.diagnosis.bank import build_bank
+from ves_twin.diagnosis.diagnose import diagnose
+from ves_twin.diagnosis.forward import Programme
+from ves_twin.diagnosis.grid import AnalysisGrid
+from ves_twin.diagnosis.report.words import alone_sentences, headline
+from ves_twin.diagnosis.runs import Runs
+from ves_twin.diagnosis.settings import Settings
+from ves_twin.diagnosis.slices import of_channels, of_recording, of_time
+from ves_twin.diagnosis.verdict import Kind
+from ves_twin.errors import InvalidInputError
+from ves_twin.recording.recording import Recording
+
+FRICTION = {"friction.size": 0.03}
+
+
+@pytest.fixture(scope="module")
+def settings(tmp_path_factory):
+    return Settings(nulls=60, cache=tmp_path_factory.mktemp("banks"))
+
+
+def with_out(data, values):
+    return Recording(data.time, {**data.signals, "out": values}, data.info)
+
+
+def holed(data):
+    values = data["out"].copy()
+    values[100:190, 0] = np.nan
+    values[400, 1] = np.nan
+    return with_out(data, values)
+
+
+def test_holes_are_left_out_and_told_and_the_cause_is_still_named(settings):
+    data = record(np.random.default_rng(1), FRICTION)
+    v = diagnose(Toy(), [holed(data)], settings=settings)
+    assert (v.verdict, v.causes[0].effect) == (Kind.NAMED, "friction")
+    assert v.holes == pytest.approx({"out.0": 90 / 800, "out.1": 1 / 800})
+    whole = diagnose(Toy(), [data], settings=settings).causes[0].parameters["friction.size"]
+    size = v.causes[0].parameters["friction.size"]
+    assert abs(size.value - whole.value) < whole.high - whole.low
+    assert size.high - size.low > 0.99 * (whole.high - whole.low)  # less data tells no more
+    shown = v.exhibit.traces[0].measured
+    assert np.isnan(shown[100:190, 0]).all()
+    assert np.isfinite(shown[:, 1]).sum() == 799
+
+
+@pytest.mark.slow
+def test_rigs_in_order_with_holes_are_left_in_peace(settings):
+    said = [
+        diagnose(Toy(), [holed(record(np.random.default_rng(s)))], settings=settings).verdict
+        for s in range(40)
+    ]
+    # alpha is 0.2 % for each threshold: 2 of 40 has a probability of 1 %
+    assert sum(kind is not Kind.NOTHING for kind in said) <= 1
+
+
+def test_what_is_drawn_across_a_hole_does_not_matter(settings, monkeypatch):
+    data = holed(record(np.random.default_rng(2), FRICTION))
+    clean = diagnose(Toy(), [data], settings=settings)
+    monkeypatch.setattr(observe, "_bridged", lambda rows: np.where(np.isfinite(rows), rows, 9.0))
+    assert diagnose(Toy(), [data], settings=settings).to_dict() == clean.to_dict()
+
+
+def test_rows_of_the_grid_that_a_hole_touches_are_marked():
+    grid = AnalysisGrid.of(0.002)
+    rows = np.zeros((1000, 1), dtype=bool)
+    rows[500] = True
+    values = np.zeros((1000, 1))
+    values[500] = 1.0
+    marked = grid.touched(rows)[:, 0]
+    untouched = np.abs(grid.reduce(values)[:, 0]) < 1e-12  # round-off of the transform
+    assert np.all(marked | untouched)
+    assert marked.sum() <= 10 + 1  # taps over the rows of one row of the grid
+
+
+def test_an_empty_channel_counts_as_not_recorded(settings):
+    data = record(np.random.default_rng(1), FRICTION)
+    values = data["out"].copy()
+    values[:500, 1] = np.nan
+    v = diagnose(Toy(), [with_out(data, values)], settings=settings)
+    assert v.unseen == ("out.1",)
+
+
+def test_set_points_with_holes_are_refused(settings):
+    data = record(np.random.default_rng(1))
+    fed = data["drive.u"].copy()
+    fed[3] = np.nan
+    broken = Recording(data.time, {**data.signals, "drive.u": fed}, data.info)
+    with pytest.raises(InvalidInputError, match=r"drive\.u of recording 1.*set-points"):
+        diagnose(Toy(), [broken], settings=settings)
+
+
+@pytest.mark.parametrize(
+    ("change", "words"),
+    [
+        (lambda x: x[:, ::-1], "columns look swapped"),
+        (lambda x: x * [-1.0, 1.0], "the other sign"),
+    ],
+)
+def test_columns_that_are_swapped_or_turned_are_refused_by_name(settings, change, words):
+    data = record(np.random.default_rng(1), FRICTION, plant=Apart())
+    with pytest.raises(InvalidInputError, match=words):
+        diagnose(Apart(), [with_out(data, change(data["out"]))], settings=settings)
+    assert diagnose(Apart(), [data], settings=settings).causes[0].effect == "friction"
+
+
+class Apart(Toy):
+    """The second channel is the drive half a second late, so that the two are no copies."""
+
+    @property
+    def identity(self):
+        return f"apart {super().identity}"
+
+    def simulate(self, programme, values, refined=False):
+        rows = super().simulate(programme, values, refined)
+        u = programme.drive["drive.u"][:, 0]
+        gain = dict(values).get("plant.gain", 1.0)
+        rows[:, 1] += gain * (np.roll(u, 50) - u)
+        return rows
+
+
+def test_without_excitation_nothing_can_be_said_about_what_it_would_show(settings):
+    still = Programme("still", programme().time, {"drive.u": 0 * programme().drive["drive.u"]})
+    data = record(np.random.default_rng(1), FRICTION, fed=still)
+    v = diagnose(Toy(), [data], settings=settings)
+    assert v.verdict is Kind.NOTHING
+    for cause in ("friction", "lag", "gain"):
+        assert v.smallest_findable[f"{cause}@plant"].value is None
+    assert "this recording can say nothing" in headline(v)
+
+
+def test_a_recording_of_another_plant_gets_no_name(settings):
+    u = programme().drive["drive.u"][:, 0]
+    other = np.column_stack([np.roll(np.abs(u), 80), np.cumsum(u) * 0.01])
+    data = record(np.random.default_rng(1))
+    v = diagnose(Toy(), [with_out(data, other)], settings=settings)
+    assert (v.verdict, v.causes) == (Kind.UNKNOWN, ())
+    assert "hardly looks like one of this plant" in headline(v)
+
+
+@pytest.mark.slow
+def test_recordings_that_contradict_one_another_are_told_apart(settings):
+    one = record(np.random.default_rng(1), FRICTION, spread=0.0)
+    two = record(np.random.default_rng(2), {"bump.size": 0.1}, spread=0.0, fed=programme(5))
+    three = record(np.random.default_rng(3), {"friction.size": -0.03}, spread=0.0, fed=programme(5))
+    v = diagnose(Toy(), [one, three], settings=QUICK)
+    assert (v.verdict, v.causes) == (Kind.UNKNOWN, ())
+    assert headline(v).startswith("These recordings do not agree")
+    assert [a.causes for a in v.alone] == [("friction@plant",)] * 2
+    assert v.alone[0].sizes[0][0] == pytest.approx(0.03, abs=0.005)
+    assert v.alone[1].sizes[0][0] == pytest.approx(-0.03, abs=0.005)
+    assert "friction at plant, 0.0" in alone_sentences(v)[0]
+    # one rig with two causes, each seen by both recordings, is no contradiction
+    both = {**FRICTION, "bump.size": 0.1}
+    pair = [record(np.random.default_rng(k), both, spread=0.0, fed=programme(k)) for k in (1, 5)]
+    assert diagnose(Toy(), pair, settings=QUICK).verdict is Kind.SEVERAL
+    v = diagnose(Toy(), [one, two], settings=QUICK)
+    assert v.verdict is not Kind.NAMED
+
+
+def test_a_part_of_a_bank_is_the_bank_of_the_part():
+    feeds = (programme(1), programme(5))
+    whole = build_bank(Runs(Toy(), feeds, (0, 1)))
+    single = build_bank(Runs(Toy(), feeds[:1], (0, 1)))
+    short = feeds[0].time[:400]
+    cut = Programme("cut", short, {"drive.u": feeds[0].drive["drive.u"][:400]})
+    parts = (
+        (of_recording(whole, 1), build_bank(Runs(Toy(), feeds[1:], (0, 1)))),
+        (of_channels(single, (1,)), build_bank(Runs(Toy(), feeds[:1], (1,)))),
+        (of_time(single, 399 * 0.01), build_bank(Runs(Ended(), (cut,), (0, 1)))),
+    )
+    for part, own in parts:
+        assert part.base.runs.programmes[0].identity == own.base.runs.programmes[0].identity
+        rows = slice(None, -2)  # the toy's lag looks two rows ahead
+        for entry in range(len(own.owner)):
+            there = own.signature(entry)[rows]
+            assert part.signature(entry)[rows] == pytest.approx(there, abs=1e-6)
+        assert [*part.owner] == [*own.owner]
+        assert part.base.columns[:, rows] == pytest.approx(own.base.columns[:, rows], abs=1e-6)
+        assert [*part.base.runs.sd] == [*own.base.runs.sd]
+
+
+class Ended(Toy):
+    """Its drift is that of the whole programme though only the first half is simulated."""
+
+    def simulate(self, programme_, values, refined=False):
+        whole = programme()
+        return super().simulate(whole, values, refined)[: len(programme_.time)]

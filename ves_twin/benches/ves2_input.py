@@ -1,0 +1,57 @@
+"""prepare_inputs: recordings of VES II made fit for a diagnosis, or refused with what is wrong."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+from ves_twin.benches.ves2 import DRIVE
+from ves_twin.errors import VesTwinError
+from ves_twin.plant.plant import Plant
+from ves_twin.quality.check import Check
+from ves_twin.quality.gate import quality_gate
+from ves_twin.recording.even_clock import even_clock
+from ves_twin.recording.recording import Recording
+
+REFUSED = frozenset({"wiring", "sign", "units", "frame"})
+"""Checks whose failure makes any cause that is named a wrong one: the recording is not what it says
+it is."""
+
+
+@dataclass(frozen=True)
+class Inputs:
+    """Recordings on even clocks, and the checks that they failed without being refused."""
+
+    recordings: tuple[Recording, ...]
+    flaws: tuple[Check, ...]
+
+
+def prepare_inputs(recordings: Sequence[Recording], plant: Plant, word: str) -> Inputs:
+    """Put recordings through the quality gate and on an even clock.
+
+    Rows that are missing become rows without measurements, and short holes of the set-points are
+    bridged; `even_clock` says how.
+
+    Args:
+        recordings: measured or simulated.
+        plant: whose arm the force sensor carries.
+        word: what they are called in messages, for instance "recording".
+
+    Raises:
+        VesTwinError: columns that look swapped, turned, in other units or in another frame.
+        UnknownNameError: a set-point that is not recorded.
+        InvalidInputError: set-points that are missing for too long.
+    """
+    weight = float(plant.parameters.array("arm.mass").sum() * plant.parameters.number("gravity"))
+    even, flaws = [], []
+    for number, recording in enumerate(recordings, 1):
+        name = f"{word} {number}"
+        failed = quality_gate(recording, weight).failures
+        wrong = [check for check in failed if check.name in REFUSED]
+        if wrong:
+            raise VesTwinError(f"{name}: {'; '.join(check.message for check in wrong)}")
+        flaws += [replace(check, message=f"{name}: {check.message}") for check in failed]
+        for signal in DRIVE:
+            recording[signal]  # told by name where it is missing
+        even.append(even_clock(recording, DRIVE))
+    return Inputs(tuple(even), tuple(flaws))

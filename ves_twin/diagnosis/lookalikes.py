@@ -1,0 +1,94 @@
+"""lookalikes: causes that a recording confuses, and the sizes from which it no longer does."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ves_twin.diagnosis.findable import MARGIN, crossing
+from ves_twin.diagnosis.screen import AMPLITUDE, Screen
+from ves_twin.types import FloatArray, IntArray
+
+CLEAR = 1.05
+"""Two causes are confused if one must be this many times its smallest findable size to be told."""
+
+
+@dataclass(frozen=True)
+class Lookalike:
+    """A cause that is taken for another one below a size.
+
+    Attributes:
+        cause: effect@target.
+        other: effect@target of what it is taken for.
+        beyond: size from which it is told from it; None if at no size in its range.
+        unit: of that size.
+    """
+
+    cause: str
+    other: str
+    beyond: float | None
+    unit: str
+
+
+def lookalikes(
+    screen: Screen, findable: dict[str, float | None], odds: float, model_error: float
+) -> list[Lookalike]:
+    """Which findable cause would be taken for which other one.
+
+    At size e cause i is told from j if what the best scaled j leaves of it,
+    d^2 = min over a of |s_i(e) - a s_j|^2 with commissioning errors marginalised, exceeds
+    2 ln(odds) plus the error that the model of i may have, (model_error)^2 |s_i|^2, by MARGIN
+    of the 2 d by which the difference of the two chi^2 scatters.
+
+    Args:
+        screen: the bank under the noise as it is expected.
+        findable: smallest findable size of each cause; what cannot be found is left out.
+        odds: at which a rival is dropped.
+        model_error: relative error of a simulated change.
+    """
+    bank = screen.bank
+    found = []
+    for i, cause in enumerate(bank.hypotheses):
+        least = findable.get(cause.label)
+        rows = bank.entries(i)
+        if least is None or not len(rows) or len(cause.parameters) > 1:
+            continue
+        sizes = np.array([bank.sizes[k][0] for k in rows])
+        power = screen.power[rows]
+        needed = 2.0 * np.log(odds) + model_error**2 * power
+        goal = MARGIN + np.sqrt(MARGIN**2 + needed)
+        unit = _unit(screen, i)
+        for j, other in enumerate(bank.hypotheses):
+            theirs = bank.entries(j)
+            if j == i or not len(theirs):
+                continue
+            apart = np.sqrt(np.maximum(_left(screen, rows, theirs), 0.0)) / goal
+            beyond = _beyond(sizes, apart)
+            if beyond is None or beyond > CLEAR * least:
+                found.append(Lookalike(cause.label, other.label, beyond, unit))
+    return found
+
+
+def _left(screen: Screen, rows: IntArray, theirs: IntArray) -> FloatArray:
+    """What the best scaled entry of another cause leaves of each entry (rows,)."""
+    match, power = screen.gram[np.ix_(rows, theirs)], screen.power[theirs]
+    a = np.clip(match / power, *AMPLITUDE)
+    return np.asarray(screen.power[rows] - np.max(2.0 * a * match - a**2 * power, axis=1))
+
+
+def _beyond(sizes: FloatArray, apart: FloatArray) -> float | None:
+    """Size from which it is told in every direction; None if one is never told."""
+    ends = [
+        crossing(np.abs(sizes[sizes * sign > 0]), apart[sizes * sign > 0], 1.0)
+        for sign in (-1, 1)
+        if np.any(sizes * sign > 0)
+    ]
+    known = [end for end in ends if end is not None]
+    return max(known) if len(known) == len(ends) else None
+
+
+def _unit(screen: Screen, hypothesis: int) -> str:
+    runs = screen.bank.base.runs
+    index = int(runs.indices(screen.bank.hypotheses[hypothesis])[0])
+    return runs.coordinates[index].parameter.unit

@@ -1,0 +1,1 @@
+"""report: a verdict as one HTML page and in sentences."""

@@ -1,0 +1,239 @@
+"""Sentences of a diagnosis: verdict, sizes, basis, gain; never surer than the verdict's basis."""
+
+from __future__ import annotations
+
+from ves_twin.diagnosis.disagreement import disagree
+from ves_twin.diagnosis.leftover import Loud
+from ves_twin.diagnosis.rivals import Place
+from ves_twin.diagnosis.tolerances import FEWEST
+from ves_twin.diagnosis.verdict import Cause, Estimate, Kind, Verdict
+from ves_twin.report.quantity import percent, quantity
+
+STRANGER = 0.5
+"""Share of a channel's own spread that stays unexplained where the plant is hardly this one."""
+
+TOLD = 6
+"""Names in a sentence."""
+
+
+def spoken(label: str) -> str:
+    """effect@target as a person says it: "Coulomb friction at leg 3"."""
+    effect, _, target = label.partition("@")
+    words = effect.replace("_", " ").replace("coulomb", "Coulomb")
+    return f"{words} at {target.replace('.', ' ')}" if target else words
+
+
+def name_of(cause: Cause) -> str:
+    """A cause as a person says it."""
+    return spoken(f"{cause.effect}@{cause.target}")
+
+
+def headline(verdict: Verdict) -> str:
+    """The verdict in a sentence or two."""
+    names = [name_of(cause) for cause in verdict.causes]
+    match verdict.verdict:
+        case Kind.NOTHING:
+            return _nothing(verdict)
+        case Kind.UNKNOWN:
+            return _unknown(verdict)
+        case Kind.AMBIGUOUS:
+            groups = [" with ".join(names[i] for i in a) for a in verdict.alternatives]
+            listed = "; ".join(groups)
+            said = f"One of these {len(groups)}, and the recording cannot tell which: {listed}."
+            return said + _doubt(verdict)
+        case Kind.PARTIAL:
+            return f"Part of it is {names[0]}. Something more stays unexplained.{_doubt(verdict)}"
+        case Kind.SEVERAL:
+            return f"{_begin(verdict)} two causes together: {' and '.join(names)}.{_doubt(verdict)}"
+        case Kind.NAMED:
+            return f"{_begin(verdict)} {names[0]}.{_doubt(verdict)}"
+
+
+def tone(verdict: Verdict) -> str:
+    """Style of the headline: good, bad, or open where more has to be known."""
+    if verdict.verdict is Kind.NOTHING:
+        blind = [f for f in verdict.smallest_findable.values() if f.value is None]
+        return "open" if blind or verdict.unseen else "good"
+    settled = verdict.verdict in (Kind.NAMED, Kind.SEVERAL)
+    proven = verdict.gain is not None and verdict.gain.passed
+    return "bad" if settled and proven and all(c.firm for c in verdict.causes) else "open"
+
+
+def _nothing(verdict: Verdict) -> str:
+    lost = sum(f.value is None for f in verdict.smallest_findable.values())
+    count = len(verdict.smallest_findable)
+    said = "Nothing found: what is off lies within noise and commissioning tolerances."
+    if lost == count and count:
+        return f"Nothing can be said: this recording would show none of the {count} causes."
+    if lost:
+        return f"{said} About {lost} of {count} causes this recording can say nothing."
+    return f"{said} Each of the {count} causes would have shown from the size listed below on."
+
+
+def _unknown(verdict: Verdict) -> str:
+    strange = strangers(verdict)
+    if strange and not disagree(verdict.alone):
+        names = ", ".join(strange[:TOLD])
+        return (
+            "Something is wrong that no cause in the library explains, and the recording hardly"
+            f" looks like one of this plant: most of {names} stays unexplained."
+        )
+    if disagree(verdict.alone):
+        return (
+            "These recordings do not agree. Each alone is in order or has one cause, but nothing"
+            " explains all of them."
+        )
+    return "Something is wrong that no cause in the library explains."
+
+
+def _begin(verdict: Verdict) -> str:
+    proven = verdict.gain is not None and verdict.gain.passed
+    return "Found:" if proven and all(c.firm for c in verdict.causes) else "Best explained by"
+
+
+def _doubt(verdict: Verdict) -> str:
+    loose = [cause for cause in verdict.causes if not cause.firm]
+    if loose:
+        most = max(cause.sigmas or 0.0 for cause in loose)
+        which = "It is" if len(verdict.causes) == 1 else f"{name_of(loose[0])} is"
+        which = "Each is" if len(loose) == len(verdict.causes) > 1 else _capital(which)
+        upto = "up to " if len(loose) > 1 else ""
+        return (
+            f" {which} {upto}{most:.1f} declared tolerances off: a fault, or an error of"
+            " commissioning that large."
+        )
+    if verdict.basis.held_out == "none":
+        return " It fits these recordings; no other recording has tested it."
+    if verdict.gain is None or not verdict.gain.passed:
+        return " The held-out recordings do not confirm it."
+    return " Held-out recordings confirm it."
+
+
+def fitted_word(verdict: Verdict) -> str:
+    """What the fitted model of a verdict's traces is called."""
+    if verdict.exhibit is None or not verdict.exhibit.causes:
+        return "tolerances fitted"
+    return "nearest cause" if verdict.verdict is Kind.UNKNOWN else "extended"
+
+
+def nearest_sentence(verdict: Verdict) -> str:
+    """What comes nearest where nothing in the library explains the record; else empty."""
+    left = verdict.leftover
+    if verdict.verdict is not Kind.UNKNOWN or left is None or disagree(verdict.alone):
+        return ""
+    said = ""
+    if verdict.suspect:
+        names = " with ".join(map(spoken, verdict.suspect.split(" with ")))
+        said = f"Nearest, and not accepted: {names}. "
+    if left.loud:
+        top = left.loud[0]
+        said += f"What is left is loudest in {top.channel} at {ends_words(top)}."
+    return said
+
+
+def ends_words(place: Loud | Place) -> str:
+    """A band or a stretch of time."""
+    unit = "Hz" if place.kind == "band" else "s"
+    low, high = f"{place.low:.3g}", f"{place.high:.3g}"
+    return f"{low} {unit}" if low == high else f"{low} to {high} {unit}"
+
+
+def alone_sentences(verdict: Verdict) -> tuple[str, ...]:
+    """What each recording says by itself, where all together have no explanation."""
+    told = []
+    for one in verdict.alone:
+        said = "nothing is wrong"
+        if one.causes:
+            sizes = ", ".join(quantity(size, unit) for size, unit in one.sizes)
+            said = f"{' or '.join(map(spoken, one.causes))}, {sizes}"
+        if not one.explained:
+            said = f"no single cause explains it; nearest is {said}"
+        told.append(f"{one.recording} alone: {said}.")
+    return tuple(told)
+
+
+def strangers(verdict: Verdict) -> list[str]:
+    """Channels of which the best explanation leaves more than half of their own movement."""
+    return [
+        name
+        for name, error in verdict.residuals.items()
+        if error.after > 10.0 and error.after_si > STRANGER * error.spread
+    ]
+
+
+def size_words(estimate: Estimate) -> str:
+    """Size of a departure: "12.4 mN m", or "1.04 kg, 39 g above nominal"."""
+    value = quantity(estimate.value, estimate.unit)
+    if estimate.nominal == 0.0:
+        return value
+    change = estimate.value - estimate.nominal
+    if estimate.unit == "1":
+        part = percent(abs(change / estimate.nominal))
+    else:
+        part = quantity(abs(change), estimate.unit)
+    return f"{value}, {part} {'above' if change > 0.0 else 'below'} nominal"
+
+
+def interval_words(estimate: Estimate) -> str:
+    """The interval of a size, as long as its digits need."""
+    low, high = estimate.low, estimate.high
+    if estimate.nominal and estimate.unit != "1":
+        there = [quantity(end - estimate.nominal, estimate.unit) for end in (low, high)]
+        return f"{there[0]} to {there[1]} from nominal"
+    return f"{quantity(low, estimate.unit)} to {quantity(high, estimate.unit)}"
+
+
+def gain_sentence(verdict: Verdict) -> str:
+    """What the extension is worth on recordings it has not seen."""
+    gain = verdict.gain
+    if gain is None:
+        if not verdict.causes:
+            return ""
+        return (
+            "Gain: not known. No held-out recording was given, so nothing shows that the extended"
+            " plant predicts better than the nominal one."
+        )
+    if gain.share is None:
+        return (
+            "Gain: the held-out recordings show no error beyond noise that an extension could take"
+            " away; they neither confirm nor refute it."
+        )
+    span = f"{_share(gain.low)} to {_share(gain.high)}"
+    said = f"{_share(gain.share)} of the error beyond noise on held-out recordings ({span})"
+    if gain.passed:
+        return f"Gain: the extended plant takes away {said}."
+    return f"Gain: {said}. That is no clear gain."
+
+
+def basis_sentences(verdict: Verdict) -> tuple[str, ...]:
+    """On what the verdict rests, in plain words."""
+    basis, limit = verdict.basis, verdict.statistics.naming_limit
+    noise = {
+        "measured": "Noise: measured at a standstill.",
+        "declared": "Noise: as the plant's numbers declare it; no standstill recording was given.",
+    }
+    beyond = f" A fault is what is {limit:.1f} declared tolerances off." if limit else ""
+    scale = verdict.statistics.tolerance_scale or 0.0
+    tolerances = {
+        "measured": "Tolerances: measured on commissioning recordings,"
+        f" {scale:.2g} times the declared ones.{beyond}",
+        "declared": "Tolerances: declared, not measured; they may be too small. With"
+        f" {FEWEST} commissioning recordings they would be measured.{beyond}",
+    }
+    held = {
+        "measured": "Held-out recordings: given.",
+        "none": "Held-out recordings: none. The verdict was not tested on other data.",
+    }
+    return (
+        noise.get(basis.noise, f"Noise: {basis.noise}."),
+        tolerances.get(basis.tolerances, f"Tolerances: {basis.tolerances}."),
+        held.get(basis.held_out, f"Held-out recordings: {basis.held_out}."),
+    )
+
+
+def _share(value: float | None) -> str:
+    return "-" if value is None else f"{100.0 * value:.0f} %"
+
+
+def _capital(text: str) -> str:
+    return text[:1].upper() + text[1:]
