@@ -17,7 +17,7 @@ demo-diagnosis: .venv/.run
 	rm -rf $(HIDDEN) $(HIDDEN).key
 	$(BIN)/ves-twin blind make --bench ves2_fast --cases 1 --none 0 --outside 0 --pair 0 --out $(HIDDEN)
 	$(BIN)/ves-twin diagnose $(HIDDEN)/case-0001/recording.parquet --plant ves2_pressure_fast \
-		--held-out $(HIDDEN)/case-0001/held_out.parquet --standstill $(HIDDEN)/standstill.parquet \
+		--held-out $(HIDDEN)/case-0001/held_out.parquet \
 		--out $(HIDDEN)/diagnosis
 	$(BIN)/ves-twin blind reveal --out $(HIDDEN)
 

@@ -71,8 +71,16 @@ class RigForward:
     def channels(self) -> tuple[Channel, ...]:
         """Measured columns with the sd that the plant's own numbers declare."""
         sds = noise_of(self.plant)
+        corner = self.plant.actual.number("sensor.corner")
         return tuple(
-            Channel(column, name, i, unit, float(sds[name][i]))
+            Channel(
+                column,
+                name,
+                i,
+                unit,
+                float(sds[name][i]),
+                corner if name == "sensor.wrench" else None,
+            )
             for name in COMPARED
             for i, (column, unit) in enumerate(
                 zip(SIGNALS[name].columns, SIGNALS[name].units, strict=True)

@@ -125,16 +125,16 @@ def _answer(
                 exclude=excluded,
                 settings=settings,
             )
-        else:
+        else:  # no standstill: the legs hunt over a count there, and not in motion
             name = "ves2_pressure_fast" if bench == "ves2_fast" else "ves2_pressure"
             verdict = diagnose_rig(
                 [record],
                 Plant.load(name),
                 held_out=held_out,
-                standstill=still,
                 exclude=excluded,
                 settings=settings,
             ).verdict
+
     except VesTwinError:
         return Answer("error", seconds=round(perf_counter() - begun, 1))
     return Answer.of(verdict, perf_counter() - begun)

@@ -29,7 +29,8 @@ class Channel:
         signal: signal of a recording that holds it.
         column: column of that signal, from 0.
         unit: its unit.
-        sd: declared sd of one sample's white noise [unit].
+        sd: declared sd of one sample's noise [unit].
+        corner: of the second-order low-pass that the noise went through [Hz]; white if None.
     """
 
     name: str
@@ -37,6 +38,7 @@ class Channel:
     column: int
     unit: str
     sd: float
+    corner: float | None = None
 
 
 @dataclass(frozen=True)

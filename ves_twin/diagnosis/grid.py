@@ -64,10 +64,19 @@ class AnalysisGrid:
         margin = len(self.taps) // 2
         return np.asarray(time[margin : len(time) - margin][:: self.factor])
 
-    def autocovariance(self, sd: float, lags: int) -> FloatArray:
-        """Autocovariance (lags + 1,) on the grid of white noise of a given sd per row."""
-        full = np.correlate(self.taps, self.taps, mode="full")[len(self.taps) - 1 :]
-        values = np.zeros(lags + 1)
-        picked = full[:: self.factor][: lags + 1]
-        values[: len(picked)] = picked
-        return sd**2 * values
+    def autocovariance(self, sd: float, lags: int, corner: float | None = None) -> FloatArray:
+        """Autocovariance (lags + 1,) on the grid of noise of a given sd per row.
+
+        White from row to row, or white that went through a Butterworth low-pass of second order:
+        r(t) = sd^2 exp(-w |t|) (cos w t + sin w |t|), w = sqrt(2) pi corner.
+        """
+        full = np.correlate(self.taps, self.taps, mode="full")
+        middle, reach = len(self.taps) - 1, lags * self.factor
+        shifts = np.arange(-middle - reach, middle + reach + 1)
+        if corner is None:
+            rows = (shifts == 0).astype(float)
+        else:
+            phase = np.sqrt(2.0) * np.pi * corner * self.period * np.abs(shifts)
+            rows = np.exp(-phase) * (np.cos(phase) + np.sin(phase))
+        smoothed = np.convolve(rows, full, mode="valid")
+        return np.asarray(sd**2 * smoothed[reach :: self.factor][: lags + 1])

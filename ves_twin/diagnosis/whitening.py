@@ -150,10 +150,10 @@ class Whitening:
 
 
 def whitening_declared(runs: Runs) -> Whitening:
-    """Whitening from the declared white noise of each channel, as the analysis grid shapes it."""
+    """Whitening from the declared noise of each channel, as the analysis grid shapes it."""
     channels = [runs.forward.channels[c] for c in runs.columns]
     covariances = [
-        np.array([grid.autocovariance(channel.sd, ORDER) for channel in channels])
+        np.array([grid.autocovariance(channel.sd, ORDER, channel.corner) for channel in channels])
         for grid in runs.grids
     ]
     return _whitening(runs, covariances, [np.eye(len(channels))] * len(runs.grids))
