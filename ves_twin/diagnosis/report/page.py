@@ -66,7 +66,7 @@ def _answer(verdict: Verdict, plant: str) -> Html:
     parts = [paragraph(headline(verdict), f"lead {tone(verdict)}")]
     if verdict.causes:
         head = ("cause", "size", "90 % interval", "nominal", "probability", "standing")
-        parts.append(table(head, [row for c in verdict.causes for row in _cause(c)]))
+        parts.append(table(head, [row for c in verdict.causes for row in _cause(c, verdict)]))
     for said in (nearest_sentence(verdict), gain_sentence(verdict)):
         if said:
             parts.append(paragraph(said))
@@ -81,8 +81,10 @@ def _answer(verdict: Verdict, plant: str) -> Html:
     return joined(parts)
 
 
-def _cause(cause: Cause) -> list[tuple[str, ...]]:
+def _cause(cause: Cause, verdict: Verdict) -> list[tuple[str, ...]]:
     standing = "firm" if cause.firm else f"provisional, {cause.sigmas or 0.0:.1f} tolerances off"
+    if verdict.verdict is Kind.AMBIGUOUS:
+        standing = f"one of {len(verdict.alternatives)}, {standing}"
     return [
         (
             name_of(cause) if len(cause.parameters) == 1 else f"{name_of(cause)}: {name}",

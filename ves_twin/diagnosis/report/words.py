@@ -103,7 +103,8 @@ def _doubt(verdict: Verdict) -> str:
             " commissioning that large."
         )
     if verdict.basis.held_out == "none":
-        return " It fits these recordings; no other recording has tested it."
+        it = "Each" if verdict.verdict is Kind.AMBIGUOUS else "It"
+        return f" {it} fits these recordings; no other recording has tested it."
     if verdict.gain is None or not verdict.gain.passed:
         return " The held-out recordings do not confirm it."
     return " Held-out recordings confirm it."
