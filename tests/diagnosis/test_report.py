@@ -10,11 +10,16 @@ from toy import Toy, programme, record
 
 from ves_twin.diagnosis.diagnose import diagnose
 from ves_twin.diagnosis.gain import Gain
+from ves_twin.diagnosis.linearise import linearise
+from ves_twin.diagnosis.next_experiment import separations
+from ves_twin.diagnosis.observe import observe
+from ves_twin.diagnosis.refine import Evidence, refine
 from ves_twin.diagnosis.report.page import diagnosis_page
 from ves_twin.diagnosis.report.words import headline, tone
 from ves_twin.diagnosis.rivals import Standing
 from ves_twin.diagnosis.settings import Settings
 from ves_twin.diagnosis.verdict import Kind
+from ves_twin.diagnosis.whitening import whitening_declared
 from ves_twin.errors import InvalidInputError
 from ves_twin.rerun_log.diagnosis import write_diagnosis_rrd
 
@@ -194,3 +199,44 @@ def test_a_verdict_from_a_file_has_no_traces_to_write(friction, tmp_path):
     with pytest.raises(InvalidInputError, match="no traces"):
         write_diagnosis_rrd(bare, tmp_path / "diagnosis.rrd")
     assert "friction at plant" in diagnosis_page(bare)
+
+
+@pytest.fixture(scope="module")
+def twins(settings):
+    plant = Toy(causes=("lag", "late", "friction"))
+    data = record(np.random.default_rng(2), {"lag.size": 0.2}, plant=plant)
+    return diagnose(plant, [data], next_programmes=lambda: [programme(8)], settings=settings)
+
+
+def test_an_ambiguous_group_is_told_as_one_of_several_with_what_to_record_next(twins):
+    assert twins.verdict is Kind.AMBIGUOUS
+    page = diagnosis_page(twins)
+    top = first_screen(page)
+    assert "One of these 2, and the recording cannot tell which" in top
+    assert top.count("one of 2, firm") == 2
+    assert "look alike in these recordings" in page
+    assert "To tell lag at plant from late at plant: toy." in page
+
+
+def test_the_menu_is_ranked_by_few_commissioning_errors_where_there_are_many(monkeypatch, settings):
+    """One of two errors of the plant is kept: the ranking of a loud and a quiet programme holds."""
+    monkeypatch.setattr("ves_twin.diagnosis.next_experiment.NUISANCES", 1)
+    plant = Toy(causes=("lag", "friction", "ripple"))
+    data = record(np.random.default_rng(4), {"lag.size": 0.05}, spread=0.0, plant=plant)
+    seen = observe(plant, [data])
+    base = linearise(seen.runs, seen.runs.origin)
+    evidence = Evidence(seen.runs, seen.measured, whitening_declared(seen.runs))
+    fits = [
+        refine(
+            evidence, (h,), seen.runs.depart(seen.runs.origin, seen.runs.indices(h), [0.02]), base
+        )
+        for h in plant.hypotheses
+        if h.effect in {"lag", "friction"}
+    ]
+    quiet, loud = programme(8, amplitude=0.1), programme(8, amplitude=2.0)
+    few = separations(seen.runs, fits, [quiet, loud])
+    monkeypatch.setattr("ves_twin.diagnosis.next_experiment.NUISANCES", 16)
+    every = separations(seen.runs, fits, [quiet, loud])
+    assert few[0].programme is every[0].programme is loud
+    for one, other in zip(few, every, strict=True):
+        assert one.chi2 >= 0.999 * other.chi2  # what is not marginalised cannot stand for a rival
