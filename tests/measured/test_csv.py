@@ -106,6 +106,15 @@ def test_dates_become_seconds(table):
     assert np.diff(zoned.read("", ["when"])["when"])[0] == 1.0
 
 
+def test_a_date_that_is_none_and_bytes_that_are_no_text_count_as_missing(table):
+    rows = [b"2024-05-01 12:00:%02d,1" % (i % 60) for i in range(60)]
+    rows[55:57] = [b"when?,2", b"2024-05-01 12:00:56,\xff\xfe"]
+    log = table(b"when,x\n" + b"\n".join(rows) + b"\n")
+    found = log.read("", ["when", "x"])
+    assert np.isnan(found["when"]).sum() == np.isnan(found["x"]).sum() == 1
+    assert found["when"][59] - found["when"][0] == 59.0
+
+
 def test_pieces_join_to_the_whole(table, monkeypatch):
     rng = np.random.default_rng(1)
     rows = rng.normal(size=(5000, 3))

@@ -16,6 +16,9 @@ from ves_twin.measured.log import Block, Column, Extremes, Kind, KnownRanges, Lo
 from ves_twin.measured.unit_names import spelled, unit_of_name
 from ves_twin.types import FloatArray
 
+DAMAGE = (pa.ArrowException, OSError, MemoryError, ValueError)
+"""What damaged files make the library raise: lengths beyond memory, names that are no text."""
+
 ROWS = 1 << 16
 """Rows that are read at a time."""
 
@@ -24,8 +27,8 @@ class ParquetLog(Log):
     """A Parquet file; ranges come from its own statistics where it has them."""
 
     def __init__(self, path: Path) -> None:
-        self._file = _opened(path)
-        table = Table("", _columns(self._file.schema_arrow), self._file.metadata.num_rows)
+        self._file, columns = _opened(path)
+        table = Table("", columns, self._file.metadata.num_rows)
         super().__init__(path, "Parquet", [table])
         _note_texts(self)
 
@@ -35,7 +38,7 @@ class ParquetLog(Log):
             try:
                 for batch in self._file.iter_batches(ROWS, [group], columns=list(columns)):
                     yield {n: numbers(batch.column(n)) for n in columns}
-            except (pa.ArrowInvalid, OSError) as error:
+            except DAMAGE as error:
                 rows = self._file.metadata.row_group(group).num_rows
                 words = f"row group {group + 1} ({rows} rows): {one_line(error)}"
                 self.note_fault(f"group {group}", words)
@@ -65,10 +68,10 @@ class ArrowLog(Log):
             with path.open("rb") as file:
                 self._is_file = file.read(6) == b"ARROW1"
             with pa.OSFile(str(path)) as source:
-                schema = self._reader(source).schema
-        except (pa.ArrowInvalid, OSError) as error:
+                columns = _columns(self._reader(source).schema)
+        except DAMAGE as error:
             raise InvalidInputError(path.name, one_line(error), "a whole Arrow schema") from None
-        super().__init__(path, "Arrow", [Table("", _columns(schema))])
+        super().__init__(path, "Arrow", [Table("", columns)])
         _note_texts(self)
 
     def _reader(self, source: pa.NativeFile) -> ipc.RecordBatchReader:
@@ -90,7 +93,7 @@ class ArrowLog(Log):
                         batch = reader.read_next_batch()
                 except StopIteration:
                     return
-                except (pa.ArrowInvalid, OSError) as error:
+                except DAMAGE as error:
                     self.note_fault("cut", f"cut after row {rows}: {one_line(error)}")
                     return
                 number, rows = number + 1, rows + batch.num_rows
@@ -107,10 +110,11 @@ def numbers(column: pa.Array) -> FloatArray:
     return np.asarray(column.cast(pa.float64(), safe=False).to_numpy(zero_copy_only=False))
 
 
-def _opened(path: Path) -> pq.ParquetFile:
+def _opened(path: Path) -> tuple[pq.ParquetFile, tuple[Column, ...]]:
     try:
-        return pq.ParquetFile(path)
-    except (pa.ArrowInvalid, OSError) as error:
+        file = pq.ParquetFile(path)
+        return file, _columns(file.schema_arrow)
+    except DAMAGE as error:
         reason = one_line(error)
         if "magic bytes" in reason or "footer" in reason.lower():
             reason = "cut: the footer at its end, without which no row can be found, is missing"

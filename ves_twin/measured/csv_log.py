@@ -26,6 +26,7 @@ AHEAD = 3
 
 HEAD = 1 << 16
 
+STAMP = r"^\s*\d{4}-\d\d-\d\d[T ]\d\d:\d\d(:\d\d(\.\d{1,9})?)?(Z|[+-]\d\d:?\d\d)?\s*$"
 NUMBER = r"^\s*[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?\s*$"
 
 
@@ -90,6 +91,7 @@ class CsvLog(Log):
             table = self._table(piece, wanted, count, texts=False)
         except pa.ArrowInvalid:
             count = _Count()
+            piece = piece.decode("utf-8", "replace").encode()
             table = self._table(piece, wanted, count, texts=True)
         return {name: self._numbers(table.column(name), name, count) for name in wanted}, count
 
@@ -130,14 +132,21 @@ class CsvLog(Log):
     def _numbers(self, column: pa.ChunkedArray, name: str, count: _Count) -> FloatArray:
         if pa.types.is_timestamp(column.type):
             return seconds_of(column)
-        if pa.types.is_string(column.type):
-            if self._layout.decimal == ",":
-                column = pc.replace_substring(column, ",", ".")
-            good = pc.match_substring_regex(column, NUMBER)
-            bad = pc.sum(pc.invert(good)).as_py() or 0
-            count.cells[name] = count.cells.get(name, 0) + bad
-            column = pc.if_else(good, pc.utf8_trim_whitespace(column), None).cast(pa.float64())
-        return np.asarray(column.to_numpy(), dtype=np.float64)
+        if not pa.types.is_string(column.type):
+            return np.asarray(column.to_numpy(), dtype=np.float64)
+        kind = next(c.kind for c in self._layout.columns if c.name == name)
+        if self._layout.decimal == "," and kind is Kind.NUMBER:
+            column = pc.replace_substring(column, ",", ".")
+        good = pc.match_substring_regex(column, STAMP if kind is Kind.STAMP else NUMBER)
+        count.cells[name] = pc.sum(pc.invert(good)).as_py() or 0
+        column = pc.if_else(good, pc.utf8_trim_whitespace(column), None)
+        if kind is Kind.NUMBER:
+            return np.asarray(column.cast(pa.float64()).to_numpy(), dtype=np.float64)
+        try:
+            return seconds_of(column.cast(self._type(name, kind)))
+        except pa.ArrowInvalid:  # a month 13
+            count.cells[name] = len(column)
+            return np.full(len(column), np.nan)
 
 
 def seconds_of(column: pa.ChunkedArray) -> FloatArray:

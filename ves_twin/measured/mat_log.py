@@ -2,18 +2,15 @@
 
 from __future__ import annotations
 
-import io
-import struct
 from collections.abc import Iterator
 from pathlib import Path
-from typing import IO, Any
 
 import numpy as np
 import scipy.io
-from scipy.io.matlab import MatlabFunction, MatlabObject, MatlabOpaque
 
 from ves_twin.errors import InvalidInputError, one_line
 from ves_twin.measured.array_log import ArrayLog
+from ves_twin.measured.mat5 import DamagedError, MatKind, MatValue, mat_variables
 
 SAVE_V7 = "load('{name}'); save('{stem}_v7.mat', '-v7')"
 """MATLAB line that makes a version 7.3 file readable."""
@@ -34,47 +31,43 @@ CONVERT = {
 """Class of an object -> MATLAB line that turns it into arrays."""
 ANY = "S = struct({x}); save('{x}.mat', '-struct', 'S', '-v7')"
 
-HEADER = 128
-"""Bytes before the first variable of a version 5 file; the last two tell the byte order."""
-
 
 def mat_log(path: Path) -> ArrayLog:
-    """A MAT file as a log; variables are read one by one, so that a bad one costs only itself.
+    """A MAT file as a log; a damaged variable costs only itself.
 
     Raises:
         InvalidInputError: version 7.3 (HDF5), or nothing in it can be read.
     """
     found = _Found()
-    for number, piece in enumerate(_variables(path), 1):
-        try:
-            content = scipy.io.loadmat(piece)
-        except NotImplementedError:
-            raise mat_73(path) from None
-        except Exception as error:  # zlib, struct and the library's own
-            words = f"variable {number}: cut or damaged, left out: {one_line(error)}"
-            found.faults.append(words)
-            continue
-        for name, value in content.items():
-            if not name.startswith("__"):
-                found.take(name, value)
+    for number, value in enumerate(_variables(path), 1):
+        if isinstance(value, DamagedError):
+            found.faults.append(f"variable {number}: cut or damaged, left out: {value}")
+        elif value.name and not value.name.startswith("__"):
+            found.take("", value.name, value)
     if not found.groups:
         words = "; ".join(found.faults) or "0 variables"
         raise InvalidInputError(path.name, words, "arrays of numbers")
     return ArrayLog(path, "MAT", found.groups, found.units, found.faults)
 
 
-def _variables(path: Path) -> Iterator[IO[bytes]]:
-    """Each variable of a version 5 file as a file of its own; one of version 4 whole."""
+def _variables(path: Path) -> Iterator[MatValue | DamagedError]:
     with path.open("rb") as file:
-        head = file.read(HEADER)
-        order = {b"IM": "<", b"MI": ">"}.get(head[126:128])
-        if not head.startswith(b"MATLAB 5") or order is None:
-            file.seek(0)
-            yield io.BytesIO(file.read())
+        if file.read(8) == b"MATLAB 5":
+            yield from mat_variables(path)
             return
-        while tag := file.read(8):
-            size = struct.unpack(f"{order}II", tag)[1] if len(tag) == 8 else 0
-            yield io.BytesIO(head + tag + file.read(size))
+    try:
+        content = scipy.io.loadmat(str(path))
+    except NotImplementedError:
+        raise mat_73(path) from None
+    except Exception as error:  # version 4 has no mark, so anything may come here
+        raise InvalidInputError(path.name, f"damaged: {one_line(error)}", "a MAT file") from None
+    for name, value in content.items():
+        if isinstance(value, np.ndarray) and value.dtype.kind in "fiub":
+            yield MatValue(name, MatKind.NUMBERS, value)
+        elif isinstance(value, np.ndarray) and value.dtype.kind == "c":
+            yield MatValue(name, MatKind.COMPLEX)
+        elif not name.startswith("__"):
+            yield MatValue(name, MatKind.SPARSE)
 
 
 def mat_73(path: Path) -> InvalidInputError:
@@ -91,75 +84,47 @@ class _Found:
         self.units: dict[str, str] = {}
         self.faults: list[str] = []
 
-    def take(self, name: str, value: Any) -> None:
-        """Take a variable of the top level; an object carries its name inside."""
-        if isinstance(value, MatlabOpaque):
-            name = _part(value, "s0") or name
-        self._take("", name, value)
-
-    def _take(self, container: str, name: str, value: Any) -> None:
+    def take(self, container: str, name: str, value: MatValue) -> None:
+        """Take a variable, or a field of the struct that is called `container`."""
         full = f"{container}.{name}" if container else name
-        if isinstance(value, MatlabOpaque):
-            self.faults.append(_remedy(full, _part(value, "s2") or "object"))
-        elif isinstance(value, MatlabFunction):
-            self.faults.append(f"{full}: a function, left out; no code is run")
-        elif isinstance(value, MatlabObject):
-            self.faults.append(_remedy(full, getattr(value, "classname", "object")))
-        elif not isinstance(value, np.ndarray):  # sparse
-            self._take(container, name, value.toarray())
-        elif value.dtype.names is not None:
+        if value.kind is MatKind.NUMBERS and value.numbers is not None:
+            if value.numbers.size:
+                self.groups.setdefault(container, {})[name] = value.numbers
+            else:
+                self.faults.append(f"{full}: empty")
+        elif value.kind is MatKind.STRUCT:
             self._take_struct(full, value)
-        elif value.dtype.kind in "OUS":
+        elif value.kind is MatKind.CELL:
             self._take_cells(full, value)
-        elif value.dtype.kind == "c":
-            words = f"complex, left out; MATLAB: {name}_re = real({full}); {name}_im = imag({full})"
-            self.faults.append(f"{full}: {words}")
-        elif value.size:
-            self.groups.setdefault(container, {})[name] = value
-        else:
-            self.faults.append(f"{full}: empty")
+        elif value.kind is MatKind.OBJECT:
+            self.faults.append(_remedy(full, value.text or "object"))
+        elif value.kind in LEFT_OUT:
+            self.faults.append(f"{full}: {LEFT_OUT[value.kind].format(x=full, n=name)}")
 
-    def _take_struct(self, full: str, value: np.ndarray) -> None:
-        for place, element in enumerate(value.reshape(-1)):
-            here = full if value.size == 1 else f"{full}({place + 1})"
-            for field in value.dtype.names or ():
+    def _take_struct(self, full: str, value: MatValue) -> None:
+        for place, element in enumerate(value.fields):
+            here = full if len(value.fields) == 1 else f"{full}({place + 1})"
+            for field, content in element.items():
                 if full == "units":
-                    self.units[field] = next(_texts(element[field]), "")
+                    self.units[field] = content.text
                 else:
-                    self._take(here, field, element[field])
+                    self.take(here, field, content)
 
-    def _take_cells(self, full: str, value: np.ndarray) -> None:
-        if value.dtype.kind in "US":
-            return
-        inner = [_plain(cell) for cell in value.reshape(-1)]
-        if any(array is None for array in inner):
-            if not all(list(_texts(cell)) for cell in value.reshape(-1)):
-                self.faults.append(f"{full}: a cell array of mixed content, left out")
-            return
-        for i, array in enumerate(inner):
-            if array is not None:
-                self._take(full, f"{i + 1}", array)
+    def _take_cells(self, full: str, value: MatValue) -> None:
+        kinds = {cell.kind for cell in value.cells}
+        if kinds == {MatKind.NUMBERS}:
+            for place, cell in enumerate(value.cells):
+                self.take(full, f"{place + 1}", cell)
+        elif kinds - {MatKind.TEXT}:
+            self.faults.append(f"{full}: a cell array of mixed content, left out")
 
 
-def _plain(cell: Any) -> np.ndarray | None:
-    """A cell that holds numbers, else None; objects are never opened."""
-    good = isinstance(cell, np.ndarray) and cell.dtype.kind in "fiub" and cell.size > 1
-    return cell if good else None
-
-
-def _texts(value: Any) -> Iterator[str]:
-    """The text that a variable holds, if it is one."""
-    if isinstance(value, np.ndarray) and value.dtype.kind in "US" and value.size == 1:
-        yield str(value.reshape(-1)[0])
-
-
-def _part(value: MatlabOpaque, field: str) -> str:
-    """Name (s0) or class (s2) of an object."""
-    try:
-        name = value.reshape(-1)[0][field]
-    except (ValueError, IndexError, KeyError):
-        return ""
-    return name.decode("latin-1") if isinstance(name, bytes) else str(name)
+LEFT_OUT = {
+    MatKind.COMPLEX: "complex, left out; MATLAB: {n}_re = real({x}); {n}_im = imag({x})",
+    MatKind.FUNCTION: "a function, left out; no code is run",
+    MatKind.SPARSE: "sparse, left out; MATLAB: {n} = full({x})",
+}
+"""What holds no channels -> what is said of it."""
 
 
 def _remedy(full: str, kind: str) -> str:

@@ -20,7 +20,6 @@ from ves_twin.types import FloatArray
 
 try:
     from mcap.data_stream import ReadDataStream
-    from mcap.exceptions import McapError
     from mcap.reader import SeekingReader
     from mcap.records import Channel, Chunk, ChunkIndex, Message, Schema
     from mcap.stream_reader import StreamReader, breakup_chunk
@@ -42,9 +41,6 @@ SAMPLED = 2000
 MANY = 10_000
 
 DECODED = "JSON, protobuf, ROS 2 (cdr with ros2msg) and ROS 1 (ros1msg)"
-
-DAMAGED = (McapError, ValueError, OSError, EOFError, RuntimeError, struct.error, KeyError)
-"""What reading a file that is cut or damaged raises, decompression included."""
 
 
 @dataclass(frozen=True)
@@ -113,7 +109,7 @@ class McapLog(Log):
         """Channels and counts: from the summary at the end, else by reading all there is."""
         try:
             summary = SeekingReader(stream).get_summary()
-        except DAMAGED:
+        except Exception:  # as below
             summary = None
         if summary is not None and summary.chunk_indexes and summary.statistics is not None:
             self._channels, self._schemas = summary.channels, summary.schemas
@@ -138,7 +134,7 @@ class McapLog(Log):
                     self._schemas[record.id] = record
                 elif isinstance(record, Message):
                     yield record
-        except DAMAGED as error:
+        except Exception as error:  # each compression raises its own
             words = one_line(error).removeprefix("EndOfFile")
             self.note_fault("cut", f"cut or damaged; messages up to there are kept: {words}")
 
@@ -154,7 +150,7 @@ class McapLog(Log):
                 try:
                     stream.seek(index.chunk_start_offset + 9)
                     records = breakup_chunk(Chunk.read(ReadDataStream(stream)), validate_crc=True)
-                except DAMAGED as error:
+                except Exception as error:  # each compression raises its own
                     words = f"chunk {number} of {len(self._chunks)} left out: {one_line(error)}"
                     self.note_fault(f"chunk {number}", words)
                     continue

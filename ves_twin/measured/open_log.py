@@ -78,7 +78,7 @@ def _archive(file: Path, head: bytes) -> ArrayLog:
     if head.startswith(b"PK"):
         try:
             names = zipfile.ZipFile(file).namelist()
-        except zipfile.BadZipFile:
+        except Exception:  # zipfile raises several kinds
             raise InvalidInputError(file.name, "a damaged archive", READABLE) from None
         if any(name.startswith("xl/") for name in names):
             raise InvalidInputError(file.name, "an Excel sheet", "CSV; save the sheet as such")
