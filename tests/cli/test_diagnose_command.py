@@ -93,3 +93,29 @@ def test_a_plan_refuses_bad_input_in_one_line(capsys, options, words):
     assert main(["plan", *options]) == 2
     error = capsys.readouterr().err.strip().splitlines()[-1]
     assert words in error
+
+
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        ('[recordings.rnu]\npayload = "1 kg"\n', "did you mean 'run"),
+        ("[window]\nstart = 50\n", "window of run.parquet"),
+        ('scenario = "identify_fats"\n', "did you mean 'identify_fast'"),
+        ('noise = "no_such.parquet"\n', "does not exist"),
+    ],
+)
+def test_an_experiment_that_cannot_be_is_one_line(capsys, tmp_path, recording, text, words):
+    (tmp_path / "lab.toml").write_text(text)
+    options = ["--experiment", str(tmp_path / "lab.toml"), "--out", str(tmp_path / "out")]
+    assert main(["diagnose", recording, *options]) == 2
+    error = capsys.readouterr().err.strip()
+    assert words in error
+    assert "\n" not in error
+    assert not (tmp_path / "out").exists()
+
+
+def test_one_file_cannot_be_measured_and_held_out(capsys, tmp_path, recording):
+    (tmp_path / "lab.toml").write_text('payload = "1 kg"\n')
+    options = ["--experiment", str(tmp_path / "lab.toml"), "--out", str(tmp_path / "out")]
+    assert main(["diagnose", recording, "--held-out", recording, *options]) == 2
+    assert "two of one name" in capsys.readouterr().err

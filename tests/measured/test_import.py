@@ -3,7 +3,9 @@
 import json
 
 import numpy as np
+import pyarrow.parquet as pq
 import pytest
+from mcap.writer import Writer
 
 from ves_twin.errors import VesTwinError
 from ves_twin.measured.import_log import import_log
@@ -254,3 +256,46 @@ def test_every_range_belongs_to_a_signal_of_the_table():
     for name, (low, high) in signal_ranges(Plant.load("ves2")).items():
         assert low.shape == high.shape == (SIGNALS[name].width,)
         assert np.all(low < high)
+
+
+@pytest.fixture
+def two_rates(tmp_path):
+    """A log of a fast and a slow topic on one clock, and its map."""
+    path, told = tmp_path / "two.mcap", tmp_path / "two.toml"
+    with path.open("wb") as stream:
+        writer = Writer(stream, chunk_size=2048)
+        writer.start()
+        schema = writer.register_schema("x", "jsonschema", b"{}")
+        fast = writer.register_channel("/q", "json", schema)
+        slow = writer.register_channel("/p", "json", schema)
+        for i in range(1000):
+            at = 10**18 + i * 5_000_000
+            writer.add_message(fast, at, json.dumps({"v": 0.001 * i}).encode(), at)
+            if i % 20 == 0:
+                writer.add_message(slow, at, json.dumps({"v": float(i)}).encode(), at)
+        writer.finish()
+    text = 'schema = 1\n[clock]\ncolumn = "log_time"\n' + channel("/q.v", "arm.q.1", 'unit = "rad"')
+    told.write_text(text + channel("/p.v", "supply.pressure", 'unit = "bar"'))
+    return path, told
+
+
+def test_a_slow_topic_is_held_and_marked_in_the_file(two_rates, tmp_path):
+    path, told = two_rates
+    imported = import_log(open_log(path), ImportMap.load(told))
+    save_recording(imported.recording, tmp_path / "r.parquet")
+    loaded = load_recording(tmp_path / "r.parquet")
+    assert len(loaded) == 1000
+    assert loaded.info.held == {"supply.pressure": pytest.approx(0.1)}
+    assert np.array_equal(loaded["supply.pressure"][::20, 0], 1e5 * np.arange(0.0, 1000.0, 20.0))
+    assert np.ptp(loaded["supply.pressure"][40:60]) == 0.0
+    metadata = pq.read_schema(tmp_path / "r.parquet").field("supply.pressure").metadata
+    assert float(metadata[b"held"]) == pytest.approx(0.1)
+
+
+def test_of_a_file_that_was_cut_the_rest_is_imported_and_the_cut_is_told(two_rates):
+    path, told = two_rates
+    path.write_bytes(path.read_bytes()[: path.stat().st_size // 2])
+    imported = import_log(open_log(path), ImportMap.load(told))
+    assert 100 < len(imported.recording) < 1000
+    assert any("cut or damaged" in fault for fault in imported.account.faults)
+    assert "not read: cut or damaged" in imported.account.to_text()

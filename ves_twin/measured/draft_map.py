@@ -23,6 +23,9 @@ schema = 1
 # stop = "60 s"
 """
 
+JITTER = 0.05
+"""Deviation of a step [periods] from which on a draft says what can be done about it."""
+
 CLOSE = 0.75
 """Likeness of names that is enough for a guess."""
 
@@ -61,6 +64,9 @@ def _clock(inspection: Inspection) -> list[str]:
 
 def _clock_lines(clock: ClockReport) -> list[str]:
     lines = [f"unit = {_quoted(clock.unit)}" + ("   # guess" if clock.guessed else "")]
+    if clock.jitter > JITTER:
+        words = f"steps jitter by up to {clock.jitter:.0%}; true draws the stamps straight"
+        lines.append(f"# even = false   # {words}")
     if clock.back:
         words = f'{clock.back} steps back; "drop" or "sort" them'
         lines.append(f'# backward = "refuse"   # {words}')

@@ -158,7 +158,7 @@ class Experiment(Part):
         known = {*names, *(Path(name).stem for name in names)}
         for name in self.recordings:
             if name not in known:
-                raise UnknownNameError("recording in the experiment", name, names)
+                raise UnknownNameError("recording in the experiment", name, known)
 
     def rig(self, given: Plant | None, scenario: Scenario) -> Plant:
         """The plant that is tried, with the numbers and the payload of the experiment.
