@@ -27,11 +27,14 @@ NAMES = ["Time [s]", *(f"ch{i + 1} [mm]" for i in range(CHANNELS))]
 
 MEASURED = """
 import json, resource, sys, time
+from pathlib import Path
 begin = time.perf_counter()
 from ves_twin.cli.main import main
 code = main(sys.argv[1:])
 used = resource.getrusage(resource.RUSAGE_SELF)
-figures = [code, time.perf_counter() - begin, used.ru_utime + used.ru_stime, used.ru_maxrss / 1024]
+words = Path("/proc/self/status").read_text().split()  # ru_maxrss would count the parent's
+peak = int(words[words.index("VmHWM:") + 1]) / 1024
+figures = [code, time.perf_counter() - begin, used.ru_utime + used.ru_stime, peak]
 print(json.dumps(figures), file=sys.stderr)
 """
 

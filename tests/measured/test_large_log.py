@@ -3,6 +3,7 @@
 import json
 import subprocess
 import sys
+from pathlib import Path
 
 import numpy as np
 import pyarrow as pa
@@ -16,11 +17,14 @@ LOOK = 500.0
 """Peak memory that a look may take [MiB]."""
 
 RUN = """
-import resource, sys
+import sys
+from pathlib import Path
 from ves_twin.cli.main import main
 assert main(sys.argv[1:]) == 0
-print(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024, file=sys.stderr)
+words = Path("/proc/self/status").read_text().split()
+print(int(words[words.index("VmHWM:") + 1]) / 1024, file=sys.stderr)
 """
+"""VmHWM is the process's own; ru_maxrss counts what the parent had when it started this one."""
 
 
 @pytest.fixture(scope="module")
@@ -44,6 +48,7 @@ def peak(*words):
 
 
 @pytest.mark.slow
+@pytest.mark.skipif(not Path("/proc/self/status").exists(), reason="peak memory is read from /proc")
 def test_ten_minutes_at_1_khz_are_inspected_and_imported_within_memory(log):
     memory, seen = peak("inspect", log / "log.csv", "--json")
     assert memory < LOOK
