@@ -11,7 +11,8 @@ from typing import TYPE_CHECKING
 __version__ = "0.1.0"
 
 if TYPE_CHECKING:
-    from ves_twin.benches.diagnose_rig import diagnose_rig as diagnose
+    from ves_twin.benches.diagnose_rig import effects_of
+    from ves_twin.benches.diagnose_rig import verdict_on as diagnose
     from ves_twin.plant.plant import Plant
     from ves_twin.recording.files import load_recording
     from ves_twin.recording.recording import Recording
@@ -27,7 +28,8 @@ _HOMES = {
     "Recording": "ves_twin.recording.recording",
     "Scenario": "ves_twin.scenario.schema",
     "Simulator": "ves_twin.simulator.simulator",
-    "diagnose": "ves_twin.benches.diagnose_rig:diagnose_rig",
+    "diagnose": "ves_twin.benches.diagnose_rig:verdict_on",
+    "effects_of": "ves_twin.benches.diagnose_rig",
     "load_recording": "ves_twin.recording.files",
     "record": "ves_twin.simulator.simulate",
     "replay": "ves_twin.simulator.replay",
@@ -41,6 +43,7 @@ __all__ = [
     "Scenario",
     "Simulator",
     "diagnose",
+    "effects_of",
     "load_recording",
     "record",
     "replay",

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from typing import Any
 
 from ves_twin.benches.ves2 import RigForward
 from ves_twin.benches.ves2_input import prepare_inputs
@@ -49,6 +50,7 @@ def diagnose_rig(
     held_out: Sequence[Recording] = (),
     commissioning: Sequence[Recording] = (),
     standstill: Recording | None = None,
+    baseline: Sequence[Recording] = (),
     exclude: Sequence[str] = (),
     scenario: Scenario | None = None,
     settings: Settings | None = None,
@@ -61,7 +63,9 @@ def diagnose_rig(
         plant: the nominal rig, with the tolerances that commissioning left.
         held_out: other recordings of the same rig, on which an extension must prove itself.
         commissioning: recordings of healthy rigs, or of this one mounted anew.
-        standstill: the rig standing still, which tells the noise.
+        standstill: the rig standing still, which tells the noise. Legs that hunt over a count
+            while they stand make more of it than in motion; then the declared noise is better.
+        baseline: of this rig in order, with the same set-points; see `diagnose`.
         exclude: causes that are not considered, by kind or kind@target.
         scenario: rates and leg gains; that of the first recording if left out.
         settings: how sure, how many, where banks are kept.
@@ -77,9 +81,10 @@ def diagnose_rig(
     measured = prepare_inputs(recordings, plant, "recording")
     others = prepare_inputs(held_out, plant, "held-out recording")
     rigs = prepare_inputs(commissioning, plant, "commissioning recording")
+    usual = prepare_inputs(baseline, plant, "baseline recording")
     setting = one_step(replay_scenario(measured.recordings[0], scenario))
     if scenario is None:
-        every = (*measured.recordings, *others.recordings, *rigs.recordings)
+        every = (*measured.recordings, *others.recordings, *rigs.recordings, *usual.recordings)
         _check_settings(every, setting)
     forward = RigForward(plant, setting)
     offered: list[Programme] = []
@@ -94,12 +99,13 @@ def diagnose_rig(
         held_out=others.recordings,
         commissioning=rigs.recordings,
         standstill=standstill,
+        baseline=usual.recordings,
         next_programmes=menu,
         exclude=exclude,
         settings=settings,
         progress=progress,
     )
-    flaws = (*measured.flaws, *others.flaws, *rigs.flaws)
+    flaws = (*measured.flaws, *others.flaws, *rigs.flaws, *usual.flaws)
     verdict = replace(verdict, causes=tuple(map(_shortened, verdict.causes)), quality=flaws)
     if verdict.verdict not in NAMES_A_PLANT:
         best = verdict.next_experiment[0].programme if verdict.next_experiment else ""
@@ -107,6 +113,21 @@ def diagnose_rig(
         return RigDiagnosis(verdict, None, f"the verdict is {verdict.verdict.value}", chosen)
     extended = plant.extended(*map(effect_of, verdict.causes))
     return RigDiagnosis(verdict, extended, _refused(verdict))
+
+
+def verdict_on(recordings: Sequence[Recording], plant: Plant, **material: Any) -> Verdict:
+    """The verdict of `diagnose_rig` alone, as `ves_twin.diagnose`; the same arguments.
+
+    An extended plant is `plant.extended(*effects_of(verdict))`.
+    """
+    return diagnose_rig(recordings, plant, **material).verdict
+
+
+def effects_of(verdict: Verdict) -> tuple[Effect, ...]:
+    """The effects that a verdict names, at their estimated sizes; none where it names none."""
+    if verdict.verdict not in NAMES_A_PLANT:
+        return ()
+    return tuple(map(effect_of, verdict.causes))
 
 
 def effect_of(cause: Cause) -> Effect:

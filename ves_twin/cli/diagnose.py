@@ -24,6 +24,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("measured", metavar="MEASURED", nargs="+", help="recordings of one rig")
     for name, words in (
         ("--held-out", "recordings that an extension must prove itself on"),
+        ("--baseline", "recordings of the same programmes while the rig was in order"),
         ("--commissioning", "recordings of healthy rigs, five or more"),
     ):
         parser.add_argument(name, metavar="REC", action="append", default=[], help=words)
@@ -49,14 +50,16 @@ def execute(arguments: argparse.Namespace) -> int:
 
     measured = [load_recording(name) for name in arguments.measured]
     held_out = [load_recording(name) for name in arguments.held_out]
+    baseline = [load_recording(name) for name in arguments.baseline]
     commissioning = [load_recording(name) for name in arguments.commissioning]
     standstill = load_recording(arguments.standstill) if arguments.standstill else None
     scenario = None
     if arguments.experiment:
-        files = (*arguments.measured, *arguments.held_out)
-        told = _told(arguments, files, (*measured, *held_out))
+        files = (*arguments.measured, *arguments.held_out, *arguments.baseline)
+        told = _told(arguments, files, (*measured, *held_out, *baseline))
         measured = list(told.recordings[: len(measured)])
-        held_out = list(told.recordings[len(measured) :])
+        baseline = list(told.recordings[len(measured) + len(held_out) :])
+        held_out = list(told.recordings[len(measured) :][: len(held_out)])
         plant, scenario = told.plant, told.scenario
         standstill = standstill or told.standstill
     else:
@@ -71,6 +74,7 @@ def execute(arguments: argparse.Namespace) -> int:
             held_out=held_out,
             commissioning=commissioning,
             standstill=standstill,
+            baseline=baseline,
             exclude=arguments.exclude,
             scenario=scenario,
             settings=settings,
@@ -152,7 +156,7 @@ def _text(found: RigDiagnosis, folder: Path) -> str:
         f"verdict   {verdict.verdict.value}",
         f"          {verdict.words}",
         f"basis     noise {basis.noise}, tolerances {basis.tolerances},"
-        f" held-out recordings {basis.held_out}",
+        f" held-out recordings {basis.held_out}, baseline {basis.baseline}",
     ]
     if verdict.gain is not None and verdict.gain.share is not None:
         gain = verdict.gain

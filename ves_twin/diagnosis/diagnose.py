@@ -8,6 +8,7 @@ from dataclasses import replace
 from ves_twin.diagnosis.assess import assess, pull_limit
 from ves_twin.diagnosis.bank import Bank, build_bank, cached_bank
 from ves_twin.diagnosis.compose import Findings, compose
+from ves_twin.diagnosis.differential import differential
 from ves_twin.diagnosis.disagreement import Alone, disagreement
 from ves_twin.diagnosis.explain import Explanation, explain
 from ves_twin.diagnosis.forward import Forward, Programme
@@ -15,7 +16,7 @@ from ves_twin.diagnosis.gain import Gain, held_out_gain
 from ves_twin.diagnosis.likeness import check_likeness
 from ves_twin.diagnosis.next_experiment import separations
 from ves_twin.diagnosis.null import cached_thresholds
-from ves_twin.diagnosis.observe import observe
+from ves_twin.diagnosis.observe import Observed, observe
 from ves_twin.diagnosis.runs import Progress, Runs, silent
 from ves_twin.diagnosis.settings import Settings
 from ves_twin.diagnosis.tolerances import FEWEST, naming_limit, tolerance_scale
@@ -36,6 +37,7 @@ def diagnose(
     held_out: Sequence[Recording] = (),
     commissioning: Sequence[Recording] = (),
     standstill: Recording | None = None,
+    baseline: Sequence[Recording] = (),
     next_programmes: Sequence[Programme] | Callable[[], Sequence[Programme]] = (),
     exclude: Sequence[str] = (),
     settings: Settings | None = None,
@@ -53,6 +55,8 @@ def diagnose(
         commissioning: of independent rigs in order, or of re-mountings of this one; five or more
             tell how true the declared tolerances are.
         standstill: tells the noise; the declared one is taken without it.
+        baseline: of this rig in order, of the same programmes: what the model always gets wrong
+            on it is taken off, so that only what has changed since is named.
         next_programmes: candidates for the next experiment where causes cannot be told apart; or
             what makes them, called only then.
         exclude: causes that are not considered, by effect or effect@target.
@@ -72,14 +76,14 @@ def diagnose(
     with Workers(chosen.workers) as workers:
         seen = observe(forward, recordings, workers)
         whitening = _whitening(seen.runs, standstill)
-
-        def build() -> Bank:
-            check_likeness(seen, seen.runs.one(seen.runs.origin))  # before minutes of simulation
-            return build_bank(seen.runs, progress=progress)
-
-        built = cached_bank(seen.runs, chosen.cache, build)
-        check_likeness(seen, built.base.prediction)
-        bank = built.without(tuple(exclude))
+        if baseline:
+            changed = differential(
+                seen, baseline, lambda tuned: observe(tuned, recordings, workers), whitening
+            )
+            seen = changed.seen
+            whitening = _whitening(seen.runs, standstill)
+            whitening = replace(whitening, level=whitening.level * changed.noise)
+        bank = _bank(seen, chosen, progress).without(tuple(exclude))
         limits = cached_thresholds(bank, whitening, chosen, progress)
         pull = pull_limit(bank, chosen.alpha)
         first = assess(seen.measured, bank, whitening, limits.effect, limits.misfit, pull)
@@ -88,6 +92,7 @@ def diagnose(
             noise="declared" if standstill is None else "measured",
             tolerances="declared" if scale is None else "measured",
             held_out="measured" if held_out else "none",
+            baseline="measured" if baseline else "none",
         )
         findings = Findings(seen, first, limits, chosen, naming_limit(bank, scale), scale)
         if not first.exceeds(limits.effect, limits.misfit, pull):
@@ -96,14 +101,24 @@ def diagnose(
         gains = []
         if found and held_out:
             gains = _gains(forward, held_out, standstill, found, chosen, workers)
-        gain = gains[0] if gains else None
         kind = _kind(found, gains)
         proposals = _next(seen.runs, found, next_programmes) if kind is Kind.AMBIGUOUS else ()
         apart: tuple[Alone, ...] = ()
         if found is None or not found.adequate:
             apart = disagreement(seen, bank, whitening, limits, chosen, progress)
+        gain = gains[0] if gains else None
         findings = replace(findings, found=found, gain=gain, proposals=proposals, apart=apart)
         return compose(findings, kind, basis, tuple(exclude))
+
+
+def _bank(seen: Observed, settings: Settings, progress: Progress) -> Bank:
+    def build() -> Bank:
+        check_likeness(seen, seen.runs.one(seen.runs.origin))  # before minutes of simulation
+        return build_bank(seen.runs, progress=progress)
+
+    bank = cached_bank(seen.runs, settings.cache, build)
+    check_likeness(seen, bank.base.prediction)
+    return bank
 
 
 def _whitening(runs: Runs, standstill: Recording | None) -> Whitening:

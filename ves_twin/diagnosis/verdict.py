@@ -97,6 +97,7 @@ class Basis:
     noise: str
     tolerances: str
     held_out: str
+    baseline: str = "none"
 
 
 @dataclass(frozen=True)

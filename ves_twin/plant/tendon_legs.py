@@ -32,7 +32,11 @@ def add_tendon_legs(
         spec.worldbody.add_site(name=f"{name}/base", pos=geometry.base[i])
         if rod_mass > 0.0:
             top.add_body(
-                name=f"{name}/rod", pos=geometry.top[i], mass=rod_mass, explicitinertial=True
+                name=f"{name}/rod",
+                pos=geometry.top[i],
+                ipos=np.zeros(3),  # left open, it would be copied from pos
+                mass=rod_mass,
+                explicitinertial=True,
             )
         leg = spec.add_tendon(name=name, width=rod_radius, rgba=LEG_COLOUR)
         # the length that counts as zero travel, also where an effect moves a joint

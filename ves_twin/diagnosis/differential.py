@@ -1,0 +1,154 @@
+"""differential: a record against recordings of the same rig in order."""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from ves_twin.diagnosis.forward import Channel, Forward, Hypothesis, Parameter, Programme
+from ves_twin.diagnosis.linearise import linearise
+from ves_twin.diagnosis.observe import Observed, observe
+from ves_twin.diagnosis.refine import Evidence, bare_residual, refine
+from ves_twin.diagnosis.runs import Runs
+from ves_twin.diagnosis.whitening import Whitening
+from ves_twin.errors import InvalidInputError
+from ves_twin.recording.recording import Recording
+from ves_twin.types import FloatArray, SingleArray
+
+KEPT = 0.3
+"""Share of a commissioning sd that a rig is allowed to change by between two recordings."""
+
+SAME = 1e-3
+"""Difference of two set-points, of their range, up to which programmes count as the same."""
+
+
+@dataclass(frozen=True)
+class Differential:
+    """A record with what the model always gets wrong taken off, and the model tuned to this rig.
+
+    Attributes:
+        seen: the record, about the tuned model.
+        noise: sd of its noise against that of one recording.
+    """
+
+    seen: Observed
+    noise: float
+
+
+def differential(
+    seen: Observed,
+    baseline: Sequence[Recording],
+    again: Callable[[Forward], Observed],
+    whitening: Whitening,
+) -> Differential:
+    """Tune the commissioning parameters on the baseline, and take what then stays off the record.
+
+    A rig has structure that its model lacks: ripple, floor, play. A recording of the same
+    programme, made while the rig was in order, shows it: r = y_b - f(nu_b). Of y - r about f(nu_b)
+    stays what has changed since, and noise of 1 + 1/n the variance.
+
+    Args:
+        seen: the record that is diagnosed.
+        baseline: recordings of the same rig in order, some for each programme of the record.
+        again: observes the record by another forward.
+        whitening: noise.
+
+    Raises:
+        InvalidInputError: a programme without a baseline.
+    """
+    runs = seen.runs
+    rows, count = _usual(seen, baseline)
+    fit = refine(Evidence(runs, rows, whitening), (), runs.origin, linearise(runs, runs.origin), 1)
+    tuned = again(Tuned.to(runs, fit.shift))
+    usual = bare_residual(Evidence(runs, rows, whitening), fit)
+    clean = replace(tuned, measured=tuned.measured - usual)
+    return Differential(clean, float(np.sqrt(1.0 + 1.0 / count)))
+
+
+@dataclass(frozen=True)
+class Tuned:
+    """A forward whose commissioning parameters were found on its own rig.
+
+    Attributes:
+        forward: the one with nominal values.
+        parameters: with those of the rig as nominal, and KEPT of their sd.
+    """
+
+    forward: Forward
+    parameters: tuple[Parameter, ...]
+
+    @staticmethod
+    def to(runs: Runs, shift: FloatArray) -> Tuned:
+        """To departures fitted with a forward's runs."""
+        moved = {
+            axis.parameter.name: float(shift[i])
+            for i, axis in enumerate(runs.coordinates)
+            if axis.recording < 0
+        }
+        parameters = tuple(
+            replace(p, nominal=p.nominal + moved[p.name], sd=KEPT * p.sd) if p.name in moved else p
+            for p in runs.forward.parameters
+        )
+        return Tuned(runs.forward, parameters)
+
+    @property
+    def identity(self) -> str:
+        """Of the forward and the values."""
+        told = f"{self.forward.identity} {[(p.nominal, p.sd) for p in self.parameters]}"
+        return hashlib.sha256(told.encode()).hexdigest()[:16]
+
+    @property
+    def channels(self) -> tuple[Channel, ...]:
+        """Those of the forward."""
+        return self.forward.channels
+
+    @property
+    def drive(self) -> tuple[str, ...]:
+        """That of the forward."""
+        return self.forward.drive
+
+    @property
+    def hypotheses(self) -> tuple[Hypothesis, ...]:
+        """Those of the forward; departures count from the rig's own values."""
+        return self.forward.hypotheses
+
+    def simulate(
+        self, programme: Programme, values: Mapping[str, float], refined: bool = False
+    ) -> FloatArray:
+        """As the forward, at the rig's own values where nothing else is said."""
+        own = {p.name: p.nominal for p in self.parameters if not p.per_recording}
+        return self.forward.simulate(programme, own | dict(values), refined)
+
+
+def _usual(seen: Observed, baseline: Sequence[Recording]) -> tuple[SingleArray, int]:
+    """Mean baseline of each programme (rows, c), and the fewest recordings of one."""
+    others = [observe(seen.runs.forward, [recording]) for recording in baseline]
+    pieces, fewest = [], len(others)
+    for k, programme in enumerate(seen.runs.programmes):
+        same = [
+            other.measured
+            for other in others
+            if other.runs.columns == seen.runs.columns
+            and _alike(other.runs.programmes[0].drive, programme.drive)
+        ]
+        if not same:
+            raise InvalidInputError(
+                f"baseline of recording {k + 1} ({programme.name})",
+                "none with its set-points",
+                "a recording of the same programme, made while the rig was in order",
+            )
+        pieces.append(np.mean(same, axis=0, dtype=np.float32))
+        fewest = min(fewest, len(same))
+    return np.concatenate(pieces), fewest
+
+
+def _alike(one: Mapping[str, FloatArray], two: Mapping[str, FloatArray]) -> bool:
+    """Whether two programmes feed in the same."""
+    return all(
+        one[name].shape == two[name].shape
+        and np.abs(one[name] - two[name]).max() <= SAME * max(float(np.ptp(two[name])), 1e-9)
+        for name in two
+    )
