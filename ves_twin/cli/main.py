@@ -22,6 +22,7 @@ from ves_twin.cli import (
     reproduce,
     run,
     scenarios,
+    sweep,
     view,
 )
 from ves_twin.errors import UnknownNameError, VesTwinError, one_line
@@ -29,6 +30,7 @@ from ves_twin.errors import UnknownNameError, VesTwinError, one_line
 COMMANDS = {
     "scenarios": scenarios,
     "run": run,
+    "sweep": sweep,
     "plan": plan,
     "diagnose": diagnose,
     "compare": compare,

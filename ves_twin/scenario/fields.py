@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import dataclass
 from typing import Annotated, Any
 
 from pydantic import BaseModel, BeforeValidator, ConfigDict
@@ -14,7 +15,14 @@ TURNS = 4.0 * math.pi
 """Largest joint angle that makes sense [rad]."""
 
 
-def si(unit: str) -> BeforeValidator:
+@dataclass(frozen=True)
+class InUnit(BeforeValidator):
+    """A validator that knows the SI unit of what it lets through."""
+
+    unit: str = "1"
+
+
+def si(unit: str) -> InUnit:
     """A number in SI, or a text with a unit that converts to `unit`."""
 
     def convert(value: object) -> float:
@@ -23,7 +31,7 @@ def si(unit: str) -> BeforeValidator:
         except InvalidInputError as error:
             raise ValueError(str(error)) from None
 
-    return BeforeValidator(convert)
+    return InUnit(convert, unit=unit)
 
 
 def _pose(value: object) -> tuple[float, ...]:
@@ -62,8 +70,8 @@ Seconds = Annotated[float, si("s")]
 Hertz = Annotated[float, si("Hz")]
 PerSecond = Annotated[float, si("1/s")]
 Metres = Annotated[float, si("m")]
-Pose = Annotated[tuple[float, ...], BeforeValidator(_pose)]
-Joints = Annotated[tuple[float, ...], BeforeValidator(_joints)]
+Pose = Annotated[tuple[float, ...], InUnit(_pose, unit="m, rad")]
+Joints = Annotated[tuple[float, ...], InUnit(_joints, unit="rad")]
 ZERO_POSE = (0.0,) * 6
 ZERO_JOINTS = (0.0,) * 3
 

@@ -1,0 +1,90 @@
+"""ves-twin sweep: answers, folders, one line for what is wrong, and going on after a stop."""
+
+import json
+import signal
+import subprocess
+import sys
+import time
+
+import pyarrow.parquet as pq
+import pytest
+
+from ves_twin.cli.main import main
+
+SHORT = ["--set", "run.duration=0.2", "--set", "run.settle=0.2", "--workers", "1"]
+
+
+def test_the_same_command_goes_on_in_its_folder_and_another_gets_its_own(
+    capsys, tmp_path, monkeypatch
+):
+    monkeypatch.chdir(tmp_path)
+    command = ["sweep", "position_sine", "--vary", "seed=1,2", *SHORT]
+    assert main([*command, "--json"]) == 0
+    first = json.loads(capsys.readouterr().out)
+    assert first["outcomes"] == {"completed": 2}
+    assert first["found"] == 0
+    assert main([*command, "--json"]) == 0
+    again = json.loads(capsys.readouterr().out)
+    assert (again["found"], again["table"]) == (2, first["table"])
+    assert main(["sweep", "position_sine", "--vary", "seed=1", *SHORT]) == 0
+    assert "completed 1" in capsys.readouterr().out
+    folders = sorted(p.name for p in (tmp_path / "runs").iterdir())
+    assert folders == ["position_sine-sweep", "position_sine-sweep-2"]
+
+
+BAD = [
+    (["position_sine"], "one key or more"),
+    (["position_sin", "--vary", "seed=1"], "did you mean 'position_sine'"),
+    (["position_sine", "--vary", "legs.gian=1,2"], "did you mean 'legs.gain'"),
+    (["position_sine", "--vary", "legs.gain=8..9"], "--random N"),
+    (["position_sine", "--vary", "seed=1", "--random", "-1"], "1 to 100000"),
+    (["position_sine", "--vary", "seed=1", "--engine", "dusk"], "did you mean 'dask'"),
+    (["position_sine", "--vary", "seed=1", "--workers", "0"], "1 to 1024"),
+    (["position_sine", "--vary", "seed=1", "--address", "x:1"], "--engine dask"),
+    (["position_sine", "--vray", "seed=1"], "did you mean '--vary'"),
+    (["position_sine", "--vary", "seed=1", "--seed", "-1"], "at least 0"),
+    (["stability_map", "--vary", "seed=1"], "a procedure of many runs"),
+]
+
+
+@pytest.mark.parametrize(("words", "says"), BAD, ids=[" ".join(words) for words, _ in BAD])
+def test_bad_input_gets_one_line_and_leaves_nothing(capsys, tmp_path, monkeypatch, words, says):
+    monkeypatch.chdir(tmp_path)
+    assert main(["sweep", *words]) == 2
+    out, err = capsys.readouterr()
+    assert out == ""
+    assert says in err
+    assert err.count("\n") == 1
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_a_folder_of_another_sweep_is_refused(capsys, tmp_path):
+    command = ["sweep", "position_sine", *SHORT, "--out", str(tmp_path / "one"), "--vary"]
+    assert main([*command, "seed=1"]) == 0
+    assert main([*command, "seed=2"]) == 2
+    assert "holds another sweep: its vary is" in capsys.readouterr().err
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("how", [signal.SIGINT, signal.SIGKILL])
+def test_a_sweep_that_is_stopped_goes_on_where_it_was(tmp_path, how):
+    command = [
+        *(sys.executable, "-m", "ves_twin.cli.main", "sweep", "position_sine", "--workers", "1"),
+        *("--vary", "seed=1..6:6", "--set", "run.duration=3", "--out", str(tmp_path), "--json"),
+    ]
+    run = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+    rows = tmp_path / "rows.jsonl"
+    deadline = time.monotonic() + 120
+    while time.monotonic() < deadline and not (rows.exists() and rows.read_bytes().count(b"\n")):
+        time.sleep(0.01)
+    run.send_signal(how)
+    out, err = run.communicate(timeout=60)
+    assert out == ""
+    assert "Traceback" not in err
+    assert run.returncode == (130 if how is signal.SIGINT else -signal.SIGKILL)
+    assert not (tmp_path / "sweep.parquet").exists()
+    done = subprocess.run(command, capture_output=True, text=True, check=True)
+    account = json.loads(done.stdout)
+    assert 1 <= account["found"] < 6
+    assert account["outcomes"] == {"completed": 6}
+    assert pq.read_table(tmp_path / "sweep.parquet")["point"].to_pylist() == list(range(6))
