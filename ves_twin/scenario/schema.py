@@ -9,6 +9,7 @@ from pydantic import Field, ValidationError, model_validator
 
 from ves_twin.control.leg_loop import EDGE, FilterPlace
 from ves_twin.control.registry import GRAVITY_COMPENSATIONS, PLATFORM_CONTROLLERS
+from ves_twin.operation.state import State
 from ves_twin.scenario.fields import (
     ZERO_JOINTS,
     ZERO_POSE,
@@ -23,6 +24,7 @@ from ves_twin.scenario.fields import (
 )
 from ves_twin.scenario.load import refusal, scenario_content
 from ves_twin.scenario.motions import Motion
+from ves_twin.scenario.operation_part import Operation
 
 LOG_CLOCKS = ("admittance", "leg", "tick")
 
@@ -192,6 +194,7 @@ class Scenario(Part):
     gravity: Gravity = Gravity()
     legs: Legs = Legs()
     arm: Arm = Arm()
+    operation: Operation | None = None
 
     @model_validator(mode="after")
     def _what_is_learned_is_planned(self) -> Self:
@@ -205,7 +208,8 @@ class Scenario(Part):
     @property
     def has_reference(self) -> bool:
         """Whether a zero-g reference exists to compare with."""
-        return self.platform.emulated is not None and self.platform.mode != "admittance"
+        runs = self.operation is None or self.operation.begin is State.RUN
+        return runs and self.platform.emulated is not None and self.platform.mode != "admittance"
 
     @staticmethod
     def load(name_or_path: str, changes: Mapping[str, object] | None = None) -> Scenario:

@@ -17,18 +17,30 @@ from ves_twin.control.registry import GRAVITY_COMPENSATIONS, PLATFORM_CONTROLLER
 from ves_twin.control.scaled import ScaledCompensation
 from ves_twin.gravity_model.calibration import GravityCalibration
 from ves_twin.gravity_model.learned import LearnedGravity
+from ves_twin.operation.state import State
 from ves_twin.plant.plant import Plant
 from ves_twin.plant.statics import check_reach
 from ves_twin.recording.recording import Event
 from ves_twin.scenario.schema import Platform, Scenario
 from ves_twin.simulator.arm_commands import arm_motion
 from ves_twin.simulator.computers import Computers
+from ves_twin.simulator.operator import Operator
 from ves_twin.simulator.planned import planned_experiment
 from ves_twin.simulator.recorder import IDEAL, LEG_LAG
 from ves_twin.simulator.reference import ZeroGravityReference
 from ves_twin.simulator.rig import Rig
 from ves_twin.simulator.truth_port import GravityTruth
 from ves_twin.types import Block
+
+
+def build_operator(
+    scenario: Scenario, belief: Belief, rig: Rig, computers: Computers, played: bool
+) -> Operator | None:
+    """The operators of a scenario, if it has any."""
+    if scenario.operation is None:
+        return None
+    start = np.array(scenario.platform.start)
+    return Operator(scenario.operation, rig, computers, belief, start, played)
 
 
 def belief_of(scenario: Scenario) -> Belief:
@@ -148,7 +160,9 @@ def emulated_of(scenario: Scenario) -> EmulatedSystem | None:
 def agenda_of(scenario: Scenario) -> list[Event]:
     """What the scenario plans, as events in the order of time."""
     events = []
-    if scenario.platform.emulated is not None:
+    operation = scenario.operation
+    runs = operation is None or operation.begin is State.RUN
+    if scenario.platform.emulated is not None and runs:
         events.append(Event(0.0, "released", "the platform moves as the emulated base"))
     for busy in scenario.platform.busy:
         message = f"cycles take {busy.extra * 1e3:.3g} ms longer for {busy.duration:.3g} s"

@@ -70,12 +70,13 @@ class Computers:
             supply_pressure=board.read_only("supply.pressure"),
         )
 
-    def cycle(self, tick: int, time: float) -> int:
+    def cycle(self, tick: int, time: float, since: float = 0.0) -> int:
         """One cycle.
 
         Args:
             tick: tick of the interrupt.
             time: its time [s].
+            since: when the platform's controller took over [s].
 
         Returns:
             0, or the number of the leg whose command would leave its travel; then nothing is sent.
@@ -84,7 +85,7 @@ class Computers:
             ControllerError: a controller raised, or its command is not six finite numbers.
         """
         self.estimate_gravity(time)
-        return self.send(tick, time, self._decide(time))
+        return self.send(tick, time, self._decide(time - since))
 
     def lengths(self, pose: FloatArray) -> FloatArray:
         """Leg lengths [m] (6,) that the computers take a pose (6,) to have."""

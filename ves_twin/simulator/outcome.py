@@ -15,6 +15,7 @@ class Outcome(StrEnum):
     LEG_LIMIT = "leg_limit"
     WRENCH_RANGE = "wrench_range"
     OVERRUN = "overrun"
+    CEILING = "ceiling"
     INTERRUPTED = "interrupted"
 
     @property
@@ -30,6 +31,7 @@ _ADVICE = {
     " heavier emulated mass) or the motion too large",
     Outcome.WRENCH_RANGE: "the force sensor left its range; check payload and arm motion",
     Outcome.OVERRUN: "the clock interrupt came before the cycle had ended; lower platform.rate",
+    Outcome.CEILING: "the arm hit the ceiling; move it away before the platform goes home",
     Outcome.INTERRUPTED: "stopped from the keyboard",
 }
 

@@ -16,6 +16,7 @@ from ves_twin.simulator.build import (
     agenda_of,
     belief_of,
     build_computers,
+    build_operator,
     build_references,
     emulated_of,
 )
@@ -23,6 +24,7 @@ from ves_twin.simulator.clock import Clock, overrun
 from ves_twin.simulator.codes import RUNNING
 from ves_twin.simulator.computers import ComputersSnapshot
 from ves_twin.simulator.noise import NoiseStreams
+from ves_twin.simulator.operator import Operator, OperatorSnapshot
 from ves_twin.simulator.outcome import OUTCOME_OF_CODE, Outcome
 from ves_twin.simulator.recorder import MemorySink, Recorder, RecorderSnapshot, Sink
 from ves_twin.simulator.rig import Rig, RigSnapshot
@@ -35,6 +37,7 @@ class Snapshot:
 
     rig: RigSnapshot
     computers: ComputersSnapshot
+    operator: OperatorSnapshot | None
     recorder: RecorderSnapshot
     outcome: Outcome | None
     events: tuple[Event, ...]
@@ -50,6 +53,7 @@ class Simulator:
         seed: seed of the noise.
         rig: hardware and fast loops, with the live MuJoCo state.
         computers: the admittance cycle.
+        operator: who operates the laboratory; None where the scenario has no operation.
         recorder: completes and passes on the rows.
         outcome: None while running.
         events: what happened so far.
@@ -87,10 +91,13 @@ class Simulator:
         noise = NoiseStreams(self.seed, scenario.run.noise)
         self.rig = Rig(self.plant, clock, scenario.legs, belief, noise)
         self.computers = build_computers(scenario, belief, self.rig, script)
+        played = script is not None
+        self.operator = build_operator(scenario, belief, self.rig, self.computers, played)
+        self._standing = _at_rest(scenario, self.operator)
         self.recorder = Recorder(
             clock,
             belief.geometry,
-            np.array(scenario.platform.start),
+            np.array(self._standing.platform.start),
             build_references(scenario, self.plant, self.rig.parameters["servo"]),
             MemorySink() if sink is None else sink,
             self.plant.fidelity.absent_signals,
@@ -148,6 +155,7 @@ class Simulator:
         return Snapshot(
             rig=self.rig.snapshot(),
             computers=self.computers.snapshot(),
+            operator=None if self.operator is None else self.operator.snapshot(),
             recorder=self.recorder.snapshot(),
             outcome=self.outcome,
             events=tuple(self.events),
@@ -158,16 +166,20 @@ class Simulator:
         """Go back to a snapshot of this simulator; the run then repeats to the last bit."""
         self.rig.restore(snapshot.rig)
         self.computers.restore(snapshot.computers)
+        if self.operator is not None and snapshot.operator is not None:
+            self.operator.restore(snapshot.operator)
         self.recorder.restore(snapshot.recorder)
         self.outcome = snapshot.outcome
         self.events, self._agenda = list(snapshot.events), list(snapshot.agenda)
 
     def _settle(self) -> None:
-        code = settle(self.rig, self.computers, self.scenario, self.recorder.log)
+        code = settle(self.rig, self.computers, self._standing, self.recorder.log)
         if code != RUNNING:
             self._left_limits(code)
             return
         self.events += settling_events(self.rig, self.scenario)
+        if self.operator is not None:
+            self.events += self.operator.begin()
         late = self._overrun(None)
         if late:
             self.end(Outcome.OVERRUN, late)
@@ -188,16 +200,39 @@ class Simulator:
     def _interrupt(self) -> bool:
         """The clock interrupt of the computers; False if it ends the run."""
         rig, period = self.rig, self.rig.clock.admittance
+        late = None
         if self.scenario.platform.busy and rig.tick > 0:
             late = self._overrun((rig.tick - period) * rig.clock.tick)
-            if late:
-                self.end(Outcome.OVERRUN, late)
-                return False
-        outside = self.computers.cycle(rig.tick, rig.time)
-        if outside:
-            self.end(
-                Outcome.LEG_LIMIT, f"the command of leg {outside} left the safety margin; not sent"
-            )
+        operator = self.operator
+        why = self._cycle(late) if operator is None else self._operated(operator, late)
+        if why:
+            self.end(*why)
             return False
         self.recorder.begin_cycle(rig.tick, rig.state["servo"]["points"][0])
         return True
+
+    def _cycle(self, late: str | None) -> tuple[Outcome, str] | None:
+        """The computers' cycle, and what ends the run there."""
+        if late:
+            return Outcome.OVERRUN, late
+        outside = self.computers.cycle(self.rig.tick, self.rig.time)
+        if not outside:
+            return None
+        message = f"the command of leg {outside} left the safety margin; not sent"
+        return Outcome.LEG_LIMIT, message
+
+    def _operated(self, operator: Operator, late: str | None) -> tuple[Outcome, str] | None:
+        """The same where operators look after it: the platform freezes, the run goes on."""
+        events, hit = operator.cycle(self.rig.tick, self.rig.time, late or "")
+        self._note_agenda()
+        self.events += events
+        return (Outcome.CEILING, hit) if hit else None
+
+
+def _at_rest(scenario: Scenario, operator: Operator | None) -> Scenario:
+    """The scenario with the platform where operators leave it before t = 0."""
+    if operator is None:
+        return scenario
+    start = tuple(map(float, operator.standing))
+    platform = scenario.platform.model_copy(update={"start": start})
+    return scenario.model_copy(update={"platform": platform})
