@@ -13,7 +13,7 @@ from ves_twin.simulator.emulation_error import emulation_error
 
 SHORT = {"run.duration": 0.5, "run.settle": 0.5}
 MOVE, TURN = slice(0, 3), slice(3, 6)
-UNSTABLE = {"beam_horizontal_corrected"}
+ENDS_EARLY = {"beam_horizontal_corrected", "operation_ceiling"}
 
 # Largest difference of truth.pose [mm], [mrad] and of sensor.wrench [N], [N m]: a third above what
 # was measured for seed 0 (docs/fidelity.md). Drift without a spring keeps every difference.
@@ -27,6 +27,7 @@ AGREEMENT = {
     "free_float": (0.75, 2.5, 2.4, 1.2),
     "identify_fast": (0.048, 0.19, 23.0, 15.6),
     "identify_slow": (0.022, 0.04, 9.1, 6.1),
+    "operation_recovery": (0.15, 0.14, 133.0, 68.0),  # a stop in full motion shakes the legs
     "position_sine": (0.021, 0.021, 9.0, 5.5),
     "release_table_5_2": (0.31, 0.81, 17.0, 11.2),
 }
@@ -56,7 +57,7 @@ def each_scenario(names):
     )
 
 
-@each_scenario([n for n in scenario_questions() if n not in UNSTABLE])
+@each_scenario([n for n in scenario_questions() if n not in ENDS_EARLY])
 def test_fast_agrees_with_full(name, figure):
     full, fast = runs(name)
     assert full.info.outcome == fast.info.outcome == "completed"
@@ -81,7 +82,7 @@ def test_fast_agrees_with_full(name, figure):
             assert np.max(np.abs(errors[1] - errors[0])[part]) < ERROR_AGREEMENT * worst
 
 
-@each_scenario(sorted(UNSTABLE))
+@each_scenario(sorted(ENDS_EARLY))
 def test_fast_ends_where_full_ends(name):
     full, fast = runs(name)
     assert full.info.outcome == fast.info.outcome != "completed"

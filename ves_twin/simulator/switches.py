@@ -12,6 +12,10 @@ from ves_twin.plant.hydraulics import PRESSURE_FORM
 from ves_twin.simulator.rig import Rig
 from ves_twin.types import FloatArray
 
+BRAKE_TIME, BRAKE_IMPEDANCE = 0.002, 0.99
+"""Softness of a brake's dry friction [s, 1]. As stiff as the joints' own friction, the engine's
+solver does not converge at this level; so a held arm creeps at 2e-4 rad/s, the legs stay closed."""
+
 
 @dataclass(frozen=True)
 class SwitchesSnapshot:
@@ -40,7 +44,9 @@ class Switches:
         self._gains = float(legs["gain"]), float(legs["rate_gain"])
         self._limit = servo["limit"].copy()
         self._pressure = float(supply["pressure"])
-        self._friction = rig.model.dof_frictionloss[rig.layout.arm_dof].copy()
+        joints, model = rig.layout.arm_dof, rig.model
+        self._friction = model.dof_frictionloss[joints].copy()
+        self._softness = model.dof_solref[joints].copy(), model.dof_solimp[joints].copy()
         self._share = 1.0
         self._integral: FloatArray | None = None
 
@@ -54,8 +60,7 @@ class Switches:
         gain, rate_gain = self._gains if machine.legs_powered else (0.0, 0.0)
         p["legs"]["gain"], p["legs"]["rate_gain"] = gain, rate_gain
         p["servo"]["limit"] = self._limit if machine.arm_driven else 0.0
-        brake = self._laboratory.brake if machine.arm_braked else 0.0
-        rig.model.dof_frictionloss[rig.layout.arm_dof] = self._friction + brake
+        self._brake(machine.arm_braked)
         servo = rig.state["servo"][0]
         if machine.arm_driven:
             self._integral = None
@@ -92,6 +97,15 @@ class Switches:
         self._integral = None if snapshot.integral is None else snapshot.integral.copy()
         self.set(machine)
         self._rig.parameters[0]["supply"]["pressure"] = self._pressure * self._share
+
+    def _brake(self, on: bool) -> None:
+        joints, model = self._rig.layout.arm_dof, self._rig.model
+        model.dof_solref[joints], model.dof_solimp[joints] = self._softness
+        model.dof_frictionloss[joints] = self._friction
+        if on:
+            model.dof_frictionloss[joints] += self._laboratory.brake
+            model.dof_solref[joints, 0] = BRAKE_TIME
+            model.dof_solimp[joints, :2] = BRAKE_IMPEDANCE
 
     def _feed(self) -> None:
         source = self._pressure * self._share
