@@ -6,7 +6,7 @@ PYTHON ?= $(shell for p in python3.12 python3.11 python3 python; do \
 BIN := .venv/bin
 PIP := $(BIN)/python -m pip install --quiet --disable-pip-version-check
 
-.PHONY: demo demo-diagnosis test check fast types lint layers bench figures fidelity scorecard picture clean
+.PHONY: demo demo-diagnosis test check fast fuzz types lint layers bench figures fidelity scorecard picture clean
 
 demo: .venv/.run
 	$(BIN)/ves-twin run beam_horizontal_truth --out runs/demo
@@ -28,6 +28,9 @@ check: .venv/.dev lint layers types fast
 
 fast: .venv/.dev
 	$(BIN)/python -m pytest -n 2 --dist loadgroup -m "not slow"
+
+fuzz: .venv/.dev
+	$(BIN)/python -m pytest -n 2 tests/fuzz --mutations 10000
 
 lint: .venv/.dev
 	$(BIN)/ruff check . && $(BIN)/ruff format --check .

@@ -41,7 +41,7 @@ class InvalidInputError(VesTwinError):
     """A value of the wrong kind, unit, shape or range."""
 
     def __init__(self, what: str, came: object, expected: str) -> None:
-        super().__init__(f"{what}: got {came!r}, expected {expected}")
+        super().__init__(f"{what}: got {shown(came)}, expected {expected}")
 
 
 class UnreachableError(VesTwinError):
@@ -53,7 +53,7 @@ class VersionError(VesTwinError):
 
     def __init__(self, path: object, found: object, expected: int) -> None:
         super().__init__(
-            f"{path}: schema version {found!r} is not the one this program reads ({expected})"
+            f"{path}: schema version {shown(found)} is not the one this program reads ({expected})"
         )
 
 
@@ -67,6 +67,12 @@ class PluginError(VesTwinError):
 
 class ControllerError(VesTwinError):
     """A controller that raised or returned something that is not a finite command."""
+
+
+def shown(value: object, width: int = 160) -> str:
+    """A value as a message shows it: its repr, cut where it would fill the terminal."""
+    text = repr(value)
+    return text if len(text) <= width else f"{text[: width - 3]}..."
 
 
 def one_line(error: BaseException) -> str:

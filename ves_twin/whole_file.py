@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
 
 from ves_twin.errors import FileAccessError, one_line
@@ -20,6 +20,10 @@ def whole_file(path: Path) -> Iterator[Path]:
     Raises:
         FileAccessError: it cannot be written: read-only folder, full disk.
     """
+    if path.is_dir():
+        raise FileAccessError(f"cannot write {path}: it is a folder")
+    if path.exists() and not os.access(path, os.W_OK):
+        raise FileAccessError(f"cannot write {path}: the file is read-only")
     partial = path.with_name(f".{path.name}.partial")
     try:
         yield partial
@@ -29,7 +33,8 @@ def whole_file(path: Path) -> Iterator[Path]:
         reason = error.strerror or one_line(error)
         raise FileAccessError(f"cannot write {path}: {reason}") from None
     finally:
-        partial.unlink(missing_ok=True)
+        with suppress(OSError):
+            partial.unlink(missing_ok=True)
 
 
 def write_whole(path: Path, text: str) -> None:

@@ -108,3 +108,11 @@ def test_the_printed_skew_damping_loads_by_its_declared_exception(load):
 def test_a_free_base_without_spring_loads(load):
     zeros = "[0.0, 0.0, 0.0, 0.0, 0.0, 0.0]"
     assert not np.any(load(f"{PLAIN}stiffness = {zeros}").stiffness)
+
+
+@pytest.mark.parametrize("form", ["corrected", "reduced", "thesis"])
+def test_a_beam_beyond_the_range_of_numbers_is_refused_in_one_line(load, form):
+    text = BEAM.replace("corrected", form).replace('"800 cm"', "1e308")
+    with pytest.raises(VesTwinError, match="finite") as caught:
+        load(text)
+    assert "\n" not in str(caught.value)

@@ -247,10 +247,10 @@ def test_a_target_that_cannot_be_made_gives_one_line(beam, tmp_path, where):
 
 
 def test_a_disk_that_fills_up_leaves_no_file_behind(beam, tmp_path, monkeypatch):
-    def full(_: object) -> None:
-        raise OSError("File-writer thread shut down prematurely")
+    def full(_: object, content: bytes) -> None:
+        raise OSError(28, "No space left on device")
 
-    monkeypatch.setattr(write, "flush", full)
+    monkeypatch.setattr(Path, "write_bytes", full)
     with pytest.raises(FileAccessError, match="cannot write"):
         write_rrd(beam, tmp_path / "a.rrd")
     assert not list(tmp_path.iterdir())

@@ -114,6 +114,7 @@ def _figures(
 
 def _write(folder: Path, card: Scorecard, text: str) -> None:
     from ves_twin.thesis.page import scorecard_page
+    from ves_twin.whole_file import write_whole
 
-    (folder / JSON_NAME).write_text(text + "\n", encoding="utf-8")
-    (folder / PAGE_NAME).write_text(scorecard_page(card), encoding="utf-8")
+    write_whole(folder / JSON_NAME, text + "\n")
+    write_whole(folder / PAGE_NAME, scorecard_page(card))

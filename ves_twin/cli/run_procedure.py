@@ -24,6 +24,7 @@ def run_procedure(arguments: argparse.Namespace) -> int | None:
     from ves_twin.procedures.registry import load_procedure
     from ves_twin.scenario.load import parse_setting
     from ves_twin.simulator.simulate import SUMMARY_NAME, make_folder
+    from ves_twin.whole_file import write_whole
 
     changes = dict(parse_setting(text) for text in arguments.settings)
     procedure = load_procedure(arguments.scenario, changes)
@@ -38,7 +39,7 @@ def run_procedure(arguments: argparse.Namespace) -> int | None:
         conduct = Conduct(folder, plant, arguments.seed, progress.share)
         account = procedure.carry_out(conduct)
     text = json.dumps(_summary(procedure, account), indent=2)
-    (folder / SUMMARY_NAME).write_text(text + "\n", encoding="utf-8")
+    write_whole(folder / SUMMARY_NAME, text + "\n")
     if arguments.json:
         print(text)
     else:

@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
+import numpy as np
+
 from ves_twin.beams.beam import DAMPING_RATIO, BeamMatrices, BentBeam, StraightBeam
 from ves_twin.beams.section import ALUMINIUM, Material, Tube
 from ves_twin.errors import InvalidInputError, UnknownNameError
@@ -41,12 +43,18 @@ def beam_matrices(table: object, where: str) -> BeamMatrices:
         if key not in table:
             raise InvalidInputError(f"{where}: beam.{key}", None, "a value; it has no default")
     beam = _build(table, shape, where)
-    if form == "thesis":
-        return beam.thesis()
-    ratio = _number(table, "damping_ratio", "1", where, DAMPING_RATIO)
+    ratio = 0.0
+    if form != "thesis":
+        ratio = _number(table, "damping_ratio", "1", where, DAMPING_RATIO)
     if ratio < 0:
         raise InvalidInputError(f"{where}: beam.damping_ratio", ratio, "at least 0")
-    return beam.corrected(ratio) if form == "corrected" else beam.reduced(ratio)
+    try:
+        if form == "thesis":
+            return beam.thesis()
+        return beam.corrected(ratio) if form == "corrected" else beam.reduced(ratio)
+    except (OverflowError, ZeroDivisionError, np.linalg.LinAlgError):
+        expected = "sizes from which finite matrices follow"
+        raise InvalidInputError(f"{where}: beam", dict(table), expected) from None
 
 
 def _build(table: Mapping[str, Any], shape: str, where: str) -> StraightBeam | BentBeam:

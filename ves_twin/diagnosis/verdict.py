@@ -13,8 +13,8 @@ from ves_twin.diagnosis.exhibit import Exhibit
 from ves_twin.diagnosis.gain import Gain
 from ves_twin.diagnosis.leftover import Leftover
 from ves_twin.diagnosis.rivals import Rival
-from ves_twin.errors import FileAccessError
 from ves_twin.quality.check import Check
+from ves_twin.whole_file import write_whole
 
 SCHEMA = 1
 """Version of verdict.json; fields are added without a new one, never changed."""
@@ -178,10 +178,7 @@ class Verdict:
         Raises:
             FileAccessError: not writable.
         """
-        try:
-            path.write_text(self.to_json() + "\n", encoding="utf-8")
-        except OSError as error:
-            raise FileAccessError(f"cannot write {path}: {error.strerror}") from None
+        write_whole(path, self.to_json() + "\n")
 
     @property
     def words(self) -> str:

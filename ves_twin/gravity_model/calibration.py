@@ -16,6 +16,7 @@ from ves_twin.gravity_model.identify import Identification
 from ves_twin.resources import find_resource
 from ves_twin.toml_file import check_schema, read_toml
 from ves_twin.types import FloatArray
+from ves_twin.whole_file import write_whole
 
 SCHEMA = 1
 _KEYS = {"schema", "name", "source", "sensor", "arm", "model"}
@@ -126,9 +127,7 @@ names = [{names}]
 moments = {_row(self.moments)}
 half_width = {_row(self.half_width)}
 """
-        partial = path.with_suffix(".part")
-        partial.write_text(text, encoding="utf-8")
-        partial.replace(path)
+        write_whole(path, text)
 
     def check(self, sensor: str, basis: FirstMoments) -> None:
         """Raise InvalidInputError if it belongs to another sensor or arm."""

@@ -12,6 +12,7 @@ import pyarrow.parquet as pq
 
 from ves_twin.errors import FileAccessError, InvalidInputError, VersionError, one_line
 from ves_twin.types import FloatArray
+from ves_twin.whole_file import whole_file
 
 SCHEMA = 1
 
@@ -104,9 +105,8 @@ class LearnedGravity:
         columns |= dict(zip(WRENCH, self.wrenches.T, strict=True))
         columns |= dict(zip(JOINTS, self.experiment.commands.T, strict=True))
         table = pa.table({name: pa.array(values) for name, values in columns.items()})
-        partial = path.with_suffix(".part")
-        pq.write_table(table.replace_schema_metadata({KEY: json.dumps(head)}), partial)
-        partial.replace(path)
+        with whole_file(path) as partial:
+            pq.write_table(table.replace_schema_metadata({KEY: json.dumps(head)}), partial)
 
     def check(self, planned: PlannedExperiment) -> None:
         """Raise InvalidInputError unless it was learned for this experiment."""

@@ -6,9 +6,9 @@ import json
 from pathlib import Path
 
 from ves_twin.effects.registry import effects_table
-from ves_twin.errors import FileAccessError
 from ves_twin.plant.parameters import SCHEMA
 from ves_twin.plant.plant import Plant
+from ves_twin.whole_file import write_whole
 
 
 def write_plant(plant: Plant, path: Path, note: str = "") -> None:
@@ -32,9 +32,4 @@ def write_plant(plant: Plant, path: Path, note: str = "") -> None:
         for target, values in targets.items():
             lines += ["", f"[effects.{kind}.{json.dumps(target)}]"]
             lines += [f"{name} = {value!r}" for name, value in values.items()]
-    partial = path.with_suffix(".part")
-    try:
-        partial.write_text("\n".join(lines) + "\n", encoding="utf-8")
-        partial.replace(path)
-    except OSError as error:
-        raise FileAccessError(f"cannot write {path}: {error.strerror}") from None
+    write_whole(path, "\n".join(lines) + "\n")

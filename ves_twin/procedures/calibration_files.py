@@ -12,6 +12,7 @@ import numpy as np
 from ves_twin.plant.plant import Plant
 from ves_twin.procedures.feasible import Feasible
 from ves_twin.types import FloatArray
+from ves_twin.whole_file import write_whole
 
 SOURCE = "docs/calibration.md"
 
@@ -74,9 +75,9 @@ def write_fit(fit: Fit, bounds: Mapping[str, str], folder: Path) -> list[str]:
         "conflicts": [{"one": a, "other": b, "cosine": c} for a, b, c in conflicts],
     }
     text = json.dumps(content, indent=2)
-    (folder / "calibration.json").write_text(text + "\n", encoding="utf-8")
-    (folder / "plant.toml").write_text(_plant_file(fit), encoding="utf-8")
-    (folder / "entries.toml").write_text(_entries(fit), encoding="utf-8")
+    write_whole(folder / "calibration.json", text + "\n")
+    write_whole(folder / "plant.toml", _plant_file(fit))
+    write_whole(folder / "entries.toml", _entries(fit))
     return [*_claim_lines(fit, bounds), "", *_number_lines(fit), "", *_conflict_lines(conflicts)]
 
 

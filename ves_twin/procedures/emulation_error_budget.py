@@ -14,6 +14,7 @@ from ves_twin.procedures.procedure import Account, Conduct, Procedure
 from ves_twin.scenario.fields import Seconds
 from ves_twin.simulator.outcome import Outcome
 from ves_twin.types import FloatArray
+from ves_twin.whole_file import whole_file
 
 AXES = ("x", "y", "z", "rx", "ry", "rz")
 
@@ -46,7 +47,10 @@ class EmulationErrorBudget(Procedure):
             seed=seed,
         )
         table = _table(sources.parts(conduct.progress))
-        with (conduct.folder / "budget.csv").open("w", newline="", encoding="utf-8") as file:
+        with (
+            whole_file(conduct.folder / "budget.csv") as partial,
+            partial.open("w", newline="", encoding="utf-8") as file,
+        ):
             writer = csv.writer(file)
             units = ("m", "m", "m", "rad", "rad", "rad")
             writer.writerow(

@@ -17,6 +17,7 @@ from ves_twin.scenario.fields import Seconds, si
 from ves_twin.simulator.build import belief_of
 from ves_twin.simulator.outcome import Outcome
 from ves_twin.types import FloatArray
+from ves_twin.whole_file import write_whole
 
 CONDITIONS = ("position control", "frozen", "tilted base", "same, no turn")
 
@@ -66,7 +67,7 @@ def _write_passes(fitted: dict[str, tuple[Pass, ...]], conduct: Conduct) -> None
     for name, passes in fitted.items():
         for number, one in enumerate(passes, 1):
             lines.append(f"{name},{number}," + ",".join(f"{v:.6g}" for v in one.rms))
-    (conduct.folder / "passes.csv").write_text("\n".join(lines) + "\n", encoding="utf-8")
+    write_whole(conduct.folder / "passes.csv", "\n".join(lines) + "\n")
 
 
 def _account(fitted: dict[str, tuple[Pass, ...]], droop: FloatArray, level: float) -> Account:

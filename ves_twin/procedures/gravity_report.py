@@ -15,6 +15,7 @@ from ves_twin.gravity_model.sensitivity import AXES
 from ves_twin.procedures.procedure import Account
 from ves_twin.simulator.outcome import Outcome
 from ves_twin.types import FloatArray
+from ves_twin.whole_file import write_whole
 
 
 @dataclass(frozen=True)
@@ -82,7 +83,7 @@ def write_report(result: Calibrated, folder: Path, question: str) -> None:
     for name, value, width in zip(result.found.names[:42], result.found.values, half, strict=False):
         text.append(f"{name:<16}{value:10.5f}   +- {width:.5f}")
     text += ["```", ""]
-    (folder / "report.md").write_text("\n".join(text), encoding="utf-8")
+    write_whole(folder / "report.md", "\n".join(text))
     _picture(result, folder / "residuals.png")
 
 

@@ -8,8 +8,8 @@ from pathlib import Path
 
 import numpy as np
 
-from ves_twin.errors import FileAccessError
 from ves_twin.types import FloatArray
+from ves_twin.whole_file import whole_file
 
 
 def write_table(path: Path, columns: Mapping[str, FloatArray]) -> None:
@@ -19,10 +19,7 @@ def write_table(path: Path, columns: Mapping[str, FloatArray]) -> None:
         FileAccessError: the file cannot be written.
     """
     rows = np.column_stack(list(columns.values()))
-    try:
-        with path.open("w", newline="", encoding="utf-8") as file:
-            writer = csv.writer(file)
-            writer.writerow(columns)
-            writer.writerows([f"{value:.9g}" for value in row] for row in rows)
-    except OSError as error:
-        raise FileAccessError(f"{path}: {error.strerror}") from None
+    with whole_file(path) as partial, partial.open("w", newline="", encoding="utf-8") as file:
+        writer = csv.writer(file)
+        writer.writerow(columns)
+        writer.writerows([f"{value:.9g}" for value in row] for row in rows)

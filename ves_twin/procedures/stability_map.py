@@ -21,6 +21,7 @@ from ves_twin.scenario.fields import Hertz, PerSecond, Seconds, named
 from ves_twin.scenario.load import scenario_questions
 from ves_twin.scenario.schema import Scenario
 from ves_twin.simulator.outcome import Outcome
+from ves_twin.whole_file import write_whole
 
 MAP_NAME, FIGURE_NAME = "stability_map.json", "stability_map.png"
 
@@ -100,7 +101,7 @@ class StabilityMap(Procedure):
             "points": [{**asdict(p), "share": p.share} for p in points],
         }
         text = json.dumps(content, indent=2)
-        (conduct.folder / MAP_NAME).write_text(text + "\n", encoding="utf-8")
+        write_whole(conduct.folder / MAP_NAME, text + "\n")
         draw_map(points, plant.name, conduct.folder / FIGURE_NAME)
         return Account(Outcome.COMPLETED, content, tuple(_table(points)))
 

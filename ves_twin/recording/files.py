@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 from pathlib import Path
 
 import pyarrow as pa
@@ -12,6 +11,7 @@ from ves_twin.errors import FileAccessError, InvalidInputError
 from ves_twin.recording.recording import Recording
 from ves_twin.recording.stream import FILE_NAME, ROW_GROUP, STREAM_NAME, stream_batches
 from ves_twin.recording.table import batch_of, recording_of, schema_of
+from ves_twin.whole_file import whole_file
 
 
 def load_recording(path: str | Path) -> Recording:
@@ -48,13 +48,8 @@ def save_recording(recording: Recording, path: Path) -> None:
     """Write a recording to a Parquet file; the file appears when it is whole."""
     schema = schema_of(recording.signals, recording.info)
     table = pa.Table.from_batches([batch_of(schema, recording.time, recording.signals)])
-    partial = path.with_name(f"{path.name}.partial")
-    try:
+    with whole_file(path) as partial:
         pq.write_table(table, partial, compression="zstd", row_group_size=ROW_GROUP)
-        os.replace(partial, path)
-    except OSError as error:
-        partial.unlink(missing_ok=True)
-        raise FileAccessError(f"cannot write {path}: {error.strerror}") from None
 
 
 def _table(file: Path) -> pa.Table:

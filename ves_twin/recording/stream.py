@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterator, Mapping
+from contextlib import suppress
 from pathlib import Path
 from types import TracebackType
 
@@ -37,8 +38,14 @@ class RecordingStream:
             self._file = self._path.open("wb")
         except OSError as error:
             raise FileAccessError(f"cannot write {self._path}: {error.strerror}") from None
-        self._writer = ipc.new_stream(self._file, self._schema)
-        self._file.flush()
+        try:
+            self._writer = ipc.new_stream(self._file, self._schema)
+            self._file.flush()
+        except OSError as error:
+            with suppress(OSError):
+                self._file.close()
+            self._path.unlink()
+            raise FileAccessError(f"cannot write {self._path}: {error.strerror}") from None
 
     def write(self, time: FloatArray, signals: Mapping[str, FloatArray]) -> None:
         """Append rows and hand them to the operating system."""
@@ -46,7 +53,9 @@ class RecordingStream:
             self._writer.write_batch(batch_of(self._schema, time, signals))
             self._file.flush()
         except OSError as error:
-            raise FileAccessError(f"cannot write {self._path}: {error.strerror}") from None
+            raise FileAccessError(
+                f"cannot write {self._path}: {error.strerror}; the rows before are kept"
+            ) from None
 
     def finish(self, info: RecordingInfo) -> Path:
         """Close the stream, write `recording.parquet` batch by batch, remove the stream.
@@ -70,14 +79,25 @@ class RecordingStream:
             raise FileAccessError(
                 f"cannot write {target}: {error}; rows kept in {self._path}"
             ) from None
+        finally:
+            partial.unlink(missing_ok=True)
         self._path.unlink()
         return target
 
     def close(self) -> None:
         """Close the stream file; what was written stays."""
-        if not self._file.closed:
+        if self._file.closed:
+            return
+        try:
             self._writer.close()
             self._file.close()
+        except OSError as error:
+            raise FileAccessError(
+                f"cannot write {self._path}: {error.strerror or error}; the rows before are kept"
+            ) from None
+        finally:
+            with suppress(OSError):
+                self._file.close()
 
     def __enter__(self) -> RecordingStream:
         return self

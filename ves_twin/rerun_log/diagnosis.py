@@ -20,9 +20,8 @@ from ves_twin.diagnosis.verdict import Verdict
 from ves_twin.errors import InvalidInputError
 from ves_twin.rerun_log.colours import Colour
 from ves_twin.rerun_log.series import shown
-from ves_twin.rerun_log.whole_file import whole_file
-from ves_twin.rerun_log.write import flush
 from ves_twin.types import FloatArray
+from ves_twin.whole_file import whole_file
 
 MEASURED: Colour = (80, 165, 235)
 NOMINAL: Colour = (230, 120, 60)
@@ -52,14 +51,15 @@ def write_diagnosis_rrd(verdict: Verdict, path: Path) -> Path:
 
 def _write(verdict: Verdict, exhibit: Exhibit, path: Path) -> None:
     stream = rr.RecordingStream("ves_twin diagnosis")
-    stream.save(path, default_blueprint=diagnosis_blueprint(exhibit))
+    content = stream.binary_stream()  # see write.py
+    stream.send_blueprint(diagnosis_blueprint(exhibit), make_active=False, make_default=True)
     stream.send_recording_name(f"diagnosis: {verdict.verdict.value}")
     page = rr.TextDocument(_account(verdict), media_type=rr.MediaType.MARKDOWN)
     stream.log("verdict", page, static=True)
     for number, traces in enumerate(exhibit.traces, 1):
         for c in range(len(exhibit.channels)):
             _send_channel(stream, exhibit, traces, c, f"r{number}", fitted_word(verdict))
-    flush(stream)
+    path.write_bytes(content.read() or b"")
     stream.disconnect()
 
 

@@ -22,9 +22,9 @@ from ves_twin.rerun_log.poses import (
 from ves_twin.rerun_log.rig import DrawnRig
 from ves_twin.rerun_log.series import Series, series_of
 from ves_twin.rerun_log.shapes import send_shapes
-from ves_twin.rerun_log.whole_file import whole_file
 from ves_twin.simulator.outcome import Outcome
 from ves_twin.types import IntArray
+from ves_twin.whole_file import whole_file
 
 ROWS_PER_CHUNK = 20_000
 """Rows sent at a time: a megabyte per six columns."""
@@ -65,7 +65,9 @@ def _write(recording: Recording, path: Path) -> None:
     # the viewer keeps one layout per application, so runs of unlike scenarios must differ in it
     stream = rr.RecordingStream(f"ves_twin {name}")
     blueprint = blueprint_of(frozenset(s.entity for s in series))
-    stream.save(path, default_blueprint=blueprint)
+    # the library's own file writer can wait for ever on a full disk; a .rrd is as large as its rows
+    content = stream.binary_stream()
+    stream.send_blueprint(blueprint, make_active=False, make_default=True)
     stream.send_recording_name(f"{name}, seed {recording.info.seed}")
     stream.log("/", rr.ViewCoordinates.RIGHT_HAND_Z_UP, static=True)
     page = rr.TextDocument(account(recording, rig.note), media_type=rr.MediaType.MARKDOWN)
@@ -76,7 +78,7 @@ def _write(recording: Recording, path: Path) -> None:
         _send_ghost(stream, recording, rig)
     for lines in series:
         _send_series(stream, recording, lines)
-    flush(stream)
+    path.write_bytes(content.read() or b"")
     stream.disconnect()
 
 
@@ -107,7 +109,6 @@ def _send_frames(
                 translation=frames.position[:, i], quaternion=frames.turn[:, i]
             )
             stream.send_columns(f"{root}/{body}", times, poses)
-        flush(stream)
 
 
 def _send_series(stream: rr.RecordingStream, recording: Recording, lines: Series) -> None:
@@ -116,7 +117,6 @@ def _send_series(stream: rr.RecordingStream, recording: Recording, lines: Series
     for rows in _chunks(len(recording)):
         times = _times(recording, np.arange(rows.start, rows.stop))
         stream.send_columns(lines.entity, times, rr.Scalars.columns(scalars=lines.values(rows)))
-    flush(stream)
 
 
 def _send_events(stream: rr.RecordingStream, recording: Recording) -> None:
@@ -129,14 +129,6 @@ def _send_events(stream: rr.RecordingStream, recording: Recording) -> None:
     texts = [f"{event.kind}: {event.message}" for event in events]
     times = [rr.TimeColumn("sim_time", duration=at), rr.TimeColumn("row", sequence=rows)]
     stream.send_columns("events", times, rr.TextLog.columns(text=texts, level=levels))
-
-
-def flush(stream: rr.RecordingStream) -> None:
-    """Send what waits; raises OSError where it cannot be written."""
-    try:
-        stream.flush()
-    except RuntimeError as error:  # the writer's thread has ended: disk full, quota
-        raise OSError(str(error)) from None
 
 
 def _chunks(count: int) -> Iterator[slice]:

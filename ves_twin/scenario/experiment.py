@@ -206,7 +206,12 @@ class Experiment(Part):
 
 
 def _own_scenario(recording: Recording) -> Scenario:
-    content = json.loads(recording.info.settings)
+    try:
+        content = json.loads(recording.info.settings)
+    except (ValueError, RecursionError):
+        raise InvalidInputError(
+            "settings of the recording", recording.info.settings, "a scenario as JSON"
+        ) from None
     if not content:
         raise InvalidInputError(
             "recording", "no scenario in its metadata", "an --experiment file that names one"

@@ -8,7 +8,7 @@ from typing import Annotated, Any
 
 from pydantic import BaseModel, BeforeValidator, ConfigDict
 
-from ves_twin.errors import InvalidInputError, UnknownNameError
+from ves_twin.errors import InvalidInputError, UnknownNameError, shown
 from ves_twin.units import to_si
 
 TURNS = 4.0 * math.pi
@@ -41,13 +41,13 @@ def _pose(value: object) -> tuple[float, ...]:
 def _joints(value: object) -> tuple[float, ...]:
     angles = _row(value, ("rad", "rad", "rad"))
     if any(abs(angle) > TURNS for angle in angles):
-        raise ValueError(f"got {value!r}, expected angles within two turns")
+        raise ValueError(f"got {shown(value)}, expected angles within two turns")
     return angles
 
 
 def _row(value: object, units: tuple[str, ...]) -> tuple[float, ...]:
     if not isinstance(value, list | tuple) or len(value) != len(units):
-        raise ValueError(f"got {value!r}, expected {len(units)} numbers in {', '.join(units)}")
+        raise ValueError(f"got {shown(value)}, expected {len(units)} numbers in {', '.join(units)}")
     try:
         pairs = enumerate(zip(value, units, strict=True), 1)
         return tuple(to_si(v, unit, f"[{i}]") for i, (v, unit) in pairs)

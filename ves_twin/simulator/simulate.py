@@ -25,6 +25,7 @@ from ves_twin.simulator.emulation_error import AxisError, Rows, emulation_error
 from ves_twin.simulator.outcome import Outcome
 from ves_twin.simulator.recorder import IDEAL, LEG_LAG, MemorySink, NoSink
 from ves_twin.simulator.simulator import Simulator
+from ves_twin.whole_file import write_whole
 
 SUMMARY_NAME = "summary.json"
 SLICE = 0.25
@@ -123,7 +124,7 @@ def record(
                 sim.recorder.flush()
         path = stream.finish(recording_info(sim))
     summary = _summary(sim, path, ready - begin, perf_counter() - ready)
-    (folder / SUMMARY_NAME).write_text(summary.to_json() + "\n", encoding="utf-8")
+    write_whole(folder / SUMMARY_NAME, summary.to_json() + "\n")
     return summary
 
 
