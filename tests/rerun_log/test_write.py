@@ -9,13 +9,13 @@ import pytest
 from rerun.chunk import RrdReader
 
 import ves_twin
-from ves_twin import Plant, Recording, Scenario
+from ves_twin import Plant, Recording, Scenario, whole_file
 from ves_twin.errors import FileAccessError, one_line
 from ves_twin.plant.assembly import assemble
 from ves_twin.plant.layout import Layout
 from ves_twin.plant.statics import place_rig
 from ves_twin.recording.recording import Event
-from ves_twin.rerun_log import whole_file, write
+from ves_twin.rerun_log import write
 from ves_twin.rerun_log.write import write_rrd
 from ves_twin.signals import SIGNALS
 
