@@ -7,11 +7,11 @@ from dataclasses import replace
 import numpy as np
 
 from ves_twin.control.belief import Belief
-from ves_twin.control.controller import ControlTask
+from ves_twin.control.controller import ControlTask, PlatformController
 from ves_twin.control.emulated import EmulatedSystem
 from ves_twin.control.gravity import GravityCompensation, GravityTask
 from ves_twin.control.gravity_feedforward import GravityFeedforward
-from ves_twin.control.motion import PlatformMotion
+from ves_twin.control.motion import JointMotion, PlatformMotion
 from ves_twin.control.played import Script
 from ves_twin.control.registry import GRAVITY_COMPENSATIONS, PLATFORM_CONTROLLERS
 from ves_twin.control.scaled import ScaledCompensation
@@ -58,9 +58,16 @@ def belief_of(scenario: Scenario) -> Belief:
 
 
 def build_computers(
-    scenario: Scenario, belief: Belief, rig: Rig, script: Script | None = None
+    scenario: Scenario,
+    belief: Belief,
+    rig: Rig,
+    script: Script | None = None,
+    controller: type[PlatformController] | None = None,
+    arm: JointMotion | None = None,
 ) -> Computers:
     """Controllers of a scenario, or a script that is played back, connected to the rig's board.
+
+    `controller` and `arm` take the place of the scenario's platform controller and arm motion.
 
     Raises:
         UnreachableError: the start pose is outside the legs' travel.
@@ -81,12 +88,13 @@ def build_computers(
         motion=script.poses if script else _motion(scenario.platform),
         subtract_gravity=scenario.platform.mode != "admittance" and gravity.subtracts,
     )
+    chosen = controller or PLATFORM_CONTROLLERS[scenario.platform.mode]
     return Computers(
         belief=belief,
-        controller=PLATFORM_CONTROLLERS[scenario.platform.mode].build(task),
+        controller=chosen.build(task),
         gravity=gravity,
         gravity_age=scenario.gravity.age,
-        arm=script.joints if script else arm_motion(scenario),
+        arm=arm or (script.joints if script else arm_motion(scenario)),
         feedforward=GravityFeedforward(belief) if scenario.arm.gravity_feedforward else None,
         period=period,
         board=rig.board,

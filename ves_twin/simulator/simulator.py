@@ -7,6 +7,8 @@ from dataclasses import dataclass
 import mujoco
 import numpy as np
 
+from ves_twin.control.controller import PlatformController
+from ves_twin.control.motion import JointMotion
 from ves_twin.control.played import Script
 from ves_twin.effects.registry import parse_effects
 from ves_twin.plant.plant import Plant
@@ -64,6 +66,8 @@ class Simulator:
         seed: seed of the noise; the scenario's own if left out.
         sink: where rows go; kept in memory if left out.
         script: set-points that are played back; the scenario's controllers decide if left out.
+        controller: decides the platform's pose in place of the one that the mode names.
+        arm: joint commands in place of the scenario's.
 
     Raises:
         VesTwinError: the scenario cannot be built: unknown name, pose out of reach.
@@ -76,6 +80,8 @@ class Simulator:
         seed: int | None = None,
         sink: Sink | None = None,
         script: Script | None = None,
+        controller: type[PlatformController] | None = None,
+        arm: JointMotion | None = None,
     ) -> None:
         self.scenario = scenario
         world = (plant or Plant.load(scenario.plant)).with_values(scenario.parameters)
@@ -94,6 +100,7 @@ class Simulator:
         played = script is not None
         self.operator = build_operator(scenario, belief, self.rig, self.computers, played)
         self._standing = _at_rest(scenario, self.operator)
+        self.computers = build_computers(scenario, belief, self.rig, script, controller, arm)
         self.recorder = Recorder(
             clock,
             belief.geometry,

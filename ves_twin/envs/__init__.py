@@ -1,0 +1,21 @@
+"""envs: the rig as Gymnasium environments; importing this room registers them."""
+
+from __future__ import annotations
+
+import gymnasium as gym
+
+from ves_twin.envs.damping import VibrationDamping
+from ves_twin.envs.reach import VibrationFreeReach
+from ves_twin.envs.tracking import PlatformTracking
+
+ENVIRONMENTS = {
+    "VesTwin/VibrationFreeReach-v0": "ves_twin.envs.reach:VibrationFreeReach",
+    "VesTwin/VibrationDamping-v0": "ves_twin.envs.damping:VibrationDamping",
+    "VesTwin/PlatformTracking-v0": "ves_twin.envs.tracking:PlatformTracking",
+}
+"""Id -> entry point. A change of what an episode does asks for a new version of its id."""
+
+for _id, _entry_point in ENVIRONMENTS.items():
+    gym.register(_id, entry_point=_entry_point)
+
+__all__ = ["ENVIRONMENTS", "PlatformTracking", "VibrationDamping", "VibrationFreeReach"]

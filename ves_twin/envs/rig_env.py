@@ -1,0 +1,323 @@
+"""RigEnv: the simulator as a Gymnasium environment; a task says what is commanded and rewarded."""
+
+from __future__ import annotations
+
+import abc
+from typing import TYPE_CHECKING, Any, ClassVar, Generic
+
+import gymnasium as gym
+import numpy as np
+
+from ves_twin.control.emulated import EmulatedSystem
+from ves_twin.envs.channels import Channels
+from ves_twin.envs.costs import Costs, Limits
+from ves_twin.envs.picture import Picture
+from ves_twin.envs.policy import Briefing
+from ves_twin.envs.settled_rigs import Hand, SettledRig, SettledRigs
+from ves_twin.envs.true_state import true_state
+from ves_twin.errors import InvalidInputError, UnknownNameError
+from ves_twin.plant.plant import Plant
+from ves_twin.scenario.schema import Scenario
+from ves_twin.simulator.board import Board
+from ves_twin.simulator.recorder import Sink
+from ves_twin.simulator.simulator import Simulator
+from ves_twin.types import FloatArray
+
+if TYPE_CHECKING:
+    from control import StateSpace
+
+CYCLES = 4
+"""Admittance cycles of a step: about 50 ms, a twelfth of the period of the fastest beam mode that
+matters (1.3 Hz), and short beside what a cycle takes in Python."""
+
+OPTIONS = ("goal", "plant", "scenario")
+"""What `reset` understands."""
+
+
+class RigEnv(gym.Env[FloatArray, FloatArray], abc.ABC, Generic[Hand]):
+    """One rig under one task; a step is CYCLES admittance cycles.
+
+    Actions are shares of a scale, -1 to 1. A finite action beyond that is clipped and `info` says
+    so; one that is not finite, or of another shape, is refused before anything moves.
+    Observations are what the computers of the laboratory read, never truth.
+
+    Attributes:
+        observations: the table of the observation's columns.
+        actions: the table of the action's columns; bounds are the scale.
+        sink: where the rows of the next episodes go; None for nowhere.
+
+    Args:
+        plant: the world; the scenario's own if left out.
+        scenario: the task's own if left out.
+        render_mode: "rgb_array", "human" or None.
+
+    Raises:
+        VesTwinError: a plant or scenario that cannot be used.
+    """
+
+    metadata: ClassVar[dict[str, Any]] = {"render_modes": ["human", "rgb_array"], "render_fps": 20}
+    SCENARIO: ClassVar[str]
+    WORST: ClassVar[float]
+    """Loss per second [loss/s] that what is left of an episode counts as after a safety stop."""
+
+    observations: Channels
+    actions: Channels
+
+    def __init__(
+        self,
+        plant: str | Plant | None = None,
+        scenario: str | Scenario | None = None,
+        render_mode: str | None = None,
+    ) -> None:
+        if render_mode not in (None, *self.metadata["render_modes"]):
+            raise UnknownNameError("render_mode", render_mode, self.metadata["render_modes"])
+        self.render_mode = render_mode
+        self._scenario = _scenario(scenario or self.SCENARIO)
+        self._plant = _plant(plant or self._scenario.plant)
+        self.check(self._scenario)
+        self.observations, self.actions = self.channels(self._scenario)
+        self.observation_space = self.observations.box()
+        self.action_space = gym.spaces.Box(-1.0, 1.0, (self.actions.width,), np.float64)
+        self.sink: Sink | None = None
+        self._rigs: SettledRigs[Hand] = SettledRigs()
+        self._rig: SettledRig[Hand] | None = None
+        self._picture = Picture(render_mode == "human")
+
+    @abc.abstractmethod
+    def check(self, scenario: Scenario) -> None:
+        """Raise InvalidInputError unless a scenario fits the task."""
+
+    @abc.abstractmethod
+    def channels(self, scenario: Scenario) -> tuple[Channels, Channels]:
+        """Tables of observations and actions; they must not depend on what episodes draw."""
+
+    @abc.abstractmethod
+    def build(self, plant: Plant, scenario: Scenario) -> tuple[Simulator, Hand]:
+        """A simulator, and what an action commands in it."""
+
+    @abc.abstractmethod
+    def draw(self, scenario: Scenario, goal: object) -> tuple[Scenario, object]:
+        """Scenario and goal of an episode, drawn where `goal` is None, by `np_random` alone."""
+
+    @abc.abstractmethod
+    def start(self, goal: Any) -> None:
+        """Begin an episode with a goal; the rig stands at t = 0."""
+
+    @abc.abstractmethod
+    def command(self, action: FloatArray, span: float) -> None:
+        """Give an action, in the units of `actions`, for the step that begins now."""
+
+    @abc.abstractmethod
+    def loss(self, pose: FloatArray, arm_q: FloatArray, time: float) -> float:
+        """Loss per second at a true pose, true joint angles and a time [s]."""
+
+    @abc.abstractmethod
+    def readings(self, board: Board) -> dict[str, FloatArray]:
+        """The observation's values by name; bounds are applied by the caller."""
+
+    @abc.abstractmethod
+    def truth(self) -> dict[str, FloatArray | float]:
+        """What only an analysis may see, beside pose and joints."""
+
+    @abc.abstractmethod
+    def metrics(self) -> dict[str, float]:
+        """Figures of the episode so far, in physical units."""
+
+    @abc.abstractmethod
+    def prior(self) -> StateSpace:
+        """The linear model that the believed rig has: actions in, deviations of readings out."""
+
+    def briefing(self) -> Briefing:
+        """What a policy may know before it begins: tables, times, beliefs, the linear model."""
+        emulated = self._scenario.platform.emulated
+        return Briefing(
+            observations=self.observations,
+            actions=self.actions,
+            step=self.span,
+            duration=self._scenario.run.duration,
+            belief=Plant.load(self._scenario.belief),
+            scenario=self._scenario,
+            emulated=None if emulated is None else EmulatedSystem.load(emulated),
+            prior=self.prior,
+        )
+
+    @property
+    def span(self) -> float:
+        """Length of a step [s]."""
+        tick = self._plant.parameters.number("clock.tick")
+        return CYCLES * tick * max(1, round(1.0 / (self._scenario.platform.rate * tick)))
+
+    @property
+    def sim(self) -> Simulator:
+        """The simulator of the present episode, for analysis.
+
+        Raises:
+            InvalidInputError: before the first reset.
+        """
+        return self._settled().sim
+
+    @property
+    def hand(self) -> Hand:
+        """What actions command in the present episode."""
+        return self._settled().hand
+
+    def reset(
+        self, *, seed: int | None = None, options: dict[str, Any] | None = None
+    ) -> tuple[FloatArray, dict[str, Any]]:
+        """Begin an episode; nothing of the ones before it is left.
+
+        Args:
+            seed: of everything drawn from here on: goals, and the noise of this and later episodes.
+            options: `plant` (name, file or Plant), `scenario` (name, file or Scenario) and `goal`
+                for this episode alone.
+
+        Raises:
+            VesTwinError: an unknown option, or a rig that cannot be built or cannot stand.
+        """
+        super().reset(seed=seed)
+        given = options or {}
+        for key in given:
+            if key not in OPTIONS:
+                raise UnknownNameError("option of reset", str(key), OPTIONS)
+        noise_seed = int(self.np_random.integers(2**63 - 1))
+        scenario = _scenario(given.get("scenario", self._scenario))
+        if "scenario" in given:
+            self.check(scenario)
+        # a scenario's own values and effects are the simulator's to add
+        plant = _plant(given.get("plant", scenario.plant if "scenario" in given else self._plant))
+        scenario, goal = self.draw(scenario, given.get("goal"))
+        self._rig = self._rigs.find(plant, scenario) or self._rigs.keep(
+            plant, *self.build(plant, scenario)
+        )
+        self._rig.begin(noise_seed, self.sink)
+        self._begin_accounts()
+        self.start(goal)
+        self._board_pose = np.array(scenario.platform.start)
+        if self.render_mode == "human":
+            self.render()
+        return self._observe(), self._info(clipped=False)
+
+    def step(self, action: FloatArray) -> tuple[FloatArray, float, bool, bool, dict[str, Any]]:
+        """Hold an action for a step.
+
+        Args:
+            action: shares of the scale of `actions` (n,).
+
+        Raises:
+            InvalidInputError: another shape, not finite, or no episode under way.
+        """
+        if self._over or self._rig is None:
+            raise InvalidInputError("step", "an episode that is over", "reset before it")
+        given = np.asarray(action, float)
+        if given.shape != self.action_space.shape or not np.all(np.isfinite(given)):
+            what = f"{self.actions.width} finite numbers from -1 to 1"
+            raise InvalidInputError("action", np.asarray(action).tolist(), what)
+        inside = np.clip(given, -1.0, 1.0)
+        sim = self._rig.sim
+        self.command(inside * self.actions.high, self._cycle * CYCLES)
+        lost = 0.0
+        for _ in range(CYCLES):
+            sim.run_to(sim.rig.tick + sim.rig.clock.admittance)
+            lost += self.loss(*true_state(sim.rig), sim.time) * self._cycle
+            self._costs.update(sim.rig.board["leg.length"], sim.rig.board["sensor.wrench"])
+            if sim.outcome is not None:
+                break
+        self._steps += 1
+        terminated = sim.outcome is not None
+        if terminated:
+            lost += self.WORST * max(sim.scenario.run.duration - sim.time, 0.0)
+        truncated = not terminated and self._steps >= self._last
+        self._over = terminated or truncated
+        self._return -= lost
+        if self.render_mode == "human":
+            self.render()
+        info = self._info(clipped=bool(np.any(inside != given)))
+        if self._over:
+            info["metrics"] = {"return": self._return, **self.metrics()}
+        return self._observe(), -lost, terminated, truncated, info
+
+    def render(self) -> Any:
+        """A picture (480, 640, 3), or the window, as the render mode asks.
+
+        Raises:
+            VesTwinError: no OpenGL, or no display for `human`.
+        """
+        if self.render_mode is None:
+            gym.logger.warn("render() without a render_mode; make the environment with one")
+            return None
+        return self._picture.show(self.sim.model, self.sim.data)
+
+    def close(self) -> None:
+        """Close window and renderer; allowed more than once."""
+        self._picture.close()
+
+    def _begin_accounts(self) -> None:
+        sim = self.sim
+        belief = Plant.load(sim.scenario.belief)
+        number = belief.parameters.number
+        self._cycle = sim.rig.clock.admittance * sim.rig.clock.tick
+        self._last = max(1, round(sim.scenario.run.duration / (CYCLES * self._cycle)))
+        self._steps, self._return, self._over = 0, 0.0, False
+        limits = Limits(
+            home_lengths=belief.geometry.lengths(np.zeros(6)),
+            travel=number("leg.stroke") / 2.0 - number("leg.margin"),
+            wrench=belief.parameters.array("sensor.range"),
+        )
+        self._geometry = belief.geometry
+        self._costs = Costs(limits, self._cycle)
+        self._costs.begin(sim.rig.board["sensor.wrench"][:3])
+
+    @property
+    def left(self) -> float:
+        """Time until the episode is truncated [s]."""
+        return (self._last - self._steps) * CYCLES * self._cycle
+
+    @property
+    def measured_pose(self) -> FloatArray:
+        """Platform pose that the believed geometry has at the measured leg lengths (6,)."""
+        return self._board_pose
+
+    def _observe(self) -> FloatArray:
+        board = self.sim.rig.board
+        if np.all(np.isfinite(board["leg.length"])):
+            self._board_pose = self._geometry.pose(board["leg.length"], self._board_pose)
+        return self.observations.vector(self.readings(board))
+
+    def _info(self, clipped: bool) -> dict[str, Any]:
+        sim = self.sim
+        costs = self._costs.costs()
+        pose, arm_q = true_state(sim.rig)
+        info: dict[str, Any] = {
+            "time": sim.time,
+            "cost": sum(costs.values()),
+            "costs": costs,
+            "clipped": clipped,
+            "outcome": "running" if sim.outcome is None else sim.outcome.value,
+            "truth": {"truth.pose": pose, "truth.arm_q": arm_q, **self.truth()},
+        }
+        if sim.outcome is not None:
+            info["reason"] = f"{sim.events[-1].message}; {sim.outcome.advice}"
+        return info
+
+    def _settled(self) -> SettledRig[Hand]:
+        if self._rig is None:
+            raise InvalidInputError("environment", "no episode", "reset before anything else")
+        return self._rig
+
+    _over = True
+
+
+def _scenario(given: object) -> Scenario:
+    if isinstance(given, Scenario):
+        return given
+    if isinstance(given, str):
+        return Scenario.load(given)
+    raise InvalidInputError("scenario", given, "a name, a file or a Scenario")
+
+
+def _plant(given: object) -> Plant:
+    if isinstance(given, Plant):
+        return given
+    if isinstance(given, str):
+        return Plant.load(given)
+    raise InvalidInputError("plant", given, "a name, a file or a Plant")
