@@ -14,6 +14,7 @@ from ves_twin.cli import (
     blind,
     compare,
     diagnose,
+    evaluate,
     export,
     import_log,
     info,
@@ -39,6 +40,7 @@ COMMANDS = {
     "inspect": inspect,
     "import": import_log,
     "export": export,
+    "evaluate": evaluate,
     "view": view,
     "info": info,
 }

@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
+    from ves_twin.control.controller import PlatformController
     from ves_twin.plant.plant import Plant
     from ves_twin.scenario.schema import Scenario
     from ves_twin.simulator.outcome import Outcome
@@ -35,6 +36,11 @@ def add_run_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--plant", metavar="FILE", help="another plant: a name or a TOML file")
     parser.add_argument("--seed", type=int, metavar="N", help="seed of the noise")
     parser.add_argument("--out", metavar="DIR", help="output folder (default: runs/SCENARIO)")
+    parser.add_argument(
+        "--controller",
+        metavar="FILE:Class",
+        help="a PlatformController of a Python file, which is run, in place of the mode's own",
+    )
     parser.add_argument("--no-rrd", action="store_true", help="write no rerun file")
 
 
@@ -68,7 +74,8 @@ def run_scenario(arguments: argparse.Namespace) -> tuple[Summary, Path]:
     scenario, plant = load(arguments)
     folder = output_folder(arguments.out, scenario.name)
     with RunProgress(scenario.name, scenario.run.duration) as progress:
-        summary = record(scenario, folder, plant, arguments.seed, progress)
+        controller = load_controller(arguments)
+        summary = record(scenario, folder, plant, arguments.seed, progress, controller)
     if not arguments.no_rrd and summary.duration > 0:
         from ves_twin.recording.files import load_recording
         from ves_twin.rerun_log.write import write_rrd
@@ -95,6 +102,21 @@ def load(arguments: argparse.Namespace) -> tuple[Scenario, Plant | None]:
     if arguments.plant is None:
         return scenario, None
     return scenario, Plant.load(arguments.plant).with_values(scenario.parameters)
+
+
+def load_controller(arguments: argparse.Namespace) -> type[PlatformController] | None:
+    """The class that --controller names, if it is given; the one way in which code is loaded.
+
+    Raises:
+        VesTwinError: code that cannot be used.
+    """
+    if arguments.controller is None:
+        return None
+    from ves_twin.code_file import load_class
+    from ves_twin.control.controller import PlatformController
+
+    found: type[PlatformController] = load_class(arguments.controller, PlatformController)
+    return found
 
 
 def output_folder(given: str | None, name: str) -> Path:

@@ -9,7 +9,7 @@ import tempfile
 import time
 from pathlib import Path
 
-from ves_twin.cli.run import add_run_options, load, run_scenario
+from ves_twin.cli.run import add_run_options, load, load_controller, run_scenario
 from ves_twin.errors import InvalidInputError, VesTwinError
 
 SUMMARY = "look at a recording or a scenario: rerun, or MuJoCo's viewer with --live"
@@ -64,7 +64,8 @@ def _live(arguments: argparse.Namespace) -> int:
     from ves_twin.simulator.simulator import Simulator
 
     scenario, plant = load(arguments)
-    sim = Simulator(plant, scenario, arguments.seed, sink=NoSink())
+    controller = load_controller(arguments)
+    sim = Simulator(plant, scenario, arguments.seed, sink=NoSink(), controller=controller)
     frame = 1.0 / 60.0
     panels = {"show_left_ui": False, "show_right_ui": False}
     with mujoco.viewer.launch_passive(sim.model, sim.data, **panels) as window:

@@ -6,7 +6,6 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
-from gymnasium.spaces import Box
 
 from ves_twin.types import FloatArray
 
@@ -79,10 +78,6 @@ class Channels:
     def width(self) -> int:
         """Number of columns."""
         return len(self.low)
-
-    def box(self) -> Box:
-        """The space of these vectors."""
-        return Box(self.low, self.high, dtype=np.float64)
 
     def vector(self, values: Mapping[str, FloatArray]) -> FloatArray:
         """The columns (n,) of values by name, each held within its bounds."""

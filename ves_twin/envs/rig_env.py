@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import abc
+from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any, ClassVar, Generic
 
 import gymnasium as gym
@@ -19,6 +20,7 @@ from ves_twin.errors import InvalidInputError, UnknownNameError
 from ves_twin.plant.plant import Plant
 from ves_twin.scenario.schema import Scenario
 from ves_twin.simulator.board import Board
+from ves_twin.simulator.outcome import Outcome
 from ves_twin.simulator.recorder import Sink
 from ves_twin.simulator.simulator import Simulator
 from ves_twin.types import FloatArray
@@ -55,7 +57,10 @@ class RigEnv(gym.Env[FloatArray, FloatArray], abc.ABC, Generic[Hand]):
         VesTwinError: a plant or scenario that cannot be used.
     """
 
-    metadata: ClassVar[dict[str, Any]] = {"render_modes": ["human", "rgb_array"], "render_fps": 20}
+    metadata: dict[str, Any] = {  # noqa: RUF012  (as the base class has it)
+        "render_modes": ["human", "rgb_array"],
+        "render_fps": 20,
+    }
     SCENARIO: ClassVar[str]
     WORST: ClassVar[float]
     """Loss per second [loss/s] that what is left of an episode counts as after a safety stop."""
@@ -70,14 +75,17 @@ class RigEnv(gym.Env[FloatArray, FloatArray], abc.ABC, Generic[Hand]):
         render_mode: str | None = None,
     ) -> None:
         if render_mode not in (None, *self.metadata["render_modes"]):
-            raise UnknownNameError("render_mode", render_mode, self.metadata["render_modes"])
+            raise UnknownNameError("render_mode", str(render_mode), self.metadata["render_modes"])
         self.render_mode = render_mode
         self._scenario = _scenario(scenario or self.SCENARIO)
         self._plant = _plant(plant or self._scenario.plant)
         self.check(self._scenario)
         self.observations, self.actions = self.channels(self._scenario)
-        self.observation_space = self.observations.box()
-        self.action_space = gym.spaces.Box(-1.0, 1.0, (self.actions.width,), np.float64)
+        self.observation_space = gym.spaces.Box(
+            self.observations.low, self.observations.high, dtype=np.float64
+        )
+        shares = np.ones(self.actions.width)
+        self.action_space = gym.spaces.Box(-shares, shares, dtype=np.float64)
         self.sink: Sink | None = None
         self._rigs: SettledRigs[Hand] = SettledRigs()
         self._rig: SettledRig[Hand] | None = None
@@ -183,8 +191,7 @@ class RigEnv(gym.Env[FloatArray, FloatArray], abc.ABC, Generic[Hand]):
         scenario = _scenario(given.get("scenario", self._scenario))
         if "scenario" in given:
             self.check(scenario)
-        # a scenario's own values and effects are the simulator's to add
-        plant = _plant(given.get("plant", scenario.plant if "scenario" in given else self._plant))
+        plant = self.plant_of(given)
         scenario, goal = self.draw(scenario, given.get("goal"))
         self._rig = self._rigs.find(plant, scenario) or self._rigs.keep(
             plant, *self.build(plant, scenario)
@@ -228,6 +235,8 @@ class RigEnv(gym.Env[FloatArray, FloatArray], abc.ABC, Generic[Hand]):
             lost += self.WORST * max(sim.scenario.run.duration - sim.time, 0.0)
         truncated = not terminated and self._steps >= self._last
         self._over = terminated or truncated
+        if truncated:
+            sim.end(Outcome.COMPLETED, f"reached {sim.time:.3f} s")
         self._return -= lost
         if self.render_mode == "human":
             self.render()
@@ -246,6 +255,14 @@ class RigEnv(gym.Env[FloatArray, FloatArray], abc.ABC, Generic[Hand]):
             gym.logger.warn("render() without a render_mode; make the environment with one")
             return None
         return self._picture.show(self.sim.model, self.sim.data)
+
+    def plant_of(self, options: Mapping[str, object]) -> Plant:
+        """The plant that `reset` would take by its options, without the scenario's own changes."""
+        if "plant" in options:
+            return _plant(options["plant"])
+        return (
+            _plant(_scenario(options["scenario"]).plant) if "scenario" in options else self._plant
+        )
 
     def close(self) -> None:
         """Close window and renderer; allowed more than once."""
@@ -295,7 +312,7 @@ class RigEnv(gym.Env[FloatArray, FloatArray], abc.ABC, Generic[Hand]):
             "outcome": "running" if sim.outcome is None else sim.outcome.value,
             "truth": {"truth.pose": pose, "truth.arm_q": arm_q, **self.truth()},
         }
-        if sim.outcome is not None:
+        if sim.outcome not in (None, Outcome.COMPLETED):
             info["reason"] = f"{sim.events[-1].message}; {sim.outcome.advice}"
         return info
 
@@ -321,3 +338,15 @@ def _plant(given: object) -> Plant:
     if isinstance(given, str):
         return Plant.load(given)
     raise InvalidInputError("plant", given, "a name, a file or a Plant")
+
+
+def rig_env(env: gym.Env[Any, Any]) -> RigEnv[Any]:
+    """The environment of this room under any wrappers.
+
+    Raises:
+        InvalidInputError: an environment of another kind.
+    """
+    inner = env.unwrapped
+    if not isinstance(inner, RigEnv):
+        raise InvalidInputError("environment", type(inner).__name__, "one of ves_twin.envs")
+    return inner

@@ -14,6 +14,7 @@ from time import perf_counter
 import numpy as np
 import pyarrow.parquet as pq
 
+from ves_twin.control.controller import PlatformController
 from ves_twin.effects.registry import effects_table
 from ves_twin.errors import FileAccessError
 from ves_twin.plant.plant import Plant
@@ -100,17 +101,19 @@ def record(
     plant: Plant | None = None,
     seed: int | None = None,
     progress: Progress | None = None,
+    controller: type[PlatformController] | None = None,
 ) -> Summary:
     """Run a scenario and write `recording.parquet` and `summary.json` into a folder.
 
     While it runs the rows go to `recording.arrows`; whatever ends the run, they are kept.
+    A `controller` decides the platform's pose in place of the one that the mode names.
 
     Raises:
         FileAccessError: the folder cannot be written.
         VesTwinError: the scenario cannot be built, or a controller failed.
     """
     begin = perf_counter()
-    sim = Simulator(plant, scenario, seed, sink=NoSink())
+    sim = Simulator(plant, scenario, seed, sink=NoSink(), controller=controller)
     make_folder(folder)
     for name in (SUMMARY_NAME, "run.rrd"):  # of an earlier run, which this one replaces
         (folder / name).unlink(missing_ok=True)

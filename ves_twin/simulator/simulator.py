@@ -110,6 +110,9 @@ class Simulator:
             self.plant.fidelity.absent_signals,
         )
         self._settle()
+        if controller is not None:
+            mode = f"in place of mode '{scenario.platform.mode}'"
+            self.events.append(Event(0.0, "controller", f"{controller.__qualname__} {mode}"))
 
     @property
     def model(self) -> mujoco.MjModel:

@@ -1,0 +1,73 @@
+"""evaluate: score a policy on the rigs of a set."""
+
+from __future__ import annotations
+
+import argparse
+import json
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from ves_twin.envs.evaluation import Evaluation
+
+SUMMARY = "score a policy in an environment, one episode a seed"
+
+MOST_SEEDS = 100_000
+"""More than anybody waits for."""
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Options of the command."""
+    parser.add_argument("environment", metavar="ENV", help="for instance VibrationDamping-v0")
+    parser.add_argument(
+        "--policy",
+        required=True,
+        metavar="FILE:Class",
+        help="a class of a Python file, which is run, or the name of a baseline",
+    )
+    parser.add_argument("--seeds", type=int, default=20, metavar="N", help="seeds 0 to N - 1 (20)")
+    parser.add_argument(
+        "--rigs", default="test-v0", metavar="SET", help="test-v0, train-v0, none, or a TOML file"
+    )
+    parser.add_argument("--plant", metavar="FILE", help="another plant: a name or a TOML file")
+    parser.add_argument("--workers", type=int, default=1, metavar="N", help="processes (1)")
+    parser.add_argument("--json", action="store_true", help="one JSON object on stdout")
+
+
+def execute(arguments: argparse.Namespace) -> int:
+    """Run the episodes and print their figures."""
+    from ves_twin.cli.progress import RunProgress
+    from ves_twin.envs.evaluation import Trial, evaluate
+    from ves_twin.errors import InvalidInputError
+
+    if not 1 <= arguments.seeds <= MOST_SEEDS:
+        raise InvalidInputError("--seeds", arguments.seeds, f"1 to {MOST_SEEDS}")
+    if not 1 <= arguments.workers <= 256:
+        raise InvalidInputError("--workers", arguments.workers, "1 to 256")
+    trial = Trial(arguments.environment, arguments.policy, arguments.rigs, arguments.plant)
+    with RunProgress(arguments.environment, 1.0, unit="share") as progress:
+        found = evaluate(
+            trial,
+            range(arguments.seeds),
+            arguments.workers,
+            lambda share: progress.share(share, arguments.policy),
+        )
+    if arguments.json:
+        print(json.dumps(found.to_dict(), indent=2))
+    else:
+        print(_text(found))
+    return 0
+
+
+def _text(found: Evaluation) -> str:
+    trial, count = found.trial, len(found.episodes)
+    ends = ", ".join(f"{number} {name}" for name, number in found.outcomes.items())
+    lines = [
+        f"{trial.environment}: {trial.policy} on rigs {trial.rigs}, {count} seeds",
+        f"  outcomes  {ends}",
+        "",
+        f"  {'':<18}{'interquartile mean':>20}{'95 % interval':>26}",
+    ]
+    for name, figure in found.figures.items():
+        interval = f"{figure.low:.4g} to {figure.high:.4g}"
+        lines.append(f"  {name:<18}{figure.iqm:>20.4g}{interval:>26}")
+    return "\n".join(lines)
