@@ -11,6 +11,7 @@ import numpy as np
 from ves_twin.control.belief import Belief
 from ves_twin.control.readings import Readings
 from ves_twin.gravity_model.learned import LearnedGravity
+from ves_twin.gravity_model.quick_gravity import QuickGravity
 from ves_twin.kinematics.wrenches import top_to_sensor
 from ves_twin.types import FloatArray
 
@@ -99,15 +100,15 @@ class ModelCompensation(GravityCompensation):
     """
 
     def __init__(self, belief: Belief) -> None:
-        self._geometry, self._model = belief.geometry, belief.gravity
+        self._geometry, self._model = belief.geometry, QuickGravity.of(belief.gravity)
         self._position = np.array(belief.sensor_position)
         self._pose = np.zeros(6)
 
     def wrench(self, time: float, readings: Readings) -> FloatArray:
         """Predicted gravity wrench at the measured joints and platform pose."""
         self._pose = self._geometry.pose(readings.leg_length, self._pose)
-        in_top = self._model.wrench_in_top(readings.arm_q[None, :], self._pose[None, 3:])
-        return np.asarray(top_to_sensor(in_top[0], self._position))
+        in_top = self._model.wrench_in_top(readings.arm_q, self._pose[3:])
+        return np.asarray(top_to_sensor(in_top, self._position))
 
     def snapshot(self) -> object:
         """The pose from which the next solution starts (6,)."""

@@ -14,7 +14,6 @@ from ves_twin.envs.priors import arm_prior
 from ves_twin.envs.rig_env import CYCLES, RigEnv
 from ves_twin.envs.true_state import true_state
 from ves_twin.errors import InvalidInputError
-from ves_twin.planning.flexible_base import strain_energy
 from ves_twin.plant.plant import Plant
 from ves_twin.scenario.schema import Scenario
 from ves_twin.simulator.board import Board
@@ -113,7 +112,8 @@ class ArmEnv(RigEnv[CommandedArm], abc.ABC):
         return self._energy
 
     def _strain(self, pose: FloatArray) -> float:
-        return float(strain_energy(self._base, pose - self._home))
+        y = pose - self._home
+        return float(0.5 * (y @ self._base.stiffness @ y))
 
     def readings(self, board: Board) -> dict[str, FloatArray]:
         """Measurements and set-points."""

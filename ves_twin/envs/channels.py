@@ -84,7 +84,9 @@ class Channels:
         row = np.empty(self.width)
         for name, columns in self.slices.items():
             row[columns] = values[name]
-        return np.clip(row, self.low, self.high, out=row)
+        np.maximum(row, self.low, out=row)
+        np.minimum(row, self.high, out=row)
+        return row
 
     def split(self, vector: FloatArray) -> dict[str, FloatArray]:
         """Values by name from a vector (n,)."""

@@ -6,6 +6,7 @@ from typing import final
 
 import numpy as np
 
+from ves_twin.compiled import compiled
 from ves_twin.control.motion import JointMotion
 from ves_twin.types import FloatArray
 
@@ -35,7 +36,7 @@ class CommandedArm(JointMotion):
     def hold(self) -> None:
         """Stand at the start angles, whatever was commanded before."""
         self._begin, self._span = np.inf, 1.0
-        self._from, self._rate, self._next = self._start, np.zeros(3), np.zeros(3)
+        self._from, self._rate, self._next = self._start.copy(), np.zeros(3), np.zeros(3)
 
     def command(self, rate: FloatArray, begin: float, span: float) -> None:
         """Rates to reach at the end of a step.
@@ -45,17 +46,39 @@ class CommandedArm(JointMotion):
             begin: when the step's set-points begin [s].
             span: length of the step [s].
         """
-        place = self.q(begin)
-        held = ((place <= self._low) & (self._next < 0)) | (
-            (place >= self._high) & (self._next > 0)
-        )
-        self._from, self._rate = place, np.where(held, 0.0, self._next)
         reach = self._acceleration * span
-        self._next = self._rate + np.clip(rate - self._rate, -reach, reach)
-        self._begin, self._span = begin, span
+        place = self.q(begin)
+        _turn(place, self._rate, self._next, rate, self._low, self._high, reach)
+        self._from, self._begin, self._span = place, begin, span
 
     def q(self, time: float) -> FloatArray:
         """Joint angles [rad] (3,) at a time [s]."""
         s = min(max(time - self._begin, 0.0), self._span)
-        bend = (self._next - self._rate) * (s * s / (2.0 * self._span))
-        return np.clip(self._from + self._rate * s + bend, self._low, self._high)
+        bounds = (self._low, self._high)
+        return np.asarray(_place(self._from, self._rate, self._next, *bounds, s, self._span))
+
+
+@compiled
+def _place(
+    start: FloatArray, rate: FloatArray, following: FloatArray, low: FloatArray, high: FloatArray,
+    s: float, span: float,
+) -> FloatArray:  # fmt: skip
+    q = np.empty(3)
+    for j in range(3):
+        bend = (following[j] - rate[j]) * s * s / (2.0 * span)
+        q[j] = min(max(start[j] + rate[j] * s + bend, low[j]), high[j])
+    return q
+
+
+@compiled
+def _turn(
+    place: FloatArray, rate: FloatArray, following: FloatArray, wanted: FloatArray,
+    low: FloatArray, high: FloatArray, reach: float,
+) -> None:  # fmt: skip
+    """Begin with the rate reached, none out of a bound; end as near the wanted one as can be."""
+    for j in range(3):
+        now = following[j]
+        if (place[j] <= low[j] and now < 0.0) or (place[j] >= high[j] and now > 0.0):
+            now = 0.0
+        rate[j] = now
+        following[j] = now + min(max(wanted[j] - now, -reach), reach)

@@ -49,7 +49,8 @@ class CommandedLegs(PlatformController):
         """Offsets [m] (6,) to reach at the end of a step that begins at a time [s]."""
         self._from = self._offsets(begin)
         self._begin, self._span = begin, span
-        self._to = self._from + np.clip(offsets - self._from, -SLEW * span, SLEW * span)
+        reach = SLEW * span
+        self._to = self._from + np.minimum(np.maximum(offsets - self._from, -reach), reach)
 
     def update(self, time: float, readings: Readings) -> FloatArray:
         """The pose at which the legs have the commanded lengths [m, rad] (6,)."""

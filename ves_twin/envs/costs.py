@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ves_twin.compiled import compiled
 from ves_twin.types import FloatArray
 
 FREE_SHARE = 0.9
@@ -59,24 +60,46 @@ class Costs:
 
     def begin(self, force: FloatArray) -> None:
         """Start at rest under a force [N] (3,)."""
-        self._force, self._first, self._second = force.copy(), np.zeros(3), np.zeros(3)
-        self._square = 0.0
+        self._filter = np.zeros((4, 3))
+        self._filter[0] = force
         self.used = np.zeros(3)
 
     def update(self, leg_length: FloatArray, wrench: FloatArray) -> None:
         """Take the readings of a cycle: leg lengths [m] (6,), wrench in sensor axes (6,)."""
-        force = wrench[:3]
-        first = self._keep * (self._first + force - self._force)
-        self._second = self._keep * (self._second + first - self._first)
-        self._force, self._first = force.copy(), first
-        power = float(self._second @ self._second)
-        self._square = self._fade * self._square + (1.0 - self._fade) * power
-        away = np.abs(leg_length - self._limits.home_lengths)
-        self.used[0] = away.max() / self._limits.travel
-        self.used[1] = (np.abs(wrench) / self._limits.wrench).max()
-        self.used[2] = np.sqrt(self._square) / VIBRATION_LIMIT
+        limits = self._limits
+        _update(
+            self.used, self._filter, leg_length, wrench, limits.home_lengths, limits.travel,
+            limits.wrench, self._keep, self._fade,
+        )  # fmt: skip
 
     def costs(self) -> dict[str, float]:
         """Cost by name: 0 up to FREE_SHARE of a limit, 1 at the limit."""
         beyond = np.maximum(self.used - FREE_SHARE, 0.0) / (1.0 - FREE_SHARE)
         return {name: float(cost) for name, cost in zip(self.NAMES, beyond, strict=True)}
+
+
+@compiled
+def _update(
+    used: FloatArray,
+    state: FloatArray,
+    leg_length: FloatArray,
+    wrench: FloatArray,
+    home_lengths: FloatArray,
+    travel: float,
+    limit: FloatArray,
+    keep: float,
+    fade: float,
+) -> None:
+    """Rows of the state: last force, both sections of the high-pass, mean square of the last."""
+    used[0] = used[1] = 0.0
+    for i in range(6):
+        used[0] = max(used[0], abs(leg_length[i] - home_lengths[i]) / travel)
+        used[1] = max(used[1], abs(wrench[i]) / limit[i])
+    power = 0.0
+    for k in range(3):
+        first = keep * (state[1, k] + wrench[k] - state[0, k])
+        state[2, k] = keep * (state[2, k] + first - state[1, k])
+        state[0, k], state[1, k] = wrench[k], first
+        power += state[2, k] ** 2
+    state[3, 0] = fade * state[3, 0] + (1.0 - fade) * power
+    used[2] = np.sqrt(state[3, 0]) / VIBRATION_LIMIT

@@ -16,8 +16,8 @@ from ves_twin.envs.policy import Policy
 from ves_twin.envs.rig_env import rig_env
 from ves_twin.envs.wrappers import RandomRigs
 from ves_twin.errors import InvalidInputError, UnknownNameError
-from ves_twin.procedures.workers import carry_out_jobs
 from ves_twin.types import FloatArray
+from ves_twin.workers import Workers
 
 RESAMPLES = 2000
 """Of the bootstrap; its intervals then repeat to a few per cent of their width."""
@@ -103,7 +103,11 @@ def evaluate(
     environment_id(trial.environment)
     policy_class(trial.policy)
     jobs = [(trial, seed) for seed in seeds]
-    episodes = carry_out_jobs(_episode, jobs, workers, progress)
+    episodes = []
+    with Workers(workers) as pool:
+        for episode in pool.map(_episode, jobs):
+            episodes.append(episode)
+            progress(len(episodes) / len(jobs))
     names = list(episodes[0].metrics)
     columns = {name: np.array([e.metrics[name] for e in episodes]) for name in names}
     columns["cost"] = np.array([e.cost for e in episodes])

@@ -219,7 +219,7 @@ class RigEnv(gym.Env[FloatArray, FloatArray], abc.ABC, Generic[Hand]):
         if given.shape != self.action_space.shape or not np.all(np.isfinite(given)):
             what = f"{self.actions.width} finite numbers from -1 to 1"
             raise InvalidInputError("action", np.asarray(action).tolist(), what)
-        inside = np.clip(given, -1.0, 1.0)
+        inside = np.minimum(np.maximum(given, -1.0), 1.0)
         sim = self._rig.sim
         self.command(inside * self.actions.high, self._cycle * CYCLES)
         lost = 0.0
@@ -240,7 +240,7 @@ class RigEnv(gym.Env[FloatArray, FloatArray], abc.ABC, Generic[Hand]):
         self._return -= lost
         if self.render_mode == "human":
             self.render()
-        info = self._info(clipped=bool(np.any(inside != given)))
+        info = self._info(clipped=not np.array_equal(inside, given))
         if self._over:
             info["metrics"] = {"return": self._return, **self.metrics()}
         return self._observe(), -lost, terminated, truncated, info
@@ -296,7 +296,7 @@ class RigEnv(gym.Env[FloatArray, FloatArray], abc.ABC, Generic[Hand]):
 
     def _observe(self) -> FloatArray:
         board = self.sim.rig.board
-        if np.all(np.isfinite(board["leg.length"])):
+        if self.sim.outcome is not Outcome.DIVERGED:
             self._board_pose = self._geometry.pose(board["leg.length"], self._board_pose)
         return self.observations.vector(self.readings(board))
 
