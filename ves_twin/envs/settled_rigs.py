@@ -64,7 +64,7 @@ class SettledRigs(Generic[Hand]):
             InvalidInputError: the rig could not stand.
         """
         if sim.outcome is not None:
-            came = f"{sim.outcome.value} while settling ({sim.events[-1].message})"
+            came = f"{sim.outcome.value} while settling ({sim.outcome.advice})"
             raise InvalidInputError(f"plant {plant.name}", came, "a rig that stands at its start")
         sim.recorder.drop_references()
         rig = SettledRig(sim, hand, sim.snapshot())

@@ -11,10 +11,10 @@ from ves_twin.envs.policy import Briefing, Policy
 from ves_twin.errors import InvalidInputError
 from ves_twin.types import FloatArray
 
-EFFORT = 0.3
+EFFORT = 0.1
 """Loss of a share of 1 over a second [J]; tuned on train-v0."""
 
-RETURN = 2.0
+RETURN = 0.5
 """Loss of a set-point one radian from its start over a second [J]; keeps the arm where it was."""
 
 PUSH = 5.0

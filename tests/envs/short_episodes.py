@@ -1,0 +1,22 @@
+"""Environments on the fast rig with episodes of a second."""
+
+from __future__ import annotations
+
+import gymnasium as gym
+from gymnasium.envs.registration import load_env_creator
+
+from ves_twin.envs import ENVIRONMENTS
+from ves_twin.scenario.schema import Scenario
+
+SHORT = {"run.duration": 1.0, "run.settle": 0.5}
+
+
+def short(name: str, **changes: object) -> Scenario:
+    """A scenario of an environment, one second long."""
+    return Scenario.load(name, {**SHORT, **changes})
+
+
+def make_short(identity: str, plant: str = "ves2_fast") -> gym.Env:
+    """An environment by its id."""
+    name = load_env_creator(ENVIRONMENTS[identity]).SCENARIO
+    return gym.make(identity, plant=plant, scenario=short(name))
