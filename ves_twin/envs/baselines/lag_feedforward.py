@@ -11,7 +11,7 @@ from ves_twin.errors import InvalidInputError
 from ves_twin.types import FloatArray
 
 DELAY = 0.005
-"""Delay beside the leg loop's own lag [s]: the valve's 4 ms and a tick or two; tuned on train-v0."""
+"""Delay beside the leg loop's own lag [s]: the valve's 4 ms and more; tuned on train-v0."""
 
 PROPORTIONAL, INTEGRAL = 0.5, 5.0
 """Offset per length error [1], and its rate [1/s]; tuned on train-v0."""
