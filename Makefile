@@ -45,6 +45,7 @@ bench: .venv/.dev
 	$(BIN)/python benchmarks/loop_speed.py
 	$(BIN)/python benchmarks/memory.py
 	$(BIN)/python benchmarks/measured.py
+	$(BIN)/python benchmarks/environments.py
 
 picture: .venv/.dev
 	$(BIN)/python benchmarks/picture.py docs/run.png

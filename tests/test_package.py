@@ -24,6 +24,17 @@ def test_unknown_public_name_is_an_attribute_error():
         ves_twin.simulat  # noqa: B018
 
 
+@pytest.mark.parametrize(
+    "code", ["import ves_twin", "import ves_twin.cli.main as m; m.build_parser()"]
+)
+def test_package_and_help_load_nothing_heavy(code):
+    """What keeps `import ves_twin` and `ves-twin --help` quick."""
+    heavy = ("numpy", "scipy", "mujoco", "gymnasium", "pydantic", "numba", "matplotlib", "rerun")
+    check = f"import sys; {code}; print([m for m in {heavy!r} if m in sys.modules])"
+    done = subprocess.run([sys.executable, "-c", check], check=True, capture_output=True, text=True)
+    assert done.stdout.strip() == "[]"
+
+
 @pytest.mark.slow
 def test_wheel_carries_models_and_scenarios_and_works_from_another_folder(tmp_path):
     build = [sys.executable, "-m", "pip", "wheel", "--quiet", "--no-deps", "--no-build-isolation"]

@@ -16,7 +16,7 @@ def short(name: str, **changes: object) -> Scenario:
     return Scenario.load(name, {**SHORT, **changes})
 
 
-def make_short(identity: str, plant: str = "ves2_fast") -> gym.Env:
+def make_short(identity: str, plant: str = "ves2_fast", **options: object) -> gym.Env:
     """An environment by its id."""
     name = load_env_creator(ENVIRONMENTS[identity]).SCENARIO
-    return gym.make(identity, plant=plant, scenario=short(name))
+    return gym.make(identity, plant=plant, scenario=short(name), **options)

@@ -89,6 +89,7 @@ class RigEnv(gym.Env[FloatArray, FloatArray], abc.ABC, Generic[Hand]):
         self.sink: Sink | None = None
         self._rigs: SettledRigs[Hand] = SettledRigs()
         self._rig: SettledRig[Hand] | None = None
+        self._over = True
         self._picture = Picture(render_mode == "human")
 
     @abc.abstractmethod
@@ -320,8 +321,6 @@ class RigEnv(gym.Env[FloatArray, FloatArray], abc.ABC, Generic[Hand]):
         if self._rig is None:
             raise InvalidInputError("environment", "no episode", "reset before anything else")
         return self._rig
-
-    _over = True
 
 
 def _scenario(given: object) -> Scenario:
