@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import argparse
 import json
+from collections.abc import Mapping
+from dataclasses import asdict
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from ves_twin.envs.evaluation import Evaluation
+    from ves_twin.envs.evaluation import Evaluation, Figure
 
 SUMMARY = "score a policy in an environment, one episode a seed"
 
@@ -28,6 +30,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--rigs", default="test-v0", metavar="SET", help="test-v0, train-v0, none, or a TOML file"
     )
+    parser.add_argument(
+        "--against", metavar="FILE:Class", help="another policy; differences are seed by seed"
+    )
     parser.add_argument("--plant", metavar="FILE", help="another plant: a name or a TOML file")
     parser.add_argument("--workers", type=int, default=1, metavar="N", help="processes (1)")
     parser.add_argument("--json", action="store_true", help="one JSON object on stdout")
@@ -36,25 +41,36 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def execute(arguments: argparse.Namespace) -> int:
     """Run the episodes and print their figures."""
     from ves_twin.cli.progress import RunProgress
-    from ves_twin.envs.evaluation import Trial, evaluate
+    from ves_twin.envs.evaluation import Trial, evaluate, paired
     from ves_twin.errors import InvalidInputError
 
     if not 1 <= arguments.seeds <= MOST_SEEDS:
         raise InvalidInputError("--seeds", arguments.seeds, f"1 to {MOST_SEEDS}")
     if not 1 <= arguments.workers <= 256:
         raise InvalidInputError("--workers", arguments.workers, "1 to 256")
-    trial = Trial(arguments.environment, arguments.policy, arguments.rigs, arguments.plant)
+    names = [arguments.policy, *([arguments.against] if arguments.against else [])]
+    trials = [Trial(arguments.environment, name, arguments.rigs, arguments.plant) for name in names]
+    found: list[Evaluation] = []
     with RunProgress(arguments.environment, 1.0, unit="share") as progress:
-        found = evaluate(
-            trial,
-            range(arguments.seeds),
-            arguments.workers,
-            lambda share: progress.share(share, arguments.policy),
-        )
+        for trial in trials:
+            done = len(found)
+
+            def show(share: float, done: int = done, name: str = trial.policy) -> None:
+                progress.share((done + share) / len(trials), name)
+
+            found.append(evaluate(trial, range(arguments.seeds), arguments.workers, show))
+    differences = paired(found[0].episodes, found[1].episodes) if len(found) > 1 else {}
     if arguments.json:
-        print(json.dumps(found.to_dict(), indent=2))
+        content = found[0].to_dict()
+        if differences:
+            figures = {name: asdict(figure) for name, figure in differences.items()}
+            content["against"] = {**found[1].to_dict(), "differences": figures}
+        print(json.dumps(content, indent=2))
     else:
-        print(_text(found))
+        print(_text(found[0]))
+        if differences:
+            print(f"\n  less {arguments.against}, seed by seed")
+            print("\n".join(_rows(differences)))
     return 0
 
 
@@ -67,7 +83,12 @@ def _text(found: Evaluation) -> str:
         "",
         f"  {'':<18}{'interquartile mean':>20}{'95 % interval':>26}",
     ]
-    for name, figure in found.figures.items():
+    return "\n".join([*lines, *_rows(found.figures)])
+
+
+def _rows(figures: Mapping[str, Figure]) -> list[str]:
+    rows = []
+    for name, figure in figures.items():
         interval = f"{figure.low:.4g} to {figure.high:.4g}"
-        lines.append(f"  {name:<18}{figure.iqm:>20.4g}{interval:>26}")
-    return "\n".join(lines)
+        rows.append(f"  {name:<18}{figure.iqm:>20.4g}{interval:>26}")
+    return rows

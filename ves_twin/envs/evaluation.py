@@ -116,6 +116,28 @@ def evaluate(
     return Evaluation(trial, tuple(episodes), figures, outcomes)
 
 
+def paired(one: Sequence[Episode], other: Sequence[Episode]) -> dict[str, Figure]:
+    """Interquartile means of the differences of two policies' figures, seed by seed.
+
+    A seed gives both the same rig, goal and noise, so that what these do to a score drops out.
+
+    Args:
+        one: episodes of a policy.
+        other: episodes of what it is held against, with the same seeds.
+
+    Raises:
+        InvalidInputError: other seeds.
+    """
+    if [e.seed for e in one] != [e.seed for e in other]:
+        raise InvalidInputError("paired episodes", "other seeds", "the same seeds")
+    return {
+        name: interquartile_mean(
+            np.array([a.metrics[name] - b.metrics[name] for a, b in zip(one, other, strict=True)])
+        )
+        for name in one[0].metrics
+    }
+
+
 def environment_id(name: str) -> str:
     """The whole id of an environment given with or without its namespace.
 
