@@ -53,6 +53,8 @@ def general_content() -> dict[str, object]:
     from ves_twin.compiled import cache_folder
     from ves_twin.control.registry import GRAVITY_COMPENSATIONS, PLATFORM_CONTROLLERS
     from ves_twin.effects.registry import EFFECTS
+    from ves_twin.envs import ENVIRONMENTS
+    from ves_twin.envs.baselines import BASELINES
     from ves_twin.plant.plant import Plant
     from ves_twin.resources import resource_folder
     from ves_twin.scenario.load import scenario_questions
@@ -73,6 +75,9 @@ def general_content() -> dict[str, object]:
             for name, origin in registry.plugins().items()
         },
         "scenarios": list(scenario_questions()),
+        "environments": list(ENVIRONMENTS),
+        "sets of rigs": [p.stem for p in sorted((models / "rigs").glob("*.toml"))],
+        "baseline policies": list(BASELINES),
         "signals": {
             s.name: f"{s.width} {', '.join(dict.fromkeys(s.units))}; {s.role.value}; {s.meaning}"
             for s in SIGNALS.values()

@@ -15,8 +15,8 @@ from ves_twin.errors import VesTwinError
 WIDTH, HEIGHT = 640, 480
 """Pixels; MuJoCo's own off-screen buffer."""
 
-VIEW = (0.0, 0.0, 1.05), 3.6, 128.0, -14.0
-"""Point looked at [m], distance [m], azimuth and elevation [deg]: the picture of the README."""
+VIEW = (0.0, 0.0, 1.25), 4.4, 128.0, -14.0
+"""Point looked at [m], distance [m], azimuth and elevation [deg]: an arm straight up fits."""
 
 
 class NoPictureError(VesTwinError):

@@ -1,0 +1,42 @@
+"""The page on environments shows the tables that the code has, and a policy that works."""
+
+import textwrap
+from pathlib import Path
+
+import gymnasium as gym
+import pytest
+
+from ves_twin.envs.evaluation import Trial, evaluate
+
+PAGE = (Path(__file__).parents[2] / "docs" / "environments.md").read_text(encoding="utf-8")
+
+
+@pytest.mark.parametrize("name", ["VibrationFreeReach", "PlatformTracking"])
+def test_the_page_has_the_tables_of_the_environments(name):
+    u = gym.make(f"VesTwin/{name}-v0").unwrapped
+    assert u.observations.table() in PAGE
+    assert u.actions.table() in PAGE
+
+
+def test_damping_is_reach_without_a_goal():
+    damping, reach = (
+        gym.make(f"VesTwin/{name}-v0").unwrapped
+        for name in ("VibrationDamping", "VibrationFreeReach")
+    )
+    assert set(reach.observations.slices) - set(damping.observations.slices) == {"goal"}
+    assert damping.actions.table() == reach.actions.table()
+
+
+@pytest.mark.slow
+def test_the_policy_of_the_page_runs_and_damps(tmp_path):
+    start = PAGE.index("    # my_policy.py")
+    code = textwrap.dedent(PAGE[start : PAGE.index("    ves-twin evaluate", start)])
+    path = tmp_path / "my_policy.py"
+    path.write_text(code)
+    scores = [
+        evaluate(Trial("VibrationDamping-v0", name, "none", "ves2_fast"), range(3))
+        .figures["return"]
+        .iqm
+        for name in (f"{path}:Brake", "still")
+    ]
+    assert scores[0] > scores[1]
