@@ -110,10 +110,10 @@ class RigForward:
         Gain and cross-talk of the sensor are laid over a run without them, which is kept: most
         commissioning tolerances are of that kind, and then cost no run of their own.
         """
-        plant, offsets = with_departures(self.plant, values)
+        plant, offsets = with_departures(self._smooth, values)
         hardware = plant
         if self.scenario.gravity.file is None:  # else the reading is calibrated, too
-            hardware, _ = with_departures(self.plant, without_sensor_kinds(values))
+            hardware, _ = with_departures(self._smooth, without_sensor_kinds(values))
         rows = self._kept.run(hardware, programme, self._rates(refined)).copy()
         if hardware is not plant:
             at_rest = programme.drive["gravity.estimate"][0] * float(self.scenario.gravity.zero)
@@ -135,6 +135,13 @@ class RigForward:
         parameters = self.plant.parameters
         shapes = slow_modes(programme.time, parameters.number("sensor.wander_time"))
         return np.asarray(shapes @ weights * parameters.array("sensor.wander"))
+
+    @cached_property
+    def _smooth(self) -> Plant:
+        """The rig without counts: its noise hides them, and without noise legs hunt over one."""
+        counts = ("transducer.resolution", "sensor.resolution", "arm.encoder_resolution")
+        none = {name: 0.0 * self.plant.parameters.array(name) for name in counts}
+        return self.plant.with_values(none)
 
     def _rates(self, refined: bool) -> Scenario:
         if not refined:
