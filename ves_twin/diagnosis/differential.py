@@ -11,7 +11,7 @@ import numpy as np
 from ves_twin.diagnosis.forward import Channel, Forward, Hypothesis, Parameter, Programme
 from ves_twin.diagnosis.linearise import linearise
 from ves_twin.diagnosis.observe import Observed, observe
-from ves_twin.diagnosis.refine import Evidence, bare_residual, refine
+from ves_twin.diagnosis.refine import Evidence, refine
 from ves_twin.diagnosis.runs import Runs
 from ves_twin.diagnosis.whitening import Whitening
 from ves_twin.errors import InvalidInputError
@@ -48,7 +48,8 @@ def differential(
 
     A rig has structure that its model lacks: ripple, floor, play. A recording of the same
     programme, made while the rig was in order, shows it: r = y_b - f(nu_b). Of y - r about f(nu_b)
-    stays what has changed since, and noise of 1 + 1/n the variance.
+    stays what has changed since, and noise of 1 + 1/n the variance. What is drawn anew for each
+    recording, as a zero, is not tuned; its difference has 1 + 1/n the variance, too.
 
     Args:
         seen: the record that is diagnosed.
@@ -62,10 +63,11 @@ def differential(
     runs = seen.runs
     rows, count = _usual(seen, baseline)
     fit = refine(Evidence(runs, rows, whitening), (), runs.origin, linearise(runs, runs.origin), 1)
-    tuned = again(Tuned.to(runs, fit.shift))
-    usual = bare_residual(Evidence(runs, rows, whitening), fit)
-    clean = replace(tuned, measured=tuned.measured - usual)
-    return Differential(clean, float(np.sqrt(1.0 + 1.0 / count)))
+    noise = float(np.sqrt(1.0 + 1.0 / count))
+    tuned = again(Tuned.to(runs, fit.shift, noise))
+    step = np.float32(fit.step_share) * fit.local.columns[-1]
+    usual = rows - tuned.runs.one(tuned.runs.origin) - step
+    return Differential(replace(tuned, measured=tuned.measured - usual), noise)
 
 
 @dataclass(frozen=True)
@@ -81,15 +83,17 @@ class Tuned:
     parameters: tuple[Parameter, ...]
 
     @staticmethod
-    def to(runs: Runs, shift: FloatArray) -> Tuned:
-        """To departures fitted with a forward's runs."""
+    def to(runs: Runs, shift: FloatArray, noise: float) -> Tuned:
+        """To departures fitted with a forward's runs; `noise` widens what each recording draws."""
         moved = {
             axis.parameter.name: float(shift[i])
             for i, axis in enumerate(runs.coordinates)
             if axis.recording < 0
         }
         parameters = tuple(
-            replace(p, nominal=p.nominal + moved[p.name], sd=KEPT * p.sd) if p.name in moved else p
+            replace(p, nominal=p.nominal + moved[p.name], sd=KEPT * p.sd)
+            if p.name in moved
+            else replace(p, sd=noise * p.sd)
             for p in runs.forward.parameters
         )
         return Tuned(runs.forward, parameters)
