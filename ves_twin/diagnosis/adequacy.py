@@ -65,7 +65,7 @@ def cells(whitening: Whitening, z: FloatArray) -> list[Cell]:
         last = (rows - 1) // 2  # the line at the Nyquist rate has half the freedom
         edges = np.unique(np.geomspace(2, last + 1, BANDS).astype(int))
         edges = np.concatenate([[1], edges])
-        stretches = np.linspace(0, rows, BLOCKS + 1).astype(int)
+        stretches = np.unique(np.linspace(0, rows, BLOCKS + 1).astype(int))
         for c in range(block.shape[1]):
             for a, b in pairwise(edges):
                 energy = float(np.sum(spectrum[a:b, c]) / share[c])

@@ -49,6 +49,7 @@ class Findings:
         scale: of the tolerances, None if not measured.
         found: the explanation; None if nothing is wrong or nothing fits.
         gain: on held-out recordings.
+        forecast: ahead in time, of causes that belong to a stretch of it.
         proposals: next programmes.
         apart: what each recording says alone.
     """
@@ -61,6 +62,7 @@ class Findings:
     scale: float | None
     found: Explanation | None = None
     gain: Gain | None = None
+    forecast: Gain | None = None
     proposals: tuple[Proposal, ...] = ()
     apart: tuple[Alone, ...] = ()
 
@@ -94,6 +96,8 @@ def compose(
         alternatives=alternatives,
         residuals=_residuals(exhibit),
         gain=findings.gain,
+        forecast=findings.forecast,
+        tuned=_tuned(findings),
         leftover=None if kind is Kind.NOTHING else _leftover(findings),
         suspect=suspect,
         rivals=rivals_of(first, found),
@@ -156,6 +160,27 @@ def _cause(
         firm=absent or max(sigmas) >= findings.kappa,
         sigmas=max(sigmas, default=None),
     )
+
+
+def _tuned(findings: Findings) -> dict[str, Estimate]:
+    """Commissioning numbers of the plant at the best fit, with what is known of them then."""
+    fit = findings.found.best if findings.found else findings.first.commissioning
+    if fit is None:
+        return {}
+    runs, z = findings.seen.runs, float(norm.isf(0.5 * (1.0 - findings.settings.confidence)))
+    free, estimates = set(fit.active[: len(fit.sizes)]), {}
+    for n, i in enumerate(fit.active):
+        parameter = runs.coordinates[int(i)].parameter
+        if i in free or runs.coordinates[int(i)].recording != -1:
+            continue
+        value, reach = (
+            parameter.nominal + float(fit.shift[i]),
+            z * float(np.sqrt(fit.posterior[n, n])),
+        )
+        estimates[parameter.name] = Estimate(
+            value, value - reach, value + reach, parameter.unit, parameter.nominal
+        )
+    return estimates
 
 
 def _residuals(exhibit: Exhibit) -> dict[str, ChannelError]:

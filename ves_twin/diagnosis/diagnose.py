@@ -9,10 +9,10 @@ from ves_twin.diagnosis.assess import assess, pull_limit
 from ves_twin.diagnosis.bank import Bank, build_bank, cached_bank
 from ves_twin.diagnosis.compose import Findings, compose
 from ves_twin.diagnosis.differential import differential
+from ves_twin.diagnosis.conclude import HeldOut, conclude, whitening_of
 from ves_twin.diagnosis.disagreement import Alone, disagreement
-from ves_twin.diagnosis.explain import Explanation, explain
+from ves_twin.diagnosis.explain import Desk, Explanation
 from ves_twin.diagnosis.forward import Forward, Programme
-from ves_twin.diagnosis.gain import Gain, held_out_gain
 from ves_twin.diagnosis.likeness import check_likeness
 from ves_twin.diagnosis.next_experiment import separations
 from ves_twin.diagnosis.null import cached_thresholds
@@ -21,13 +21,9 @@ from ves_twin.diagnosis.runs import Progress, Runs, silent
 from ves_twin.diagnosis.settings import Settings
 from ves_twin.diagnosis.tolerances import FEWEST, naming_limit, tolerance_scale
 from ves_twin.diagnosis.verdict import Basis, Kind, Proposal, Verdict
-from ves_twin.diagnosis.whitening import Whitening, whitening_declared, whitening_measured
 from ves_twin.errors import UnknownNameError
 from ves_twin.recording.recording import Recording
 from ves_twin.workers import Workers
-
-MOST = 0.5
-"""Share of the held-out excess that a part of the truth must take, its interval's lower end."""
 
 
 def diagnose(
@@ -84,10 +80,20 @@ def diagnose(
             whitening = _whitening(seen.runs, standstill)
             whitening = replace(whitening, level=whitening.level * changed.noise)
         bank = _bank(seen, chosen, progress).without(tuple(exclude))
+        seen = observe(forward, recordings, workers, chosen.rate)
+        whitening = whitening_of(seen.runs, standstill)
+
+        def build() -> Bank:
+            check_likeness(seen, seen.runs.one(seen.runs.origin))  # before minutes of simulation
+            return build_bank(seen.runs, progress=progress)
+
+        built = cached_bank(seen.runs, chosen.cache, build)
+        check_likeness(seen, built.base.prediction)
+        bank = built.without(tuple(exclude))
         limits = cached_thresholds(bank, whitening, chosen, progress)
         pull = pull_limit(bank, chosen.alpha)
         first = assess(seen.measured, bank, whitening, limits.effect, limits.misfit, pull)
-        scale = _scale(forward, commissioning, workers)
+        scale = _scale(forward, commissioning, workers, chosen.rate)
         basis = Basis(
             noise="declared" if standstill is None else "measured",
             tolerances="declared" if scale is None else "measured",
@@ -102,6 +108,10 @@ def diagnose(
         if found and held_out:
             gains = _gains(forward, held_out, standstill, found, chosen, workers)
         kind = _kind(found, gains)
+        desk = Desk(first, limits, chosen, progress)
+        held = HeldOut.of(forward, held_out, standstill, chosen, workers) if held_out else None
+        end = conclude(desk, forward, (*recordings, *held_out), held)
+        found, kind = end.found, end.kind
         proposals = _next(seen.runs, found, next_programmes) if kind is Kind.AMBIGUOUS else ()
         apart: tuple[Alone, ...] = ()
         if found is None or not found.adequate:
@@ -126,54 +136,24 @@ def _whitening(runs: Runs, standstill: Recording | None) -> Whitening:
 
 
 def _scale(forward: Forward, commissioning: Sequence[Recording], workers: Workers) -> float | None:
+        findings = replace(
+            findings,
+            found=found,
+            gain=end.gain,
+            forecast=end.forecast,
+            proposals=proposals,
+            apart=apart,
+        )
+        return compose(findings, kind, basis, tuple(exclude))
+
+
+def _scale(
+    forward: Forward, commissioning: Sequence[Recording], workers: Workers, rate: float
+) -> float | None:
     if len(commissioning) < FEWEST:
         return None
-    rigs = [observe(forward, [recording], workers) for recording in commissioning]
+    rigs = [observe(forward, [recording], workers, rate) for recording in commissioning]
     return tolerance_scale([(rig.runs, rig.measured) for rig in rigs])
-
-
-def _gains(
-    forward: Forward,
-    held_out: Sequence[Recording],
-    standstill: Recording | None,
-    found: Explanation,
-    settings: Settings,
-    workers: Workers,
-) -> list[Gain]:
-    """Gain of the best explanation; of its rivals too, where it leaves something unexplained."""
-    seen = observe(forward, held_out, workers)
-    whitening = _whitening(seen.runs, standstill)
-    rivals = [] if found.adequate else [fit for fit in found.fits if fit is not found.best]
-    return [
-        held_out_gain(
-            seen.runs,
-            seen.measured,
-            whitening,
-            found.commissioning,
-            fit,
-            settings.confidence,
-            settings.seed,
-        )
-        for fit in [found.best, *rivals]
-    ]
-
-
-def _kind(found: Explanation | None, gains: Sequence[Gain]) -> Kind:
-    if found is None:
-        return Kind.UNKNOWN
-    if not found.adequate:
-        return Kind.PARTIAL if _beats(found, gains) else Kind.UNKNOWN
-    if len(found.chosen) > 1:
-        return Kind.AMBIGUOUS
-    return Kind.NAMED if len(found.best.causes) == 1 else Kind.SEVERAL
-
-
-def _beats(found: Explanation, gains: Sequence[Gain]) -> bool:
-    """Whether one cause takes most of the held-out excess away, and no rival nearly as much."""
-    if len(found.chosen) > 1 or not gains or gains[0].low is None:
-        return False
-    rivals = [gain.share or 0.0 for gain in gains[1:]]
-    return gains[0].low > max([MOST, *rivals])
 
 
 def _next(

@@ -70,8 +70,8 @@ class Explanation:
 
 
 @dataclass(frozen=True)
-class _Desk:
-    """What both stages work with."""
+class Desk:
+    """What all stages work with."""
 
     first: Assessment
     thresholds: Thresholds
@@ -98,14 +98,14 @@ def explain(
     Returns:
         The best explanation, adequate or not; None if the library is empty or fits nothing.
     """
-    desk = _Desk(first, thresholds, settings, progress)
+    desk = Desk(first, thresholds, settings, progress)
     single = _singles(desk)
     if single is None or single.adequate or not pairs:
         return single
     return _pairs(desk, single) or single
 
 
-def _singles(desk: _Desk) -> Explanation | None:
+def _singles(desk: Desk) -> Explanation | None:
     first, settings = desk.first, desk.settings
     start = _start(first)
     jobs, owner = [], []
@@ -121,7 +121,7 @@ def _singles(desk: _Desk) -> Explanation | None:
         min((f for f, o in zip(tried, owner, strict=True) if o == n), key=lambda fit: fit.chi2)
         for n in sorted(set(owner))
     ]
-    found = _judge(desk, _settled(first.evidence, fits, desk))
+    found = judge(desk, _settled(first.evidence, fits, desk))
     judged = {fit.causes for fit in found.fits}
     return replace(found, hopeless=tuple(fit for fit in fits if fit.causes not in judged))
 
@@ -153,7 +153,7 @@ def _job(
     return _Job(evidence, causes, shift, local)
 
 
-def _refined(jobs: list[_Job], desk: _Desk, what: str) -> list[Fit]:
+def _refined(jobs: list[_Job], desk: Desk, what: str) -> list[Fit]:
     fits: list[Fit] = []
     for fit in desk.first.evidence.runs.workers.map(_Job.run, jobs):
         desk.progress(len(fits) / len(jobs), what)
@@ -168,7 +168,7 @@ def _start(first: Assessment) -> tuple[FloatArray, Linearisation]:
     return first.commissioning.shift, first.commissioning.local
 
 
-def _settled(evidence: Evidence, fits: list[Fit], desk: _Desk) -> list[Fit]:
+def _settled(evidence: Evidence, fits: list[Fit], desk: Desk) -> list[Fit]:
     """Fits by columns computed at the leader: what rivals share of the commissioning errors.
 
     Hopeless rivals stay as they are. Where a rival leads then, once more at its own.
@@ -196,7 +196,7 @@ def _starts(first: Assessment, suspect: Suspect) -> list[FloatArray]:
     return [suspect.sizes, other] if apart else [suspect.sizes]
 
 
-def _judge(desk: _Desk, fits: list[Fit]) -> Explanation:
+def judge(desk: Desk, fits: list[Fit]) -> Explanation:
     """Whiten by what the best fit leaves, fit again, weigh the rivals, test what is left."""
     first, settings = desk.first, desk.settings
     runs = first.evidence.runs
@@ -235,7 +235,7 @@ def _judge(desk: _Desk, fits: list[Fit]) -> Explanation:
     )
 
 
-def _commissioning(desk: _Desk, evidence: Evidence, leader: Fit) -> Fit:
+def _commissioning(desk: Desk, evidence: Evidence, leader: Fit) -> Fit:
     """The best fit without a cause, from the first look, and beside the leader.
 
     Beside the leader: what it moves, where commissioning may have moved it too, stays. Columns are
@@ -250,7 +250,7 @@ def _commissioning(desk: _Desk, evidence: Evidence, leader: Fit) -> Fit:
     return refine(evidence, (), best.shift, best.local, desk.settings.rounds)
 
 
-def _second(desk: _Desk, evidence: Evidence, fit: Fit, allowance: float) -> float:
+def _second(desk: Desk, evidence: Evidence, fit: Fit, allowance: float) -> float:
     """Best score of a further cause beside a fit: by the nominal bank, then by one at the fit."""
     bank = desk.first.screen.bank
     z = residual_about(evidence, fit, bank.base)
@@ -258,11 +258,11 @@ def _second(desk: _Desk, evidence: Evidence, fit: Fit, allowance: float) -> floa
     score = suspects[0].score if suspects else 0.0
     if score < desk.thresholds.effect + allowance:
         return score
-    return max((s.score for s in _suspects_at(desk, evidence, fit)[1]), default=0.0)
+    return max((s.score for s in suspects_at(desk, evidence, fit)[1]), default=0.0)
 
 
-def _suspects_at(
-    desk: _Desk, evidence: Evidence, fit: Fit
+def suspects_at(
+    desk: Desk, evidence: Evidence, fit: Fit
 ) -> tuple[tuple[Hypothesis, ...], list[Suspect]]:
     """Further causes as a bank linearised at a fit sees them."""
     bank = desk.first.screen.bank
@@ -272,7 +272,7 @@ def _suspects_at(
     return rest, Screen(local, evidence.whitening, fit.free).suspects(z)
 
 
-def _pairs(desk: _Desk, single: Explanation) -> Explanation | None:
+def _pairs(desk: Desk, single: Explanation) -> Explanation | None:
     """Pairs from the bank in closed form, and second causes beside the two best single ones."""
     first, library = desk.first, desk.first.screen.bank.hypotheses
     starts: dict[frozenset[str], tuple[tuple[Hypothesis, ...], list[FloatArray]]] = {}
@@ -281,7 +281,7 @@ def _pairs(desk: _Desk, single: Explanation) -> Explanation | None:
         starts.setdefault(frozenset(h.label for h in causes), (causes, sizes))
 
     for fit in single.fits[:2]:
-        rest, suspects = _suspects_at(desk, single.evidence, fit)
+        rest, suspects = suspects_at(desk, single.evidence, fit)
         for suspect in suspects[: PAIRS // 3]:
             if suspect.score > 0.0:
                 propose((*fit.causes, rest[suspect.hypothesis]), [fit.sizes, suspect.sizes])
@@ -297,7 +297,7 @@ def _pairs(desk: _Desk, single: Explanation) -> Explanation | None:
     if not jobs:
         return None
     fits = _refined(jobs, desk, "fitting pairs of causes")
-    double = _judge(desk, _settled(single.evidence, fits, desk))
+    double = judge(desk, _settled(single.evidence, fits, desk))
     fall = single.best.chi2 - double.best.chi2
     explained = max(double.commissioning.chi2 - double.best.chi2, 0.0)
     least = desk.thresholds.effect + desk.settings.model_error**2 * explained

@@ -11,8 +11,9 @@ from typing import Protocol
 
 import numpy as np
 
+from ves_twin.diagnosis.grid import RATE
 from ves_twin.errors import InvalidInputError, UnknownNameError
-from ves_twin.recording.recording import Recording
+from ves_twin.recording.recording import POSES, Recording
 from ves_twin.types import FloatArray
 
 LEVELS = 5
@@ -82,6 +83,8 @@ class Hypothesis:
         source: where sizes come from.
         linear: its trace is proportional to its size over the whole range, so that the column of
             its own tolerance, scaled, stands for every size in the bank.
+        transient: its sizes belong to the recorded stretch of time, as the shape of a drift does;
+            it may be filled in between recordings and says nothing of what comes later.
     """
 
     effect: str
@@ -92,6 +95,7 @@ class Hypothesis:
     signs: tuple[int, ...] = (-1, 1)
     source: str = ""
     linear: bool = False
+    transient: bool = False
 
     @property
     def label(self) -> str:
@@ -102,7 +106,8 @@ class Hypothesis:
         """Finite sizes for the bank (k, parameters), never all zero.
 
         Geometric from twice the smallest to 0.8 of the largest: the ends of the range are reached
-        by scaling. Several parameters: three sizes of each and of all combinations.
+        by scaling. Two parameters: three sizes of each and of all combinations; more: of each
+        alone.
         """
         count = LEVELS if len(self.parameters) == 1 else 3
         axes = []
@@ -111,6 +116,10 @@ class Hypothesis:
             axes.append(np.concatenate([sign * sizes for sign in self.signs]))
         if len(axes) == 1:
             return np.asarray(axes[0][:, None])
+        if len(axes) > 2:
+            return np.concatenate(
+                [np.outer(axis, row) for axis, row in zip(axes, np.eye(len(axes)), strict=True)]
+            )
         points = np.array(list(product(*[np.concatenate([[0.0], axis]) for axis in axes])))
         return np.asarray(points[np.any(points != 0.0, axis=1)])
 
@@ -121,18 +130,24 @@ class Programme:
 
     Attributes:
         name: for people.
-        time: equidistant times [s] (n,).
+        time: equidistant times [s] (n,); of poses at rest only their order.
         drive: signal name -> values (n, width).
+        poses: each row is a pose at rest, with noise of its own.
+        rate: of the analysis grid [Hz].
     """
 
     name: str
     time: FloatArray
     drive: Mapping[str, FloatArray]
+    poses: bool = False
+    rate: float = RATE
 
     @cached_property
     def identity(self) -> str:
         """Hash of the clock and of everything fed in."""
         digest = hashlib.sha256(np.ascontiguousarray(self.time).tobytes())
+        if self.poses or self.rate != RATE:
+            digest.update(repr((self.poses, self.rate)).encode())
         for name in sorted(self.drive):
             digest.update(name.encode() + np.ascontiguousarray(self.drive[name]).tobytes())
         return digest.hexdigest()[:16]
@@ -143,17 +158,24 @@ class Programme:
         return float(self.time[-1] - self.time[0]) / (len(self.time) - 1)
 
     @staticmethod
-    def of(recording: Recording, drive: tuple[str, ...], name: str = "") -> Programme:
-        """What a recording says was fed in.
+    def of(
+        recording: Recording, drive: tuple[str, ...], name: str = "", rate: float = RATE
+    ) -> Programme:
+        """What a recording says was fed in; poses at rest have `POSES` as the clock of their rows.
 
         Raises:
             UnknownNameError: a drive signal that is not recorded.
             InvalidInputError: rows that are not equidistant.
         """
         steps = np.diff(recording.time)
+        poses = recording.info.log == POSES
+        if poses and len(steps):
+            fed = {signal: recording[signal] for signal in drive}
+            return Programme(name, recording.time, fed, True, rate)
         if len(steps) < 2 or np.ptp(steps) > 0.01 * np.mean(steps):
             raise InvalidInputError("recording time", "uneven or too few rows", "equidistant rows")
-        return Programme(name, recording.time, {signal: recording[signal] for signal in drive})
+        fed = {signal: recording[signal] for signal in drive}
+        return Programme(name, recording.time, fed, False, rate)
 
 
 class Forward(Protocol):

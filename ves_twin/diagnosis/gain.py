@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field
 
 import numpy as np
 
@@ -16,8 +17,14 @@ from ves_twin.types import FloatArray, IntArray, SingleArray
 BLOCK_SECONDS = 0.5
 """Length of the stretches of time that are drawn again: longer than a residual remembers."""
 
+WORSE = 1.5
+"""Growth of a channel's error that a forecast is not forgiven."""
+
 DRAWS = 2000
 """Resamples of the stretches."""
+
+LEAST_EXCESS = 0.25
+"""Of a resample, as a share of the whole's: what a share is taken of must not vanish."""
 
 INVISIBLE = 0.02
 """Excess of mean z^2 over noise below which the held-out recording does not show the effect."""
@@ -33,6 +40,8 @@ class Gain:
         low, high: interval over stretches of time.
         before, after: mean z^2 of the nominal and of the extended model, each with its
             commissioning errors tuned on the first recordings.
+        errors: rms error of each channel [its unit] by the nominal and by the extended model, as
+            tuned on the first recordings and nothing tuned here.
     """
 
     share: float | None
@@ -40,11 +49,21 @@ class Gain:
     high: float | None
     before: float
     after: float
+    errors: Mapping[str, tuple[float, float]] = field(default_factory=dict)
 
     @property
     def passed(self) -> bool:
         """The gate for writing an extended plant: the whole interval is a gain."""
         return self.low is not None and self.low > 0.0
+
+    @property
+    def carries_on(self) -> bool:
+        """The gate for a forecast: a gain, and no channel's bare error grows by half.
+
+        A drift carried on is so uncertain that z^2 alone would forgive it.
+        """
+        grown = any(after > WORSE * before for before, after in self.errors.values())
+        return self.passed and not grown
 
 
 def held_out_gain(
@@ -73,8 +92,11 @@ def held_out_gain(
     """
     left = _energies(runs, measured, whitening, extended)
     own = whitening.adapted(left[1])
-    after = _energies(runs, measured, own, extended)[0]
-    before = _energies(runs, measured, own, nominal)[0]
+    after, _, error_after = _energies(runs, measured, own, extended)
+    before, _, error_before = _energies(runs, measured, own, nominal)
+    names = [runs.forward.channels[c].name for c in runs.columns]
+    pairs = zip(error_before, error_after, strict=True)
+    errors = {n: (float(a), float(b)) for n, (a, b) in zip(names, pairs, strict=True)}
     lengths = _stretches(runs, own)
     rng = np.random.default_rng(seed)
     drawn = rng.integers(0, len(lengths), (DRAWS, len(lengths)))
@@ -82,18 +104,20 @@ def held_out_gain(
     mean_before, mean_after = before.sum() / lengths.sum(), after.sum() / lengths.sum()
     excess = mean_before - 1.0
     if excess < INVISIBLE:
-        return Gain(None, None, None, float(mean_before), float(mean_after))
-    shares = (b - a) / n / excess
+        return Gain(None, None, None, float(mean_before), float(mean_after), errors)
+    # each resample by its own excess: where stretches differ in size, before and after go together
+    shares = (b - a) / n / np.maximum(b / n - 1.0, LEAST_EXCESS * excess)
     tail = 0.5 * (1.0 - confidence)
     low, high = np.quantile(shares, [tail, 1.0 - tail])
     share = (mean_before - mean_after) / excess
-    return Gain(float(share), float(low), float(high), float(mean_before), float(mean_after))
+    means = float(mean_before), float(mean_after)
+    return Gain(float(share), float(low), float(high), *means, errors)
 
 
 def _energies(
     runs: Runs, measured: SingleArray, whitening: Whitening, fit: Fit
-) -> tuple[FloatArray, FloatArray]:
-    """Contribution of each stretch of time to the predictive chi^2, and the residual left."""
+) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Predictive chi^2 of each stretch of time, the residual left, and the rms of each channel."""
     there = fit.local.runs
     shared = [n for n, i in enumerate(fit.active) if there.coordinates[i].recording == -1]
     names = [axis.parameter.name for axis in runs.coordinates]
@@ -118,7 +142,8 @@ def _energies(
         np.add.reduceat(np.sum(block, axis=1), _starts(runs, k, len(block)))
         for k, block in enumerate(whitening.blocks(z * left))
     ]
-    return np.concatenate(parts), left
+    rms = np.sqrt(np.mean(np.square(measured - local.prediction, dtype=float), axis=0))
+    return np.concatenate(parts), left, np.asarray(rms)
 
 
 def _starts(runs: Runs, k: int, rows: int) -> IntArray:

@@ -9,7 +9,6 @@ import numpy as np
 
 from ves_twin.diagnosis.adequacy import Cell
 from ves_twin.diagnosis.refine import Evidence
-from ves_twin.diagnosis.whitening import ORDER
 from ves_twin.types import FloatArray
 
 LOUDEST = 6
@@ -89,7 +88,11 @@ def _features(
     runs, whitening = evidence.runs, evidence.whitening
     blocks = np.concatenate(whitening.blocks(residual))
     shapes: dict[str, FloatArray] = {"time": np.concatenate(whitening.times())}
-    rows = [r for piece in runs.slices for r in range(piece.start + ORDER + 1, piece.stop)]
+    rows = [
+        r
+        for k, piece in enumerate(runs.slices)
+        for r in range(piece.start + whitening.lost(k), piece.stop)
+    ]
     for c, name in enumerate(names):
         x = evidence.measured[rows, c].astype(float)
         shapes[name] = x

@@ -8,6 +8,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from ves_twin.diagnosis.forward import Channel, Forward, Programme, check_forward
+from ves_twin.diagnosis.grid import RATE
 from ves_twin.diagnosis.runs import Runs
 from ves_twin.errors import InvalidInputError, UnknownNameError
 from ves_twin.recording.recording import Recording
@@ -19,6 +20,9 @@ MOST_EMPTY = 0.5
 
 FEWEST_ROWS = 100
 """Rows of the grid below which bands and stretches of time mean nothing."""
+
+FEWEST_POSES = 12
+"""Poses at rest below which their scatter means nothing."""
 
 
 @dataclass(frozen=True)
@@ -39,7 +43,10 @@ class Observed:
 
 
 def observe(
-    forward: Forward, recordings: Sequence[Recording], workers: Workers | None = None
+    forward: Forward,
+    recordings: Sequence[Recording],
+    workers: Workers | None = None,
+    rate: float = RATE,
 ) -> Observed:
     """Put recordings on the analysis grid.
 
@@ -47,6 +54,7 @@ def observe(
         forward: whose channels are compared and whose drive is fed in.
         recordings: one or more.
         workers: for predictions; this process if None.
+        rate: of the analysis grid [Hz].
 
     Raises:
         UnknownNameError: a drive signal that is not recorded, or no channel of the plant at all.
@@ -69,7 +77,7 @@ def observe(
     for k, recording in enumerate(recordings):
         name = recording.info.scenario or f"recording {k + 1}"
         _check_drive(recording, forward.drive, name)
-        programmes.append(Programme.of(recording, forward.drive, name))
+        programmes.append(Programme.of(recording, forward.drive, name, rate))
         rows.append(np.stack([recording[c.signal][:, c.column] for c in channels], axis=1))
     runs = Runs(forward, tuple(programmes), columns, workers or Workers())
     empty = [~np.isfinite(piece) for piece in rows]
@@ -77,9 +85,10 @@ def observe(
     if any(bad.any() for bad in marked):
         runs = replace(runs, holes=tuple(marked))
     for programme, time in zip(programmes, runs.times, strict=True):
-        if len(time) < FEWEST_ROWS:
+        fewest = FEWEST_POSES if programme.poses else FEWEST_ROWS
+        if len(time) < fewest:
             raise InvalidInputError(
-                f"rows of {programme.name} on the grid", len(time), f"at least {FEWEST_ROWS}"
+                f"rows of {programme.name} on the grid", len(time), f"at least {fewest}"
             )
     stacks = [grid.reduce(_bridged(piece)) for grid, piece in zip(runs.grids, rows, strict=True)]
     lost = np.mean(np.concatenate(empty), axis=0)

@@ -83,7 +83,13 @@ class Runs:
     @cached_property
     def grids(self) -> tuple[AnalysisGrid, ...]:
         """Analysis grid of each recording."""
-        return tuple(AnalysisGrid.of(programme.period) for programme in self.programmes)
+        return tuple(self._grid(programme) for programme in self.programmes)
+
+    @staticmethod
+    def _grid(programme: Programme) -> AnalysisGrid:
+        if programme.poses:
+            return AnalysisGrid(programme.period, 1)
+        return AnalysisGrid.of(programme.period, programme.rate)
 
     @cached_property
     def times(self) -> tuple[FloatArray, ...]:

@@ -5,6 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from pathlib import Path
 
+from ves_twin.diagnosis.grid import RATE
+
 
 @dataclass(frozen=True)
 class Settings:
@@ -24,6 +26,8 @@ class Settings:
         workers: processes.
         cache: folder for banks and thresholds; none if None.
         seed: of the null distribution.
+        causes: that may be named together; beyond two only on held-out recordings.
+        rate: of the analysis grid [Hz].
     """
 
     alpha: float = 0.002
@@ -37,3 +41,5 @@ class Settings:
     workers: int = 1
     cache: Path | None = None
     seed: int = 0
+    causes: int = 2
+    rate: float = RATE

@@ -135,7 +135,9 @@ class Verdict:
     """What was found, how sure it is, and what it rests on.
 
     `alternatives` are numbers of `causes`: each alternative explains the record by itself, by one
-    cause or by two together; one alternative unless ambiguous. `quality`
+    cause or by several together; one alternative unless ambiguous. `gain` is on held-out
+    recordings; `forecast` is ahead in time, where a cause's sizes belong to the recorded stretch
+    of it. `tuned` are the plant's commissioning numbers at the fit. `quality`
     has the checks that a recording failed; `alone` what each recording says
     by itself, where all together have no explanation. `exhibit` has the traces of the
     report, and stays out of verdict.json.
@@ -148,6 +150,8 @@ class Verdict:
     alternatives: tuple[tuple[int, ...], ...] = ()
     residuals: Mapping[str, ChannelError] = field(default_factory=dict)
     gain: Gain | None = None
+    forecast: Gain | None = None
+    tuned: Mapping[str, Estimate] = field(default_factory=dict)
     leftover: Leftover | None = None
     suspect: str = ""
     rivals: tuple[Rival, ...] = ()
@@ -193,9 +197,27 @@ class Verdict:
                 names = [" with ".join(self._name(i) for i in a) for a in self.alternatives]
                 return f"One of these, and this recording cannot tell which: {'; '.join(names)}."
             case Kind.PARTIAL:
-                return f"{self._name(0)} is part of it; something more stays unexplained."
+                verb = "are" if len(self.causes) > 1 else "is"
+                rest = "something more stays unexplained."
+                return f"{self._all()} {verb} part of it; {rest}{self.limit}"
             case _:
-                return f"{' and '.join(self._name(i) for i in range(len(self.causes)))}."
+                return f"{self._all()}.{self.limit}"
+
+    @property
+    def limit(self) -> str:
+        """What the extension is good for, where it holds between recordings and not beyond."""
+        if self.forecast is None or self.forecast.carries_on:
+            return ""
+        worst = max(self.forecast.errors.items(), key=lambda item: item[1][1] / item[1][0])
+        name, (before, after) = worst
+        unit = self.residuals[name].unit
+        return (
+            " It fills in between the recordings and cannot be carried on beyond them: ahead in"
+            f" time {name} is {after:.3g} {unit} off with it, {before:.3g} {unit} without."
+        )
+
+    def _all(self) -> str:
+        return " and ".join(self._name(i) for i in range(len(self.causes)))
 
     def _name(self, number: int) -> str:
         cause = self.causes[number]

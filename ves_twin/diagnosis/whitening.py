@@ -54,10 +54,15 @@ class Whitening:
     level: FloatArray
     measured: bool = False
 
+    def lost(self, recording: int) -> int:
+        """Rows at the begin that the filters need; poses at rest have noise without memory."""
+        return 0 if self.runs.programmes[recording].poses else ORDER + 1
+
     def apply(self, stack: SingleArray) -> FloatArray:
         """Whitened rows, flattened: (..., rows, c) -> (..., samples)."""
         if stack.size == 0:
-            count = sum(s.stop - s.start - ORDER - 1 for s in self.runs.slices)
+            pairs = enumerate(self.runs.slices)
+            count = sum(s.stop - s.start - self.lost(k) for k, s in pairs)
             return np.zeros((*stack.shape[:-2], count * self.mixing.shape[1]))
         parts = []
         for k, rows in enumerate(self.runs.slices):
@@ -75,10 +80,11 @@ class Whitening:
         if not any(bad.any() for bad in self.runs.holes):
             return None
         parts = []
-        for bad, mixing in zip(self.runs.holes, self.mixing, strict=True):
+        for k, (bad, mixing) in enumerate(zip(self.runs.holes, self.mixing, strict=True)):
             mixed = np.count_nonzero(mixing - np.diag(np.diag(mixing))) > 0
             each = np.repeat(bad.any(axis=1, keepdims=True), bad.shape[1], 1) if mixed else bad
-            lost = [each[j : len(each) - ORDER - 1 + j] for j in range(ORDER + 2)]
+            first = self.lost(k)
+            lost = [each[j : len(each) - first + j] for j in range(first + 1)]
             parts.append(1.0 - np.any(lost, axis=0).astype(float).ravel())
         return np.concatenate(parts)
 
@@ -87,21 +93,22 @@ class Whitening:
         """Samples that count (samples,), as 1 and 0."""
         if self.weights is not None:
             return self.weights
-        count = sum(s.stop - s.start - ORDER - 1 for s in self.runs.slices)
+        pairs = enumerate(self.runs.slices)
+        count = sum(s.stop - s.start - self.lost(k) for k, s in pairs)
         return np.ones(count * self.mixing.shape[1])
 
     def blocks(self, z: FloatArray) -> list[FloatArray]:
         """Whitened samples by recording: (samples,) -> (rows, c) each."""
         width, start, parts = self.mixing.shape[1], 0, []
-        for rows in self.runs.slices:
-            count = (rows.stop - rows.start - ORDER - 1) * width
+        for k, rows in enumerate(self.runs.slices):
+            count = (rows.stop - rows.start - self.lost(k)) * width
             parts.append(z[start : start + count].reshape(-1, width))
             start += count
         return parts
 
     def times(self) -> list[FloatArray]:
         """Times [s] of the whitened rows of each recording."""
-        return [time[ORDER + 1 :] for time in self.runs.times]
+        return [time[self.lost(k) :] for k, time in enumerate(self.runs.times)]
 
     def adapted(self, z: FloatArray) -> Whitening:
         """With level and lag-one colour as this record shows them above FLOOR_FROM (Whittle fit).
@@ -121,6 +128,8 @@ class Whitening:
             shapes = 1.0 / np.abs(1.0 - COLOURS[:, None] * np.exp(-1j * angle)) ** 2
             scale = np.mean(power[None] / shapes[:, :, None], axis=1)
             cost = np.log(scale) + np.mean(np.log(shapes), axis=1)[:, None]
+            if self.runs.programmes[k].poses:
+                cost[np.abs(COLOURS) > 1e-9] = np.inf
             best = np.argmin(cost, axis=0)
             colour[k] = np.clip(self.colour[k] + COLOURS[best], COLOURS[0], COLOURS[-1])
             found = np.sqrt(scale[best, np.arange(len(best))]) * self.level[k]
@@ -134,13 +143,16 @@ class Whitening:
         for k, rows in enumerate(self.runs.slices):
             count = rows.stop - rows.start + 50
             white = level * rng.standard_normal((count, self.mixing.shape[1]))
-            tinted = lfilter([1.0], [1.0, -colour], white, axis=0)
+            memory = 0.0 if self.runs.programmes[k].poses else colour
+            tinted = lfilter([1.0], [1.0, -memory], white, axis=0)
             mixed = np.linalg.solve(self.mixing[k], tinted.T).T
             shaped = [lfilter([1.0], a, mixed[:, c]) for c, a in enumerate(self.filters[k])]
             parts.append(np.stack(shaped, axis=1)[50:])
         return np.concatenate(parts).astype(np.float32)
 
     def _one(self, k: int, rows: SingleArray) -> FloatArray:
+        if self.runs.programmes[k].poses:
+            return np.asarray(rows @ self.mixing[k].T / self.level[k])
         shaped = np.stack(
             [lfilter(a, [1.0], rows[..., c], axis=-1) for c, a in enumerate(self.filters[k])],
             axis=-1,

@@ -12,6 +12,9 @@ from ves_twin.errors import InvalidInputError, UnknownNameError
 from ves_twin.signals import SIGNALS, Role, Signal
 from ves_twin.types import FloatArray
 
+POSES = "poses"
+"""Clock of a recording whose rows are poses at rest: time is only their order."""
+
 
 @dataclass(frozen=True)
 class Event:
@@ -37,7 +40,7 @@ class RecordingInfo:
         effects: what deviated from the description: kind, target, sizes.
         seed: seed of the noise.
         versions: package -> version.
-        log: clock of the rows: admittance, leg or tick.
+        log: clock of the rows: admittance, leg or tick; POSES where rows are poses at rest.
         period: time between rows [s].
         held: slower signals -> time between their changes [s].
         outcome: how the run ended; "unfinished" while it runs or if it was killed.

@@ -1,0 +1,139 @@
+"""conclude: from an explanation and held-out recordings to the kind of verdict."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from ves_twin.diagnosis.build_up import build_up
+from ves_twin.diagnosis.explain import Desk, Explanation, explain
+from ves_twin.diagnosis.forecast import forecast
+from ves_twin.diagnosis.forward import Forward
+from ves_twin.diagnosis.gain import Gain, held_out_gain
+from ves_twin.diagnosis.observe import Observed, observe
+from ves_twin.diagnosis.refine import Fit
+from ves_twin.diagnosis.runs import Runs
+from ves_twin.diagnosis.settings import Settings
+from ves_twin.diagnosis.verdict import Kind
+from ves_twin.diagnosis.whitening import Whitening, whitening_declared, whitening_measured
+from ves_twin.recording.recording import Recording
+from ves_twin.workers import Workers
+
+MOST = 0.5
+"""Share of the held-out excess that a part of the truth must take, its interval's lower end."""
+
+
+@dataclass(frozen=True)
+class Conclusion:
+    """What a record that is not in order comes to.
+
+    Attributes:
+        found: the best explanation; None if nothing fits.
+        kind: of the verdict.
+        gain: on held-out recordings.
+        forecast: gain ahead in time, of causes whose sizes belong to a stretch of it.
+    """
+
+    found: Explanation | None
+    kind: Kind
+    gain: Gain | None = None
+    forecast: Gain | None = None
+
+
+@dataclass(frozen=True)
+class HeldOut:
+    """Held-out recordings on the grid, and what a fit is worth there."""
+
+    seen: Observed
+    whitening: Whitening
+    settings: Settings
+
+    @staticmethod
+    def of(
+        forward: Forward,
+        recordings: Sequence[Recording],
+        standstill: Recording | None,
+        settings: Settings,
+        workers: Workers,
+    ) -> HeldOut:
+        """Put them on the grid."""
+        seen = observe(forward, recordings, workers, settings.rate)
+        return HeldOut(seen, whitening_of(seen.runs, standstill), settings)
+
+    def gain(self, before: Fit, after: Fit) -> Gain:
+        """Of one fit over another."""
+        return held_out_gain(
+            self.seen.runs,
+            self.seen.measured,
+            self.whitening,
+            before,
+            after,
+            self.settings.confidence,
+            self.settings.seed,
+        )
+
+    def gains(self, found: Explanation) -> list[Gain]:
+        """Of the best explanation; of its rivals too, where it leaves something unexplained."""
+        rivals = [] if found.adequate else [fit for fit in found.fits if fit is not found.best]
+        return [self.gain(found.commissioning, fit) for fit in [found.best, *rivals]]
+
+
+def whitening_of(runs: Runs, standstill: Recording | None) -> Whitening:
+    """Noise as a standstill recording tells it, else as declared."""
+    return whitening_declared(runs) if standstill is None else whitening_measured(runs, standstill)
+
+
+def conclude(
+    desk: Desk, forward: Forward, recordings: Sequence[Recording], held: HeldOut | None
+) -> Conclusion:
+    """Explain a record, and see what the explanation is worth elsewhere.
+
+    Args:
+        desk: the record before any cause, over a threshold.
+        forward: the plant.
+        recordings: all, fitted and held out.
+        held: those held out.
+    """
+    found = explain(desk.first, desk.thresholds, desk.settings, desk.progress)
+    if found is None:
+        return Conclusion(None, Kind.UNKNOWN)
+    grown = held is not None and not found.adequate and desk.settings.causes > 2
+    if grown and held is not None:
+        found = build_up(desk, found, held.gain)
+    gains = held.gains(found) if held else []
+    kind = _kind(found, gains, grown)
+    ahead = _forecast(forward, recordings, found, desk.settings) if _names(kind) else None
+    return Conclusion(found, kind, gains[0] if gains else None, ahead)
+
+
+def _names(kind: Kind) -> bool:
+    return kind not in (Kind.NOTHING, Kind.UNKNOWN)
+
+
+def _kind(found: Explanation, gains: Sequence[Gain], proved: bool) -> Kind:
+    if not found.adequate:
+        return Kind.PARTIAL if _beats(found, gains, proved) else Kind.UNKNOWN
+    if len(found.chosen) > 1:
+        return Kind.AMBIGUOUS
+    return Kind.NAMED if len(found.best.causes) == 1 else Kind.SEVERAL
+
+
+def _beats(found: Explanation, gains: Sequence[Gain], proved: bool) -> bool:
+    """Whether the causes take most of the held-out excess away, and no rival nearly as much.
+
+    Of causes together each was proved against its rivals already.
+    """
+    if len(found.chosen) > 1 or not gains or gains[0].low is None:
+        return False
+    together = proved and len(found.best.causes) > 1
+    rivals = [] if together else [gain.share or 0.0 for gain in gains[1:]]
+    return gains[0].low > max([MOST, *rivals])
+
+
+def _forecast(
+    forward: Forward, recordings: Sequence[Recording], found: Explanation, settings: Settings
+) -> Gain | None:
+    """Gain ahead in time, of causes whose sizes belong to the recorded stretch of it."""
+    if not any(cause.transient for cause in found.best.causes):
+        return None
+    return forecast(forward, recordings, found.best, settings)
