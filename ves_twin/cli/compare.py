@@ -11,6 +11,8 @@ if TYPE_CHECKING:
     from ves_twin.comparison.compare import Named
     from ves_twin.comparison.result import Comparison
 
+from ves_twin.cli.rig_recordings import add_rig_arguments, means_rig
+
 SUMMARY = "show where measured recordings and the simulation part"
 JSON_NAME, PAGE_NAME = "compare.json", "report.html"
 OUT_OF_TOLERANCE = 4
@@ -26,7 +28,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "--against", metavar="REC", help="hold them against this recording, not the plant"
     )
     parser.add_argument("--experiment", metavar="FILE", help="how they were made (TOML)")
-    parser.add_argument("--plant", metavar="FILE", help="another plant: a name or a TOML file")
+    parser.add_argument("--plant", metavar="FILE", help="another plant, or a rig: name or TOML")
+    add_rig_arguments(parser, alternate=False)
     parser.add_argument("--tolerance", metavar="FILE", help="limits in SI (TOML), exit 4 if broken")
     parser.add_argument("--standstill", metavar="REC", help="noise from this recording at rest")
     parser.add_argument("--out", metavar="DIR", help="output folder (default: runs/compare)")
@@ -35,6 +38,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def execute(arguments: argparse.Namespace) -> int:
     """Compare, write page and JSON, print the answer."""
+    if means_rig(arguments):
+        return _rig(arguments)
     from ves_twin.cli.run import output_folder
     from ves_twin.comparison.report import comparison_page
     from ves_twin.report.page import write_page
@@ -49,6 +54,33 @@ def execute(arguments: argparse.Namespace) -> int:
     write_page(folder / PAGE_NAME, page)
     print(text if arguments.json else _text(comparison, folder))
     return OUT_OF_TOLERANCE if comparison.in_tolerance is False else 0
+
+
+def _rig(arguments: argparse.Namespace) -> int:
+    """A rig of two files: its own mode, and closed loop where it has controllers."""
+    from ves_twin.cli.rig_recordings import rig_recordings
+    from ves_twin.cli.run import output_folder
+    from ves_twin.errors import InvalidInputError
+    from ves_twin.report.page import write_page
+    from ves_twin.rigs.compare_mjcf import SCHEMA, compare_mjcf
+    from ves_twin.rigs.compare_page import comparison_lines, rig_comparison_page
+    from ves_twin.simulator.simulate import make_folder
+
+    for option in ("against", "experiment", "tolerance", "standstill"):
+        if getattr(arguments, option):
+            raise InvalidInputError(f"--{option}", "a rig", "a plant of VES II beside it")
+    given = rig_recordings(arguments, arguments.recordings)
+    found = compare_mjcf(given.measured, given.rig)
+    content = {"schema": SCHEMA, "recordings": [one.to_dict() for one in found]}
+    text = json.dumps(content, indent=2, allow_nan=False)
+    folder = output_folder(arguments.out, "compare")
+    page = rig_comparison_page(found)
+    make_folder(folder)
+    write_page(folder / JSON_NAME, text + "\n")
+    write_page(folder / PAGE_NAME, page)
+    files = f"files {folder}/{PAGE_NAME}, {JSON_NAME}"
+    print(text if arguments.json else "\n".join([*comparison_lines(found), files]))
+    return 0
 
 
 def _compare(arguments: argparse.Namespace) -> Comparison:

@@ -4,15 +4,20 @@ from __future__ import annotations
 
 import argparse
 import os
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from ves_twin.benches.diagnose_rig import RigDiagnosis
     from ves_twin.benches.told import Told
+    from ves_twin.diagnosis.settings import Settings
     from ves_twin.plant.plant import Plant
     from ves_twin.recording.recording import Recording
+    from ves_twin.rigs.diagnose_mjcf import MjcfDiagnosis
+
+from ves_twin.cli.rig_recordings import add_rig_arguments, means_rig
 
 SUMMARY = "name what the simulation gets wrong in recordings, extend the plant, measure the gain"
 
@@ -33,20 +38,45 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "--exclude", metavar="EFFECT", action="append", default=[], help="a cause not considered"
     )
     parser.add_argument("--experiment", metavar="FILE", help="how they were made (TOML)")
-    parser.add_argument("--plant", metavar="FILE", help="the nominal plant (default: as recorded)")
+    parser.add_argument(
+        "--plant", metavar="FILE", help="the nominal plant, or a rig (default: as recorded)"
+    )
+    add_rig_arguments(parser)
     parser.add_argument("--out", metavar="DIR", help="output folder (default: runs/diagnosis)")
     parser.add_argument("--json", action="store_true", help="the verdict as JSON on stdout")
 
 
 def execute(arguments: argparse.Namespace) -> int:
     """Diagnose, write verdict and plant, print the verdict."""
-    from ves_twin.benches.diagnose_rig import diagnose_rig
-    from ves_twin.cli.progress import RunProgress
     from ves_twin.cli.run import output_folder
-    from ves_twin.compiled import cache_folder
-    from ves_twin.diagnosis.settings import Settings
-    from ves_twin.recording.files import load_recording, recording_name
     from ves_twin.simulator.simulate import make_folder
+
+    folder = output_folder(arguments.out, "diagnosis")
+    diagnosed = _mjcf if means_rig(arguments) else _ves2
+    found, save = diagnosed(arguments, partial(make_folder, folder))
+    _write(found, folder, ", ".join(map(_label, arguments.measured)), save)
+    if arguments.json:
+        print(found.verdict.to_json())
+    else:
+        print(_text(found, folder))
+    return 0
+
+
+def _label(name: str) -> str:
+    from ves_twin.recording.files import recording_name
+
+    return recording_name(name)
+
+
+def _ves2(
+    arguments: argparse.Namespace, ready: Callable[[], None]
+) -> tuple[RigDiagnosis, Callable[[Path, str], None]]:
+    """VES II; the output folder is made once all input is read."""
+    from ves_twin.benches.diagnose_rig import diagnose_rig
+    from ves_twin.benches.ves2_menu import write_setpoints
+    from ves_twin.cli.progress import RunProgress
+    from ves_twin.plant.write_plant import write_plant
+    from ves_twin.recording.files import load_recording
 
     measured = [load_recording(name) for name in arguments.measured]
     held_out = [load_recording(name) for name in arguments.held_out]
@@ -64,9 +94,7 @@ def execute(arguments: argparse.Namespace) -> int:
         standstill = standstill or told.standstill
     else:
         plant = _nominal(arguments.plant, measured[0])
-    folder = output_folder(arguments.out, "diagnosis")
-    make_folder(folder)
-    settings = Settings(workers=os.cpu_count() or 1, cache=cache_folder().parent / "banks")
+    ready()
     with RunProgress("diagnose", 1.0, unit="share") as progress:
         found = diagnose_rig(
             measured,
@@ -77,15 +105,60 @@ def execute(arguments: argparse.Namespace) -> int:
             baseline=baseline,
             exclude=arguments.exclude,
             scenario=scenario,
-            settings=settings,
+            settings=_settings(),
             progress=progress.share,
         )
-    _write(found, folder, ", ".join(map(recording_name, arguments.measured)))
-    if arguments.json:
-        print(found.verdict.to_json())
-    else:
-        print(_text(found, folder))
-    return 0
+
+    def save(path: Path, note: str) -> None:
+        if found.extended is not None:
+            write_plant(found.extended, path, note)
+        if found.next_programme is not None:
+            write_setpoints(found.next_programme, path.parent / SETPOINTS)
+
+    return found, save
+
+
+def _mjcf(
+    arguments: argparse.Namespace, ready: Callable[[], None]
+) -> tuple[MjcfDiagnosis, Callable[[Path, str], None]]:
+    """A rig of two files."""
+    from ves_twin.cli.progress import RunProgress
+    from ves_twin.cli.rig_recordings import read_file, rig_recordings
+    from ves_twin.errors import InvalidInputError
+    from ves_twin.rigs.diagnose_mjcf import diagnose_mjcf
+    from ves_twin.rigs.extend import write_rig
+
+    if arguments.experiment:
+        raise InvalidInputError("--experiment", "a rig", "a plant of VES II beside it")
+    given = rig_recordings(arguments, arguments.measured)
+    commissioning = [read_file(arguments, given.rig, n) for n in arguments.commissioning]
+    still = arguments.standstill
+    standstill = read_file(arguments, given.rig, still) if still else None
+    ready()
+    with RunProgress("diagnose", 1.0, unit="share") as progress:
+        found = diagnose_mjcf(
+            given.measured,
+            given.rig,
+            held_out=given.held_out,
+            commissioning=commissioning,
+            standstill=standstill,
+            exclude=arguments.exclude,
+            settings=_settings(),
+            progress=progress.share,
+        )
+
+    def save(path: Path, note: str) -> None:
+        if found.extended is not None:
+            write_rig(found.extended, path, note)
+
+    return found, save
+
+
+def _settings() -> Settings:
+    from ves_twin.compiled import cache_folder
+    from ves_twin.diagnosis.settings import Settings
+
+    return Settings(workers=os.cpu_count() or 1, cache=cache_folder().parent / "banks")
 
 
 def _told(
@@ -112,10 +185,13 @@ def _nominal(given: str | None, recording: Recording) -> Plant:
     return Plant.load(given or recording.info.plant_base or "ves2")
 
 
-def _write(found: RigDiagnosis, folder: Path, names: str) -> None:
-    from ves_twin.benches.ves2_menu import write_setpoints
+def _write(
+    found: RigDiagnosis | MjcfDiagnosis,
+    folder: Path,
+    names: str,
+    save: Callable[[Path, str], None],
+) -> None:
     from ves_twin.diagnosis.report.page import diagnosis_page
-    from ves_twin.plant.write_plant import write_plant
     from ves_twin.report.page import write_page
     from ves_twin.rerun_log.diagnosis import write_diagnosis_rrd
 
@@ -125,22 +201,14 @@ def _write(found: RigDiagnosis, folder: Path, names: str) -> None:
     page = diagnosis_page(found.verdict, f"Diagnosis of {names}", _plant_sentence(found))
     write_page(folder / "report.html", page)
     write_diagnosis_rrd(found.verdict, folder / "diagnosis.rrd")
-    if found.next_programme is not None:
-        write_setpoints(found.next_programme, folder / SETPOINTS)
-    if found.extended is None:
-        return
     note = f"Extended by ves-twin diagnose: {found.verdict.words}"
     if found.refused:
-        write_plant(
-            found.extended,
-            folder / "plant.candidate.toml",
-            f"{note}\nOnly a candidate: {found.refused}.",
-        )
+        save(folder / "plant.candidate.toml", f"{note}\nOnly a candidate: {found.refused}.")
     else:
-        write_plant(found.extended, folder / "plant.toml", note)
+        save(folder / "plant.toml", note)
 
 
-def _plant_sentence(found: RigDiagnosis) -> str:
+def _plant_sentence(found: RigDiagnosis | MjcfDiagnosis) -> str:
     """What became of the extended plant."""
     if found.extended is None:
         return "No extended plant was written: no cause is named."
@@ -149,7 +217,7 @@ def _plant_sentence(found: RigDiagnosis) -> str:
     return "The extended plant is plant.toml; it passed on held-out recordings."
 
 
-def _text(found: RigDiagnosis, folder: Path) -> str:
+def _text(found: RigDiagnosis | MjcfDiagnosis, folder: Path) -> str:
     verdict = found.verdict
     basis = verdict.basis
     lines = [
@@ -167,6 +235,11 @@ def _text(found: RigDiagnosis, folder: Path) -> str:
     lines += ["", "  channel             before     after   (rms, in the channel's unit)"]
     for name, error in verdict.residuals.items():
         lines.append(f"  {name:<18}{error.before_si:10.3g}{error.after_si:10.3g}   {error.unit}")
+    if verdict.gain is not None and verdict.gain.errors:
+        lines += ["", "  held out            before     after   (nothing tuned there)"]
+        for name, (before, after) in verdict.gain.errors.items():
+            unit = verdict.residuals[name].unit
+            lines.append(f"  {name:<18}{before:10.3g}{after:10.3g}   {unit}")
     if found.extended is not None and found.refused:
         lines += ["", f"  plant.candidate.toml, no plant.toml: {found.refused}"]
     files = ", ".join(sorted(p.name for p in folder.iterdir()))

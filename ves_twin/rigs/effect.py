@@ -1,0 +1,165 @@
+"""RigEffect: one deviation at a joint, actuator, body or signal of any rig."""
+
+from __future__ import annotations
+
+import math
+from abc import ABC
+from collections.abc import Mapping
+from dataclasses import dataclass, fields
+from typing import TYPE_CHECKING, ClassVar
+
+import numpy as np
+
+from ves_twin.effects.magnitude import Magnitude
+from ves_twin.errors import InvalidInputError
+from ves_twin.rigs.element import Element
+from ves_twin.types import FloatArray
+
+if TYPE_CHECKING:
+    import mujoco
+
+LEAST = 0.001
+"""Smallest size of interest, as a share of the largest, where a kind says nothing else."""
+
+
+@dataclass(frozen=True)
+class Place:
+    """A target with the typical sizes that sizes of effects follow from.
+
+    Attributes:
+        element: what it is.
+        name: as the file has it: "axis", "motor", "tool.x", "wrist.force.3".
+        hinge: whether a joint turns rather than slides.
+        effort, speed, travel: typical at a joint [N or N m, m/s or rad/s, m or rad].
+        unit: of a signal.
+        span: typical range of a signal [its unit].
+        mass: of a body [kg].
+        begin, end, terms: stretch that drift shapes span, and their count.
+    """
+
+    element: Element
+    name: str
+    hinge: bool = False
+    effort: float = 0.0
+    speed: float = 0.0
+    travel: float = 0.0
+    unit: str = "1"
+    span: float = 0.0
+    mass: float = 0.0
+    begin: float = 0.0
+    end: float = 1.0
+    terms: int = 4
+
+    def pick(self, slide: str, hinge: str) -> str:
+        """One of two units, by the kind of joint."""
+        return hinge if self.hinge else slide
+
+
+@dataclass(frozen=True)
+class RigEffect(ABC):
+    """A named deviation; a concrete class adds its sizes as fields and overrides its hooks.
+
+    A size is a departure from what the model has, so that zero is always "no effect"; with every
+    size zero a hook must change nothing, to the last bit.
+
+    Attributes:
+        target: name of the joint, actuator, body or signal.
+
+    Raises:
+        InvalidInputError: a size that is not a finite number.
+    """
+
+    target: str
+
+    kind: ClassVar[str]
+    element: ClassVar[Element]
+    attribute: ClassVar[str] = ""
+    """Attribute of the model that it changes; its nominal value is then that of the model."""
+    source: ClassVar[str] = "assumed: sizes follow from the typical ones of the rig's file"
+    linear: ClassVar[bool] = False
+    transient: ClassVar[bool] = False
+    """Whether its sizes belong to one stretch of time and say nothing of later ones."""
+
+    def __post_init__(self) -> None:
+        for name, value in self.sizes.items():
+            if not math.isfinite(value):
+                raise InvalidInputError(f"{self.kind} of {self.target}: {name}", value, "a number")
+
+    @classmethod
+    def magnitudes(cls, place: Place) -> tuple[Magnitude, ...]:
+        """Sizes with unit and range at a place."""
+        raise NotImplementedError
+
+    @property
+    def sizes(self) -> dict[str, float]:
+        """Departures by name."""
+        return {f.name: float(getattr(self, f.name)) for f in fields(self) if f.name != "target"}
+
+    def sized(self, sizes: Mapping[str, float]) -> RigEffect:
+        """Of the same kind on the same target, at other sizes."""
+        return type(self)(self.target, **sizes)
+
+    @property
+    def neutral(self) -> bool:
+        """Whether every size is zero."""
+        return not any(self.sizes.values())
+
+    def present(self, model: mujoco.MjModel) -> float:
+        """What the model has of its attribute; sizes are departures from that."""
+        return 0.0
+
+    def edit_model(self, model: mujoco.MjModel) -> None:
+        """Change the compiled model."""
+
+    def resist(self, speed: FloatArray, slow: float) -> FloatArray:
+        """Effort [N, N m] against a joint's motion at speeds (n,); `slow` smooths signs."""
+        return np.zeros_like(speed)
+
+    def edit_position(self, position: FloatArray) -> FloatArray:
+        """A joint's position (n,) on the other side of what lies between drive and joint."""
+        return position
+
+    def edit_command(self, command: FloatArray, time: FloatArray) -> FloatArray:
+        """What an actuator gives of its command (n,)."""
+        return command
+
+    def edit_required(self, effort: FloatArray, time: FloatArray) -> FloatArray:
+        """The command (n,) that an actuator needs to give an effort."""
+        return effort
+
+    def edit_reading(
+        self, reading: FloatArray, true: FloatArray, time: FloatArray, place: Place
+    ) -> FloatArray:
+        """What is read (n, w) of a signal whose true values are (n, w)."""
+        return reading
+
+    @property
+    def column(self) -> int:
+        """Column of a signal, from 0: the last number of the target."""
+        return int(self.target.rpartition(".")[2]) - 1
+
+
+def shifted(values: FloatArray, time: FloatArray, delay: float) -> FloatArray:
+    """Values (n,) or (n, w) a delay [s] ago, linear between rows, ends held."""
+    if delay == 0.0:
+        return values
+    if values.ndim == 1:
+        return np.asarray(np.interp(time - delay, time, values))
+    return np.stack([np.interp(time - delay, time, column) for column in values.T], axis=1)
+
+
+def play(position: FloatArray, gap: float) -> FloatArray:
+    """The driven side of a lost motion: it follows at the ends of a gap, else it rests.
+
+    y[k] = min(max(y[k-1], x[k] - g/2), x[k] + g/2): the play operator.
+
+    Source: Krasnosel'skii and Pokrovskii 1989, Systems with Hysteresis.
+    """
+    if gap == 0.0:
+        return position
+    half, driven = 0.5 * abs(gap), np.empty_like(position)
+    y = float(position[0])
+    for k, x in enumerate(position.tolist()):
+        y = min(max(y, x - half), x + half)
+        driven[k] = y
+    return driven

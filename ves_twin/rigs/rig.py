@@ -1,0 +1,276 @@
+"""Rig: an MJCF model and its description, with everything that may differ in it."""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+
+import mujoco
+
+from ves_twin.diagnosis.forward import Hypothesis, Parameter
+from ves_twin.effects.magnitude import Magnitude, Sign
+from ves_twin.errors import FileAccessError, InvalidInputError, UnknownNameError, one_line
+from ves_twin.rigs.description import Allowed, Mode, RigDescription, Setting, load_description
+from ves_twin.rigs.effect import Place, RigEffect
+from ves_twin.rigs.element import Element
+from ves_twin.rigs.places import place_of
+from ves_twin.rigs.registry import RIG_EFFECTS, build_rig_effect
+from ves_twin.units import to_si
+
+
+@dataclass(frozen=True)
+class Entry:
+    """One kind of effect on one target: sizes, nominal values, whether it is a cause.
+
+    Attributes:
+        effect: of that kind, with all sizes zero.
+        place: its target.
+        magnitudes: sizes with unit, range and commissioning sd.
+        nominal: value of each, as the rig has it.
+        cause: whether it may be named.
+        per_recording: drawn anew for each recording.
+        source: of the sizes.
+    """
+
+    effect: RigEffect
+    place: Place
+    magnitudes: tuple[Magnitude, ...]
+    nominal: tuple[float, ...]
+    cause: bool
+    per_recording: bool
+    source: str
+
+    def name(self, magnitude: Magnitude) -> str:
+        """Of a parameter: kind@target:magnitude."""
+        return f"{self.effect.kind}@{self.effect.target}:{magnitude.name}"
+
+    def at(self, values: Mapping[str, float]) -> RigEffect:
+        """The effect where its parameters have values; those left out are nominal."""
+        sizes = {}
+        native = bool(self.effect.attribute)
+        for magnitude, nominal in zip(self.magnitudes, self.nominal, strict=True):
+            value = values.get(self.name(magnitude), nominal)
+            sizes[magnitude.name] = value - nominal if native else value
+        return self.effect.sized(sizes)
+
+
+@dataclass(frozen=True)
+class Rig:
+    """Two files as a plant.
+
+    Attributes:
+        description: the TOML file.
+        folder: that the model's path starts from.
+        file: name or path it was loaded by.
+    """
+
+    description: RigDescription
+    folder: Path
+    file: str = ""
+
+    @staticmethod
+    def load(name_or_path: str) -> Rig:
+        """A shipped rig by name, or a TOML file beside its MJCF file.
+
+        Raises:
+            VesTwinError: a file that is missing or wrong, or names that do not fit together.
+        """
+        rig = Rig(*load_description(name_or_path), name_or_path)
+        rig.check()
+        return rig
+
+    @cached_property
+    def model(self) -> mujoco.MjModel:
+        """The compiled model with the nominal values of the description.
+
+        Raises:
+            FileAccessError: no such model.
+            InvalidInputError: not MJCF.
+        """
+        path = self.folder / self.description.model
+        if not path.is_file():
+            raise FileAccessError(f"model file '{path}' of rig {self.description.name} is missing")
+        try:
+            model = mujoco.MjModel.from_xml_path(str(path))
+        except ValueError as error:
+            raise InvalidInputError(str(path), one_line(error), "a MuJoCo model") from None
+        for setting in self.description.parameters:
+            if setting.value is not None:
+                effect, place = self._effect_of(setting, model)
+                (magnitude,) = effect.magnitudes(place)
+                value = to_si(setting.value, magnitude.unit, setting.attribute)
+                change = {magnitude.name: value - effect.present(model)}
+                effect.sized(change).edit_model(model)
+        mujoco.mj_setConst(model, mujoco.MjData(model))
+        return model
+
+    @cached_property
+    def entries(self) -> tuple[Entry, ...]:
+        """Everything that may differ, causes and commissioning errors."""
+        found: dict[tuple[str, str], Entry] = {}
+        settings = {self._key(s): s for s in self.description.parameters}
+        for allowed in self.description.effects:
+            for target in allowed.on:
+                entry = self._entry(allowed, target, settings.get((allowed.kind, target)))
+                found[allowed.kind, target] = entry
+        for (kind, target), setting in settings.items():
+            if (kind, target) not in found:
+                only = Allowed(kind=kind, on=(target,), cause=False)
+                found[kind, target] = self._entry(only, target, setting)
+        for kind, targets in self.description.present.items():
+            for target in targets:
+                if (kind, target) not in found:
+                    only = Allowed(kind=kind, on=(target,), cause=False)
+                    found[kind, target] = self._entry(only, target, None)
+        order = list(RIG_EFFECTS)
+        return tuple(sorted(found.values(), key=lambda e: order.index(e.effect.kind)))
+
+    @cached_property
+    def parameters(self) -> tuple[Parameter, ...]:
+        """Of all entries."""
+        found = []
+        for entry in self.entries:
+            for m, nominal in zip(entry.magnitudes, entry.nominal, strict=True):
+                low = 0.0 if m.sign is Sign.POSITIVE else nominal - m.largest
+                low, high = min(low, nominal), nominal + m.largest
+                name = entry.name(m)
+                one = entry.per_recording
+                found.append(Parameter(name, m.unit, nominal, low, high, m.sd, one))
+        return tuple(found)
+
+    @cached_property
+    def hypotheses(self) -> tuple[Hypothesis, ...]:
+        """Causes that may be named."""
+        found = []
+        for entry in self.entries:
+            if not entry.cause:
+                continue
+            first, nominal = entry.magnitudes[0], entry.nominal[0]
+            one_sided = first.sign is Sign.POSITIVE and nominal == 0.0
+            found.append(
+                Hypothesis(
+                    effect=entry.effect.kind,
+                    target=entry.effect.target,
+                    parameters=tuple(entry.name(m) for m in entry.magnitudes),
+                    smallest=tuple(m.smallest for m in entry.magnitudes),
+                    largest=tuple(m.largest for m in entry.magnitudes),
+                    signs=(1,) if one_sided else (-1, 1),
+                    source=entry.source,
+                    linear=entry.effect.linear and len(entry.magnitudes) == 1,
+                    transient=entry.effect.transient,
+                )
+            )
+        return tuple(found)
+
+    @cached_property
+    def identity(self) -> str:
+        """Hash of both files' content and of MuJoCo's version."""
+        parts = (self.description.model_dump_json(), mujoco.__version__)
+        digest = hashlib.sha256(repr(parts).encode())
+        digest.update((self.folder / self.description.model).read_bytes())
+        return digest.hexdigest()[:16]
+
+    def effects_at(self, values: Mapping[str, float]) -> Iterator[tuple[RigEffect, Place]]:
+        """Effects that are at work where parameters have values."""
+        for entry in self.entries:
+            effect = entry.at(values)
+            if not effect.neutral:
+                yield effect, entry.place
+
+    def check(self) -> None:
+        """Raise UnknownNameError or InvalidInputError on names that do not fit together."""
+        told = self.description
+        signals = told.signals
+        for where, name in (
+            *(("drive.joints", s) for s in told.drive.joints.values()),
+            *(("drive.actuators", s) for s in told.drive.actuators.values()),
+            *(("compare", s) for s in told.compare),
+            *((f"controllers.{k}", c.reference) for k, c in told.controllers.items()),
+        ):
+            if name not in signals:
+                raise UnknownNameError(f"signal in {where}", name, signals)
+        if told.drive.mode is Mode.REFERENCE and not told.controllers:
+            raise InvalidInputError("controllers", "none", "one where drive.mode is 'reference'")
+        for names, known, what in (
+            ([*told.drive.joints, *(c.joint for c in told.compare.values())], "jnt", "joint"),
+            (
+                [*told.drive.actuators, *told.controllers]
+                + [c.actuator for c in told.compare.values()],
+                "actuator",
+                "actuator",
+            ),
+            ([c.sensor for c in told.compare.values()], "sensor", "sensor"),
+        ):
+            there = _names(self.model, known)
+            for name in filter(None, names):
+                if name not in there:
+                    raise UnknownNameError(f"{what} in {told.model}", name, there)
+        _ = self.hypotheses, self.parameters
+
+    def _entry(self, allowed: Allowed, target: str, setting: Setting | None) -> Entry:
+        if allowed.kind not in RIG_EFFECTS:
+            raise UnknownNameError("effect", allowed.kind, RIG_EFFECTS)
+        effect = build_rig_effect(allowed.kind, target, {})
+        place = place_of(effect.element, target, self.description, self.model, effect.kind)
+        told = self.description.present.get(allowed.kind, {}).get(target, {})
+        if set(told) - set(effect.sizes):
+            build_rig_effect(allowed.kind, target, told)
+        magnitudes = tuple(
+            _sized(m, allowed, setting, f"{allowed.kind}@{target}")
+            for m in effect.magnitudes(place)
+        )
+        if effect.attribute:
+            nominal: tuple[float, ...] = (effect.present(self.model),)
+        else:
+            nominal = tuple(float(told.get(m.name, 0.0)) for m in magnitudes)
+        source = allowed.source or (setting.source if setting else "") or effect.source
+        return Entry(
+            effect, place, magnitudes, nominal, allowed.cause, allowed.per_recording, source
+        )
+
+    def _effect_of(self, setting: Setting, model: mujoco.MjModel) -> tuple[RigEffect, Place]:
+        kind, target = self._key(setting)
+        effect = build_rig_effect(kind, target, {})
+        return effect, place_of(effect.element, target, self.description, model, kind)
+
+    @staticmethod
+    def _key(setting: Setting) -> tuple[str, str]:
+        """Kind and target of the effect that changes an attribute."""
+        element, name = setting.element
+        attribute = setting.attribute
+        if element is Element.BODY and attribute[:-1] == "centre_" and attribute[-1] in "xyz":
+            return "mass_centre", f"{name}.{attribute[-1]}"
+        known = {
+            k.attribute: k.kind
+            for k in map(RIG_EFFECTS.__getitem__, RIG_EFFECTS.built_in)
+            if k.attribute and k.element is element and k.attribute != "centre"
+        }
+        if attribute not in known:
+            centres = {f"centre_{axis}" for axis in "xyz"} if element is Element.BODY else set()
+            raise UnknownNameError(f"attribute of {element} {name}", attribute, {*known, *centres})
+        return known[attribute], name
+
+
+def _names(model: mujoco.MjModel, kind: str) -> set[str]:
+    count = getattr(model, {"jnt": "njnt", "actuator": "nu", "sensor": "nsensor"}[kind])
+    access = {"jnt": model.joint, "actuator": model.actuator, "sensor": model.sensor}[kind]
+    return {access(i).name for i in range(count)}
+
+
+def _sized(m: Magnitude, allowed: Allowed, setting: Setting | None, what: str) -> Magnitude:
+    """A size with what the file says of it."""
+    sd = to_si(setting.sd, m.unit, f"sd of {what}") if setting else 0.0
+    sd = to_si(allowed.sd, m.unit, f"sd of {what}") or sd
+    smallest, largest = m.smallest, m.largest
+    if allowed.largest is not None:
+        largest = to_si(allowed.largest, m.unit, f"largest of {what}")
+        smallest = smallest * largest / m.largest
+    if allowed.smallest is not None:
+        smallest = to_si(allowed.smallest, m.unit, f"smallest of {what}")
+    if not 0.0 < smallest < largest:
+        expected = "0 < smallest < largest; typical sizes of its joint or signal give them"
+        raise InvalidInputError(f"sizes of {what}", (smallest, largest), expected)
+    return Magnitude(m.name, m.unit, sd, smallest, largest, m.sign)

@@ -1,0 +1,152 @@
+"""Effects of a recorded signal: gain, offset, drift, cross-talk, delay."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import ClassVar, final
+
+import numpy as np
+from numpy.polynomial.legendre import legvander
+
+from ves_twin.effects.magnitude import Magnitude, Sign
+from ves_twin.rigs.effect import LEAST, Place, RigEffect, shifted
+from ves_twin.rigs.element import Element
+from ves_twin.rigs.part_effects import SLOWEST
+from ves_twin.types import FloatArray
+
+
+@final
+@dataclass(frozen=True)
+class SensorGain(RigEffect):
+    """One column reads (1 + gain) times what is there."""
+
+    gain: float = 0.0
+
+    kind: ClassVar[str] = "sensor_gain"
+    element: ClassVar[Element] = Element.SIGNAL
+    linear: ClassVar[bool] = True
+
+    @classmethod
+    def magnitudes(cls, place: Place) -> tuple[Magnitude, ...]:
+        """Up to 30 %."""
+        return (Magnitude("gain", "1", 0.0, 0.001, 0.3),)
+
+    def edit_reading(
+        self, reading: FloatArray, true: FloatArray, time: FloatArray, place: Place
+    ) -> FloatArray:
+        """Add its share of the true value."""
+        reading = reading.copy()
+        reading[:, self.column] += self.gain * true[:, self.column]
+        return reading
+
+
+@final
+@dataclass(frozen=True)
+class CrossTalk(RigEffect):
+    """One column reads a share of another one; target "wrist.force.3.1": column 3 reads 1."""
+
+    share: float = 0.0
+
+    kind: ClassVar[str] = "cross_talk"
+    element: ClassVar[Element] = Element.SIGNAL
+    linear: ClassVar[bool] = True
+
+    @classmethod
+    def magnitudes(cls, place: Place) -> tuple[Magnitude, ...]:
+        """Up to 20 %."""
+        return (Magnitude("share", "1", 0.0, 0.001, 0.2),)
+
+    def edit_reading(
+        self, reading: FloatArray, true: FloatArray, time: FloatArray, place: Place
+    ) -> FloatArray:
+        """Add its share of the other column."""
+        to, of = (int(number) - 1 for number in self.target.split(".")[-2:])
+        reading = reading.copy()
+        reading[:, to] += self.share * true[:, of]
+        return reading
+
+
+@final
+@dataclass(frozen=True)
+class SensorOffset(RigEffect):
+    """One column reads off by a constant."""
+
+    offset: float = 0.0
+
+    kind: ClassVar[str] = "sensor_offset"
+    element: ClassVar[Element] = Element.SIGNAL
+    linear: ClassVar[bool] = True
+
+    @classmethod
+    def magnitudes(cls, place: Place) -> tuple[Magnitude, ...]:
+        """Up to three times the typical range."""
+        largest = 3.0 * place.span
+        return (Magnitude("offset", place.unit, 0.0, LEAST * largest, largest),)
+
+    def edit_reading(
+        self, reading: FloatArray, true: FloatArray, time: FloatArray, place: Place
+    ) -> FloatArray:
+        """Add the offset."""
+        reading = reading.copy()
+        reading[:, self.column] += self.offset
+        return reading
+
+
+@final
+@dataclass(frozen=True)
+class SensorDrift(RigEffect):
+    """One column wanders slowly: sum of p_k P_k(s), s from -1 to 1 over the file's stretch.
+
+    P_k are Legendre polynomials from the first order on; the constant is an offset. The shape is
+    of that stretch: between its rows it can be filled in, beyond its end it says nothing.
+    """
+
+    p1: float = 0.0
+    p2: float = 0.0
+    p3: float = 0.0
+    p4: float = 0.0
+    p5: float = 0.0
+    p6: float = 0.0
+
+    kind: ClassVar[str] = "sensor_drift"
+    element: ClassVar[Element] = Element.SIGNAL
+    linear: ClassVar[bool] = True
+    transient: ClassVar[bool] = True
+
+    @classmethod
+    def magnitudes(cls, place: Place) -> tuple[Magnitude, ...]:
+        """Up to the typical range each."""
+        size = (0.0, 0.0002 * place.span, place.span)
+        return tuple(Magnitude(f"p{k + 1}", place.unit, *size) for k in range(place.terms))
+
+    def edit_reading(
+        self, reading: FloatArray, true: FloatArray, time: FloatArray, place: Place
+    ) -> FloatArray:
+        """Add the wander."""
+        s = 2.0 * (time - place.begin) / (place.end - place.begin) - 1.0
+        weights = np.array([0.0, *self.sizes.values()])
+        reading = reading.copy()
+        reading[:, self.column] += legvander(s, len(weights) - 1) @ weights
+        return reading
+
+
+@final
+@dataclass(frozen=True)
+class SensorDelay(RigEffect):
+    """A whole signal is read late."""
+
+    delay: float = 0.0
+
+    kind: ClassVar[str] = "sensor_delay"
+    element: ClassVar[Element] = Element.SIGNAL
+
+    @classmethod
+    def magnitudes(cls, place: Place) -> tuple[Magnitude, ...]:
+        """Up to 50 ms."""
+        return (Magnitude("delay", "s", 0.0, 1e-4, SLOWEST, Sign.POSITIVE),)
+
+    def edit_reading(
+        self, reading: FloatArray, true: FloatArray, time: FloatArray, place: Place
+    ) -> FloatArray:
+        """What was read a delay ago."""
+        return shifted(reading, time, self.delay)
