@@ -15,7 +15,8 @@ from ves_twin.rigs.description import Mode
 from ves_twin.rigs.diagnose_mjcf import diagnose_mjcf
 from ves_twin.rigs.rig import Rig
 
-pytestmark = pytest.mark.slow
+pytestmark = [pytest.mark.slow, pytest.mark.timeout(900)]
+"""A minute of processor time each, several on a busy machine."""
 
 QUICK = Settings(nulls=40)
 """Thresholds matter little where causes stand out by thousands of chi^2."""

@@ -13,7 +13,7 @@ from ves_twin.types import FloatArray
 ADDS = 0.25
 """Share of the held-out excess without it that each cause must take, lower end."""
 
-TRIED = 4
+TRIED = 3
 """Suspects that are fitted for one place."""
 
 Proof = Callable[[Fit, Fit], Gain]
@@ -57,18 +57,21 @@ def _more(desk: Desk, here: Explanation) -> Explanation | None:
     return judge(desk, fits) if fits else None
 
 
-def _with_one(desk: Desk, here: Explanation, fit: Fit) -> list[Fit]:
-    """Fits of further causes beside those of a fit, by a bank linearised there."""
+def _with_one(
+    desk: Desk, here: Explanation, fit: Fit, but: Hypothesis | None = None, rounds: int = 1
+) -> list[Fit]:
+    """Fits of further causes, but one, beside those of a fit, by a bank linearised there."""
     rest, suspects = suspects_at(desk, here.evidence, fit)
-    likely = [s for s in suspects[:TRIED] if s.score > desk.thresholds.effect]
-    return [_grown(here, fit, rest[s.hypothesis], s.sizes) for s in likely]
+    likely = [s for s in suspects if rest[s.hypothesis] is not but][:TRIED]
+    likely = [s for s in likely if s.score > desk.thresholds.effect]
+    return [_grown(here, fit, rest[s.hypothesis], s.sizes, rounds) for s in likely]
 
 
-def _grown(here: Explanation, fit: Fit, more: Hypothesis, sizes: FloatArray) -> Fit:
+def _grown(here: Explanation, fit: Fit, more: Hypothesis, sizes: FloatArray, rounds: int) -> Fit:
     runs = here.evidence.runs
     where = runs.indices(more)
     shift = runs.depart(fit.shift, where, fit.shift[where] + sizes)
-    return refine(here.evidence, (*fit.causes, more), shift, fit.local, 1)
+    return refine(here.evidence, (*fit.causes, more), shift, fit.local, rounds)
 
 
 def _without(here: Explanation, kept: tuple[Hypothesis, ...]) -> Fit:
@@ -83,12 +86,14 @@ def _without(here: Explanation, kept: tuple[Hypothesis, ...]) -> Fit:
 
 def _unproved(desk: Desk, here: Explanation, proof: Proof) -> Hypothesis | None:
     """The cause that held-out recordings miss least, if they do not miss it or take another."""
-    found: dict[Hypothesis, float] = {}
-    for n, cause in enumerate(here.best.causes):
-        desk.progress(n / len(here.best.causes), "proving each cause")
-        less = _without(here, tuple(h for h in here.best.causes if h is not cause))
-        gain = proof(less, here.best)
-        others = [f for f in _with_one(desk, here, less) if cause not in f.causes]
-        if not _adds(gain) or not all(_adds(proof(fit, here.best)) for fit in others):
-            found[cause] = gain.share or 0.0
-    return min(found, key=lambda h: found[h]) if found else None
+    causes = here.best.causes
+    without = {c: _without(here, tuple(h for h in causes if h is not c)) for c in causes}
+    gains = {c: proof(fit, here.best) for c, fit in without.items()}
+    weak = [c for c in causes if not _adds(gains[c])]
+    if not weak:
+        for n, cause in enumerate(causes):
+            desk.progress(n / len(causes), "proving each cause")
+            others = _with_one(desk, here, without[cause], cause, 0)
+            if not all(_adds(proof(fit, here.best)) for fit in others):
+                weak.append(cause)
+    return min(weak, key=lambda cause: gains[cause].share or 0.0) if weak else None

@@ -84,10 +84,14 @@ def _moved(motion: _Motion) -> _Moved:
     q, v, a = _states(motion)
     data = mujoco.MjData(model)
     efforts, sensed = np.zeros((len(q), model.nv)), np.zeros((len(q), model.nsensordata))
+    position, speed, pull = data.qpos, data.qvel, data.qacc
+    effort, sensor, sensing = data.qfrc_inverse, data.sensordata, model.nsensordata > 0
     for k in range(len(q)):
-        data.qpos[:], data.qvel[:], data.qacc[:] = q[k], v[k], a[k]
+        position[:], speed[:], pull[:] = q[k], v[k], a[k]
         mujoco.mj_inverse(model, data)
-        efforts[k], sensed[k] = data.qfrc_inverse, data.sensordata
+        efforts[k] = effort
+        if sensing:
+            sensed[k] = sensor
     return _Moved(v, efforts, sensed)
 
 
