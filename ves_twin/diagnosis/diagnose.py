@@ -65,10 +65,7 @@ def diagnose(
         UnknownNameError: a signal that is not recorded, or an unknown cause in `exclude`.
     """
     chosen = settings or Settings()
-    known = {h.effect for h in forward.hypotheses} | {h.label for h in forward.hypotheses}
-    for name in exclude:
-        if name not in known:
-            raise UnknownNameError("cause", name, known)
+    _check_causes(forward, exclude)
     with Workers(chosen.workers) as workers:
         seen = observe(forward, recordings, workers)
         whitening = _whitening(seen.runs, standstill)
@@ -100,6 +97,7 @@ def diagnose(
             held_out="measured" if held_out else "none",
             baseline="measured" if baseline else "none",
         )
+        basis = _basis(standstill, scale, held_out)
         findings = Findings(seen, first, limits, chosen, naming_limit(bank, scale), scale)
         if not first.exceeds(limits.effect, limits.misfit, pull):
             return compose(findings, Kind.NOTHING, basis, tuple(exclude))
@@ -145,6 +143,23 @@ def _scale(forward: Forward, commissioning: Sequence[Recording], workers: Worker
             apart=apart,
         )
         return compose(findings, kind, basis, tuple(exclude))
+
+
+def _check_causes(forward: Forward, names: Sequence[str]) -> None:
+    known = {h.effect for h in forward.hypotheses} | {h.label for h in forward.hypotheses}
+    for name in names:
+        if name not in known:
+            raise UnknownNameError("cause", name, known)
+
+
+def _basis(
+    standstill: Recording | None, scale: float | None, held_out: Sequence[Recording]
+) -> Basis:
+    return Basis(
+        noise="declared" if standstill is None else "measured",
+        tolerances="declared" if scale is None else "measured",
+        held_out="measured" if held_out else "none",
+    )
 
 
 def _scale(
