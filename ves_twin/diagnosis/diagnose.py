@@ -8,8 +8,8 @@ from dataclasses import replace
 from ves_twin.diagnosis.assess import assess, pull_limit
 from ves_twin.diagnosis.bank import Bank, build_bank, cached_bank
 from ves_twin.diagnosis.compose import Findings, compose
-from ves_twin.diagnosis.differential import differential
 from ves_twin.diagnosis.conclude import HeldOut, conclude, whitening_of
+from ves_twin.diagnosis.differential import differential
 from ves_twin.diagnosis.disagreement import Alone, disagreement
 from ves_twin.diagnosis.explain import Desk, Explanation
 from ves_twin.diagnosis.forward import Forward, Programme
@@ -67,45 +67,27 @@ def diagnose(
     chosen = settings or Settings()
     _check_causes(forward, exclude)
     with Workers(chosen.workers) as workers:
-        seen = observe(forward, recordings, workers)
-        whitening = _whitening(seen.runs, standstill)
-        if baseline:
-            changed = differential(
-                seen, baseline, lambda tuned: observe(tuned, recordings, workers), whitening
-            )
-            seen = changed.seen
-            whitening = _whitening(seen.runs, standstill)
-            whitening = replace(whitening, level=whitening.level * changed.noise)
-        bank = _bank(seen, chosen, progress).without(tuple(exclude))
         seen = observe(forward, recordings, workers, chosen.rate)
         whitening = whitening_of(seen.runs, standstill)
-
-        def build() -> Bank:
-            check_likeness(seen, seen.runs.one(seen.runs.origin))  # before minutes of simulation
-            return build_bank(seen.runs, progress=progress)
-
-        built = cached_bank(seen.runs, chosen.cache, build)
-        check_likeness(seen, built.base.prediction)
-        bank = built.without(tuple(exclude))
+        if baseline:
+            changed = differential(
+                seen,
+                baseline,
+                lambda tuned: observe(tuned, recordings, workers, chosen.rate),
+                whitening,
+            )
+            seen = changed.seen
+            whitening = whitening_of(seen.runs, standstill)
+            whitening = replace(whitening, level=whitening.level * changed.noise)
+        bank = _bank(seen, chosen, progress).without(tuple(exclude))
         limits = cached_thresholds(bank, whitening, chosen, progress)
         pull = pull_limit(bank, chosen.alpha)
         first = assess(seen.measured, bank, whitening, limits.effect, limits.misfit, pull)
         scale = _scale(forward, commissioning, workers, chosen.rate)
-        basis = Basis(
-            noise="declared" if standstill is None else "measured",
-            tolerances="declared" if scale is None else "measured",
-            held_out="measured" if held_out else "none",
-            baseline="measured" if baseline else "none",
-        )
-        basis = _basis(standstill, scale, held_out)
+        basis = _basis(standstill, scale, held_out, baseline)
         findings = Findings(seen, first, limits, chosen, naming_limit(bank, scale), scale)
         if not first.exceeds(limits.effect, limits.misfit, pull):
             return compose(findings, Kind.NOTHING, basis, tuple(exclude))
-        found = explain(first, limits, chosen, progress)
-        gains = []
-        if found and held_out:
-            gains = _gains(forward, held_out, standstill, found, chosen, workers)
-        kind = _kind(found, gains)
         desk = Desk(first, limits, chosen, progress)
         held = HeldOut.of(forward, held_out, standstill, chosen, workers) if held_out else None
         end = conclude(desk, forward, (*recordings, *held_out), held)
@@ -114,8 +96,14 @@ def diagnose(
         apart: tuple[Alone, ...] = ()
         if found is None or not found.adequate:
             apart = disagreement(seen, bank, whitening, limits, chosen, progress)
-        gain = gains[0] if gains else None
-        findings = replace(findings, found=found, gain=gain, proposals=proposals, apart=apart)
+        findings = replace(
+            findings,
+            found=found,
+            gain=end.gain,
+            forecast=end.forecast,
+            proposals=proposals,
+            apart=apart,
+        )
         return compose(findings, kind, basis, tuple(exclude))
 
 
@@ -129,22 +117,6 @@ def _bank(seen: Observed, settings: Settings, progress: Progress) -> Bank:
     return bank
 
 
-def _whitening(runs: Runs, standstill: Recording | None) -> Whitening:
-    return whitening_declared(runs) if standstill is None else whitening_measured(runs, standstill)
-
-
-def _scale(forward: Forward, commissioning: Sequence[Recording], workers: Workers) -> float | None:
-        findings = replace(
-            findings,
-            found=found,
-            gain=end.gain,
-            forecast=end.forecast,
-            proposals=proposals,
-            apart=apart,
-        )
-        return compose(findings, kind, basis, tuple(exclude))
-
-
 def _check_causes(forward: Forward, names: Sequence[str]) -> None:
     known = {h.effect for h in forward.hypotheses} | {h.label for h in forward.hypotheses}
     for name in names:
@@ -153,12 +125,16 @@ def _check_causes(forward: Forward, names: Sequence[str]) -> None:
 
 
 def _basis(
-    standstill: Recording | None, scale: float | None, held_out: Sequence[Recording]
+    standstill: Recording | None,
+    scale: float | None,
+    held_out: Sequence[Recording],
+    baseline: Sequence[Recording],
 ) -> Basis:
     return Basis(
         noise="declared" if standstill is None else "measured",
         tolerances="declared" if scale is None else "measured",
         held_out="measured" if held_out else "none",
+        baseline="measured" if baseline else "none",
     )
 
 
