@@ -18,10 +18,6 @@ from ves_twin.types import FloatArray, SingleArray
 ROUNDS = 3
 """Linearisations at most for the commissioning errors of one record."""
 
-PROGRESS = 0.5
-"""A further linearisation of the nuisances that leaves more of the score than this was the last:
-what stays is no commissioning error."""
-
 
 @dataclass(frozen=True)
 class Assessment:
@@ -84,13 +80,11 @@ def assess(
     if not first.exceeds(effect, level, pull):
         return first
     look = first
-    for number in range(ROUNDS + 1):
-        fit = _fitted(look, min(number, 1))
+    for rounds in (0, ROUNDS):
+        fit = _fitted(look, rounds)
         own = whitening.adapted(whitening.apply(bare_residual(look.evidence, fit)))
-        before, look = look, _look(Evidence(runs, measured, own), Screen(bank, own), fit)
+        look = _look(Evidence(runs, measured, own), Screen(bank, own), fit)
         if not look.exceeds(effect, level, pull):
-            break
-        if number > 0 and look.score > PROGRESS * before.score:
             break
     return look
 

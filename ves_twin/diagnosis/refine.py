@@ -24,7 +24,7 @@ CONVERGED = 0.02
 NEAR = 0.3
 """Commissioning sd within which nuisance columns are taken to hold; absent parameters: 6 %."""
 
-FORWARD_STEP = 0.25
+FORWARD_STEP = 0.5
 """Commissioning sd of a one-sided difference at a fit."""
 
 WORTH = 3e-4
