@@ -6,7 +6,7 @@ PYTHON ?= $(shell for p in python3.12 python3.11 python3 python; do \
 BIN := .venv/bin
 PIP := $(BIN)/python -m pip install --quiet --disable-pip-version-check
 
-.PHONY: demo demo-diagnosis test check fast fuzz types lint layers bench figures fidelity scorecard picture clean
+.PHONY: demo demo-diagnosis test check fast fuzz types lint layers bench figures fidelity scorecard diagnosis-scorecard picture clean
 
 demo: .venv/.run
 	$(BIN)/ves-twin run beam_horizontal_truth --out runs/demo
@@ -53,6 +53,9 @@ picture: .venv/.dev
 scorecard: .venv/.run
 	$(BIN)/ves-twin reproduce --out runs/scorecard
 	cp runs/scorecard/thesis-scorecard.md docs/thesis-scorecard.md
+
+diagnosis-scorecard: .venv/.run
+	$(BIN)/python benchmarks/diagnosis_scorecard.py docs/diagnosis-scorecard.md
 
 figures: .venv/.dev
 	$(BIN)/python -m pytest -n 0 --figures docs/figures.md \
