@@ -26,6 +26,7 @@ def place(request) -> FilterPlace:
 def blocks(place, rate_gain=RATE_GAIN):
     p, s = np.zeros(1, leg_loop.PARAMETERS), np.zeros(1, leg_loop.STATE)
     p["gain"], p["rate_gain"], p["place"] = GAIN, rate_gain, place.code
+    p["limit"] = 1.0
     p["numerator"], p["denominator"] = chebyshev_section(RATE)
     p["period"], p["full_speed"] = PERIOD, FULL_SPEED
     return p, s

@@ -15,6 +15,7 @@ from ves_twin.benches.ves2_library import (
     AXES,
     WANDER,
     hypotheses_of,
+    idle_kinds,
     offset_parameters,
     parameters_of,
     table_parameters,
@@ -100,7 +101,7 @@ class RigForward:
     @cached_property
     def hypotheses(self) -> tuple[Hypothesis, ...]:
         """Every effect on every target that it can have."""
-        return hypotheses_of(self.plant, self.exclude)
+        return hypotheses_of(self.plant, self.exclude | idle_kinds(self.scenario))
 
     def simulate(
         self, programme: Programme, values: Mapping[str, float], refined: bool = False

@@ -7,6 +7,7 @@ from collections.abc import Iterator, Mapping
 import numpy as np
 
 from ves_twin.benches.slow_noise import MODES
+from ves_twin.control.leg_loop import FilterPlace
 from ves_twin.diagnosis.forward import Hypothesis, Parameter
 from ves_twin.effects.effect import Effect
 from ves_twin.effects.magnitude import Magnitude, Sign
@@ -14,12 +15,16 @@ from ves_twin.effects.registry import EFFECTS, build_effect
 from ves_twin.plant.fidelity import Fidelity
 from ves_twin.plant.hydraulics import Hydraulics
 from ves_twin.plant.plant import Plant
+from ves_twin.scenario.schema import Scenario
 from ves_twin.types import FloatArray
 
 PRESSURE_ONLY = frozenset(
     {"cylinder_viscous", "piston_leakage", "oil_air", "supply_pressure", "supply_droop"}
 )
 """Kinds that act on chambers or the manifold, which the linear form lacks."""
+
+UNSEEN = frozenset({"model_mass", "stale_gravity"})
+"""Kinds that act on the admittance computer, above where a replay cuts the loop."""
 
 OPEN_NUMBERS = (
     "platform.mass",
@@ -38,13 +43,21 @@ OPEN_NUMBERS = (
 BENT = frozenset(
     {
         "base_tilt",
+        "command_limit",
         "coulomb_friction",
+        "drive_delay",
+        "filter_edge",
         "hose_stiffness",
         "joint_friction",
+        "leg_gain",
+        "leg_rate_gain",
         "oil_air",
+        "sensor_delay",
         "sensor_lag",
         "supply_droop",
+        "transducer_delay",
         "valve_deadband",
+        "valve_delay",
         "valve_lag",
     }
 )
@@ -63,10 +76,18 @@ WANDER = "wander@sensor."
 def places(plant: Plant) -> Iterator[tuple[type[Effect], str]]:
     """Every kind of effect that a plant can have, on every target."""
     for kind in EFFECTS.values():
+        if kind.kind in UNSEEN:
+            continue
         if plant.hydraulics is Hydraulics.LINEAR and kind.kind in PRESSURE_ONLY:
             continue
         for target in kind.targets:
             yield kind, target
+
+
+def idle_kinds(scenario: Scenario) -> frozenset[str]:
+    """Kinds that act on a part that a scenario does not use."""
+    filtered = scenario.legs.filter is not FilterPlace.NONE
+    return frozenset() if filtered else frozenset({"filter_edge"})
 
 
 def parameters_of(plant: Plant) -> tuple[Parameter, ...]:

@@ -14,14 +14,17 @@ PARAMETERS = np.dtype(
     [
         ("gain", np.float64),
         ("rate_gain", np.float64),
+        ("limit", np.float64),
         ("place", np.int64),
+        ("edge", np.float64),
         ("numerator", np.float64, 3),
         ("denominator", np.float64, 3),
         ("period", np.float64),
         ("full_speed", np.float64),
     ]
 )
-"""gain [1/s]; rate_gain on the measured speed [1]; place of the section; coefficients; period [s];
+"""gain [1/s]; rate_gain on the measured speed [1]; limit of the commands; place of the section,
+its edge [Hz] and the coefficients that follow from it; period [s];
 full_speed: rod speed believed at full opening [m/s]."""
 
 STATE = np.dtype(
@@ -93,7 +96,7 @@ def start_legs(p: Record, s: Record, length: FloatArray) -> None:
 
 @compiled
 def control_legs(p: Record, s: Record, length: FloatArray, valve: FloatArray) -> None:
-    """Spool commands u = (gain * e - rate_gain * dL/dt) / full_speed, limited to -1 ... 1.
+    """Spool commands u = (gain * e - rate_gain * dL/dt) / full_speed, within +-limit.
 
     The section filters the error, the measured length, or nothing; its gain at rest is 1. The
     rate term uses the measured speed: on the error it would see the steps of the command.
@@ -118,4 +121,4 @@ def control_legs(p: Record, s: Record, length: FloatArray, valve: FloatArray) ->
         speed = (length[i] - s.previous[i]) / p.period
         s.previous[i] = length[i]
         u = (p.gain * error - p.rate_gain * speed) / p.full_speed
-        valve[i] = min(max(u, -1.0), 1.0)
+        valve[i] = min(max(u, -p.limit), p.limit)

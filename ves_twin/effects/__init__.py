@@ -8,7 +8,9 @@ from ves_twin.effects.arm import (
     RotorInertia,
     TorqueConstant,
 )
+from ves_twin.effects.computers import ModelMass, StaleGravity
 from ves_twin.effects.cylinder import CoulombFriction, CylinderViscous, OilAir, PistonLeakage
+from ves_twin.effects.deployed import CommandLimit, FilterEdge, LegGain, LegRateGain
 from ves_twin.effects.effect import Effect
 from ves_twin.effects.force_sensor import (
     SensorCrossTalk,
@@ -20,6 +22,7 @@ from ves_twin.effects.force_sensor import (
 from ves_twin.effects.geometry import AnchorPosition, BaseTilt, HoseStiffness
 from ves_twin.effects.payload import LinkCentre, LinkMass, PayloadMass
 from ves_twin.effects.supply import SupplyDroop, SupplyPressure
+from ves_twin.effects.timing import DriveDelay, SensorDelay, TransducerDelay, ValveDelay
 from ves_twin.effects.transducer import LengthOffset, LengthScale
 from ves_twin.effects.valve import ValveDeadband, ValveGain, ValveLag, ValveNull
 
@@ -27,30 +30,40 @@ __all__ = [
     "AnchorPosition",
     "BaseTilt",
     "CableSpring",
+    "CommandLimit",
     "CoulombFriction",
     "CylinderViscous",
+    "DriveDelay",
     "Effect",
     "EncoderOffset",
+    "FilterEdge",
     "HoseStiffness",
     "JointFriction",
     "JointViscous",
+    "LegGain",
+    "LegRateGain",
     "LengthOffset",
     "LengthScale",
     "LinkCentre",
     "LinkMass",
+    "ModelMass",
     "OilAir",
     "PayloadMass",
     "PistonLeakage",
     "RotorInertia",
     "SensorCrossTalk",
+    "SensorDelay",
     "SensorDrift",
     "SensorGain",
     "SensorLag",
     "SensorMounting",
+    "StaleGravity",
     "SupplyDroop",
     "SupplyPressure",
     "TorqueConstant",
+    "TransducerDelay",
     "ValveDeadband",
+    "ValveDelay",
     "ValveGain",
     "ValveLag",
     "ValveNull",

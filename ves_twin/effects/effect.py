@@ -20,6 +20,7 @@ AXES = tuple(f"sensor.{axis}" for axis in ("fx", "fy", "fz", "mx", "my", "mz"))
 JOINTS = tuple(f"arm.q{i}" for i in range(1, 4))
 LINKS = tuple(f"arm.link{i}" for i in range(1, 4))
 RIG = ("rig",)
+ALL_LEGS = ("legs",)
 
 
 @dataclass(frozen=True)
@@ -83,6 +84,14 @@ class Effect(ABC):
 
     def edit_loop(self, parameters: np.void) -> None:
         """Change the numbers of the compiled loop: valve, cylinder, sensors, deployed leg loop."""
+
+    def edit_computers(self, numbers: dict[str, FloatArray]) -> None:
+        """Change numbers of the admittance computer's program.
+
+        Args:
+            numbers: "gravity.age" in cycles (), and where a system is emulated "emulated.mass", M
+                of the model that runs (6, 6).
+        """
 
     def _of(self, magnitude: Magnitude) -> str:
         return f"{self.kind} of {self.target}: {magnitude.name}"

@@ -6,11 +6,14 @@ from collections.abc import Iterable, Mapping
 
 from ves_twin.effects import (
     arm,
+    computers,
     cylinder,
+    deployed,
     force_sensor,
     geometry,
     payload,
     supply,
+    timing,
     transducer,
     valve,
 )
@@ -48,6 +51,16 @@ _KINDS: tuple[type[Effect], ...] = (
     arm.CableSpring,
     arm.TorqueConstant,
     arm.EncoderOffset,
+    timing.TransducerDelay,
+    timing.ValveDelay,
+    timing.SensorDelay,
+    timing.DriveDelay,
+    deployed.LegGain,
+    deployed.LegRateGain,
+    deployed.FilterEdge,
+    deployed.CommandLimit,
+    computers.ModelMass,
+    computers.StaleGravity,
 )
 
 

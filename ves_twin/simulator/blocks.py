@@ -10,7 +10,15 @@ from ves_twin.errors import InvalidInputError
 from ves_twin.plant.hydraulics import fill_chambers, refuse_idle
 from ves_twin.plant.layout import Layout
 from ves_twin.plant.parameters import ParameterTable
-from ves_twin.plant.physics import chambers, cylinder, force_sensor, supply, transducer, valve
+from ves_twin.plant.physics import (
+    chambers,
+    cylinder,
+    delay,
+    force_sensor,
+    supply,
+    transducer,
+    valve,
+)
 from ves_twin.plant.plant import Plant
 from ves_twin.scenario.schema import Legs
 from ves_twin.simulator.clock import Clock
@@ -77,6 +85,7 @@ PARAMETERS = np.dtype(
         ("chambers", chambers.PARAMETERS),
         ("sensor", force_sensor.PARAMETERS),
         ("servo", arm_servo.PARAMETERS),
+        ("late", delay.PARAMETERS),
     ]
 )
 
@@ -109,6 +118,7 @@ STATE = np.dtype(
         ("rod_force", np.float64, 6),
         ("sensor", force_sensor.STATE),
         ("servo", arm_servo.STATE),
+        ("late", delay.STATE),
     ]
 )
 """cycle_start: tick of the last admittance cycle; current: held amplifier outputs, -1 to 1;
@@ -121,7 +131,8 @@ def parameter_block(
     """Parameters of the loop: the plant's for the hardware, the belief's for the computers.
 
     Raises:
-        InvalidInputError: a changed parameter that acts on nothing in this form of hydraulics.
+        InvalidInputError: a changed parameter that acts on nothing in this form of hydraulics, an
+            edge of a leg filter that is not there, a delay that is too long.
     """
     table = plant.actual
     refuse_idle(plant.hydraulics, table, Plant.load(plant.base).parameters)
@@ -144,7 +155,20 @@ def parameter_block(
     servo["cycle"] = clock.admittance * clock.tick
     for effect in plant.effects:
         effect.edit_loop(p)
+    _derive(p, legs)
     return block
+
+
+def _derive(p: np.void, legs: Legs) -> None:
+    """What follows from numbers that effects may have changed: sections and delay lines."""
+    rules = p["legs"]
+    if rules["place"] == leg_loop.NONE and rules["edge"] != legs.edge:
+        raise InvalidInputError(
+            "edge of the deployed leg filter", float(rules["edge"]), "a filter in legs.filter"
+        )
+    rate = 1.0 / rules["period"]
+    rules["numerator"], rules["denominator"] = leg_loop.chebyshev_section(rate, rules["edge"])
+    delay.count_ticks(p["late"], p["clock"]["tick"])
 
 
 def _fill_small_devices(p: np.void, table: ParameterTable, plant: Plant) -> None:
@@ -168,11 +192,9 @@ def _fill_small_devices(p: np.void, table: ParameterTable, plant: Plant) -> None
 
 
 def _fill_legs(p: np.void, legs: Legs, clock: Clock, belief: Belief) -> None:
-    period = clock.leg * clock.tick
-    p["gain"], p["rate_gain"] = legs.gain, legs.rate_gain
-    p["place"] = legs.filter.code
-    p["numerator"], p["denominator"] = leg_loop.chebyshev_section(1.0 / period, legs.edge)
-    p["period"] = period
+    p["gain"], p["rate_gain"], p["limit"] = legs.gain, legs.rate_gain, 1.0
+    p["place"], p["edge"] = legs.filter.code, legs.edge
+    p["period"] = clock.leg * clock.tick
     p["full_speed"] = belief.full_speed
 
 

@@ -30,7 +30,7 @@ from ves_twin.simulator.recorder import IDEAL, LEG_LAG
 from ves_twin.simulator.reference import ZeroGravityReference
 from ves_twin.simulator.rig import Rig
 from ves_twin.simulator.truth_port import GravityTruth
-from ves_twin.types import Block
+from ves_twin.types import Block, FloatArray
 
 
 def build_operator(
@@ -71,20 +71,23 @@ def build_computers(
 
     Raises:
         UnreachableError: the start pose is outside the legs' travel.
-        InvalidInputError: a gravity calibration of another sensor or arm, or W_g of another
-            experiment.
+        InvalidInputError: a gravity calibration of another sensor or arm, W_g of another
+            experiment, or an effect on an emulated system where there is none.
     """
     start = np.array(scenario.platform.start)
     check_reach(belief.geometry, start, belief.leg_travel, "platform.start")
     belief = _calibrated(scenario, belief, rig)
     gravity = script.gravity if script else _gravity(scenario, belief, rig)
     period = rig.clock.admittance * rig.clock.tick
+    emulated, age = emulated_of(scenario), scenario.gravity.age
+    if not script:  # what is played back was decided by computers long ago
+        emulated, age = _deployed(emulated, age, rig.plant)
     task = ControlTask(
         belief=belief,
         period=period,
         start=start,
         home=np.array(scenario.platform.home),
-        emulated=emulated_of(scenario),
+        emulated=emulated,
         motion=script.poses if script else _motion(scenario.platform),
         subtract_gravity=scenario.platform.mode != "admittance" and gravity.subtracts,
     )
@@ -93,13 +96,27 @@ def build_computers(
         belief=belief,
         controller=chosen.build(task),
         gravity=gravity,
-        gravity_age=scenario.gravity.age,
+        gravity_age=age,
         arm=arm or (script.joints if script else arm_motion(scenario)),
         feedforward=GravityFeedforward(belief) if scenario.arm.gravity_feedforward else None,
         period=period,
         board=rig.board,
         state=rig.state,
     )
+
+
+def _deployed(
+    emulated: EmulatedSystem | None, age: int, plant: Plant
+) -> tuple[EmulatedSystem | None, int]:
+    """Model and age of the estimate as the program has them, which effects may have changed."""
+    numbers: dict[str, FloatArray] = {"gravity.age": np.array(float(age))}
+    if emulated is not None:
+        numbers["emulated.mass"] = emulated.mass.copy()
+    for effect in plant.effects:
+        effect.edit_computers(numbers)
+    if emulated is not None:
+        emulated = replace(emulated, mass=numbers["emulated.mass"])
+    return emulated, round(float(numbers["gravity.age"]))
 
 
 def _gravity(scenario: Scenario, belief: Belief, rig: Rig) -> GravityCompensation:

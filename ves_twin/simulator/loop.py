@@ -11,6 +11,7 @@ from ves_twin.kinematics.rotations import angles_from_matrix, matrix_from_quater
 from ves_twin.plant.hydraulics import PRESSURE_FORM
 from ves_twin.plant.physics.chambers import push_rods_by_pressure
 from ves_twin.plant.physics.cylinder import push_rods
+from ves_twin.plant.physics.delay import take_late
 from ves_twin.plant.physics.force_sensor import sample_wrench, wander_on
 from ves_twin.plant.physics.supply import feed_manifold
 from ves_twin.plant.physics.transducer import read_lengths
@@ -41,6 +42,11 @@ def _drive_arm(
     u = (tick - s.cycle_start) / p.clock.admittance
     spline(s.servo.points, u, p.servo.cycle, work.q_set, work.rate_set)
     for j in range(3):
+        board.arm_command[j] = work.q_set[j]
+    if p.late.setpoint.kept > 0:
+        take_late(p.late.setpoint, s.late.angle_past, work.q_set, work.q_set)
+        take_late(p.late.setpoint, s.late.rate_past, work.rate_set, work.rate_set)
+    for j in range(3):
         work.q[j] = qpos[p.layout.arm_qpos[j]] + p.drive.encoder_offset[j]
         work.rate[j] = qvel[p.layout.arm_dof[j]]
         work.added[j] = s.servo.integral[j] + s.servo.feedforward[j]
@@ -50,7 +56,6 @@ def _drive_arm(
         s.servo.integral[j] += p.servo.integral[j] * error * p.clock.tick
         ctrl[p.layout.arm_ctrl[j]] = work.torque[j] * p.drive.torque_gain[j]
         count = p.noise.encoder_count[j]
-        board.arm_command[j] = work.q_set[j]
         board.arm_q[j] = np.rint(work.q[j] / count) * count if count > 0.0 else work.q[j]
         board.arm_torque[j] = work.torque[j] + p.noise.torque[j] * slow[TORQUE + j]
         board.truth_arm_q[j] = qpos[p.layout.arm_qpos[j]]
@@ -99,14 +104,19 @@ def _read_and_command(
     """Transducers, gauge, arm servo, and the leg loop and amplifiers when their clocks strike."""
     for i in range(6):
         s.work.slide[i] = slides[p.layout.slide_at[i]] - p.layout.slide_home[i]
+    if p.late.slide.kept > 0:
+        take_late(p.late.slide, s.late.slide_past, s.work.slide, s.work.slide)
     read_lengths(p.transducer, s.work.slide, fast[LENGTH:], board.leg_length)
     board.supply_pressure[0] = s.supply.manifold + p.noise.pressure * slow[PRESSURE]
     _drive_arm(p, s, board, tick, qpos, qvel, ctrl, slow)
     if tick % p.clock.leg == 0:
         control_legs(p.legs, s.legs, board.leg_length, board.valve_command)
+    output = s.late.sent if p.late.current.kept > 0 else s.current
     if tick % p.clock.amplifier == 0:
         for i in range(6):
-            s.current[i] = board.valve_command[i]
+            output[i] = board.valve_command[i]
+    if p.late.current.kept > 0:
+        take_late(p.late.current, s.late.current_past, s.late.sent, s.current)
 
 
 @compiled
@@ -126,7 +136,12 @@ def _move_rig(
         if k == 0:  # later sub-steps carry the forces of later instants
             for i in range(6):
                 s.work.wrench[i] = -sensordata[p.layout.wrench_sensor + i]
+            if p.late.wrench.kept > 0:
+                take_late(p.late.wrench, s.late.wrench_past, s.work.wrench, s.work.wrench)
             inside = sample_wrench(p.sensor, s.sensor, s.work.wrench, time, fast[WHITE:])
+            if p.late.wrench.kept > 0:
+                for i in range(6):
+                    s.sensor.true[i] = -sensordata[p.layout.wrench_sensor + i]
     return inside
 
 

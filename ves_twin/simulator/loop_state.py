@@ -9,6 +9,7 @@ import mujoco
 import numpy as np
 
 from ves_twin.errors import InvalidInputError
+from ves_twin.plant.physics.delay import PASTS
 from ves_twin.simulator.computers import ComputersSnapshot
 from ves_twin.simulator.simulator import Simulator
 from ves_twin.types import FloatArray
@@ -16,8 +17,8 @@ from ves_twin.types import FloatArray
 STEP = 1e-6
 """Relative step of the differences: far above round-off, far below any nonlinearity."""
 
-_SPOOLS = ("spool", "current", "valve_command")
-_SCRATCH = ("work",)
+_SPOOLS = ("spool", "current", "valve_command", "sent", "current_past")
+_SCRATCH = "work"
 
 
 class LoopState:
@@ -85,9 +86,11 @@ class LoopState:
     def _numbers(self, names: list[str], truths: int) -> Iterator[FloatArray]:
         """Live views of every float of the compiled state and of the board; adds their names."""
         names += ["truth"] * truths
+        late = self._sim.rig.parameters["late"]
+        absent = {past for line in PASTS if not late[line]["kept"][0] for past in PASTS[line]}
         for block in (self._sim.rig.state, self._sim.rig.board.block):
             flat = block.view(np.float64)
-            for name, first, count in _floats(block.dtype, 0):
+            for name, first, count in _floats(block.dtype, 0, absent | {_SCRATCH}):
                 names += [name] * count
                 yield flat[first : first + count]
 
@@ -136,13 +139,15 @@ class LoopState:
         self._sim.computers.restore(ComputersSnapshot(parts[0], parts[1], shared, rest.feedforward))
 
 
-def _floats(dtype: np.dtype[np.void], offset: int) -> Iterator[tuple[str, int, int]]:
-    """Name, first index and count of every float leaf of a structured type, scratch left out."""
+def _floats(
+    dtype: np.dtype[np.void], offset: int, absent: set[str]
+) -> Iterator[tuple[str, int, int]]:
+    """Name, first index and count of every float leaf of a structured type that is not absent."""
     fields: Mapping[str, Any] = dtype.fields or {}
-    for name in (n for n in fields if n not in _SCRATCH):
+    for name in (n for n in fields if n not in absent):
         inner, start = fields[name][:2]
         base = inner.base if inner.subdtype else inner
         if base.names:
-            yield from _floats(base, offset + start)
+            yield from _floats(base, offset + start, absent)
         elif base == np.float64:
             yield name, (offset + start) // 8, inner.itemsize // 8

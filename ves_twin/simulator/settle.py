@@ -17,7 +17,7 @@ from ves_twin.simulator.codes import RUNNING, SLOW, WANDER
 from ves_twin.simulator.computers import Computers
 from ves_twin.simulator.rig import Rig
 from ves_twin.simulator.truth_port import GravityTruth
-from ves_twin.types import FloatArray
+from ves_twin.types import Block, FloatArray
 
 ZEROING_SECONDS = 1.0
 """The sensor is averaged this long before the run, while the rig stands."""
@@ -137,7 +137,16 @@ def _start_states(rig: Rig, pose: FloatArray, q: FloatArray, computers: Computer
     start_legs(p[0]["legs"], s[0]["legs"], believed)
     wrench = GravityTruth(rig.model, rig.data, layout).gravity_in_sensor()
     _, slow = rig.noise.window(rig.tick - SLOW, 1)
+    _start_lines(s["late"], slide, wrench, s["current"], q)
     start_at(p[0]["sensor"], s[0]["sensor"], wrench, slow[WANDER:, 0])
+
+
+def _start_lines(
+    late: Block, slide: FloatArray, wrench: FloatArray, current: FloatArray, q: FloatArray
+) -> None:
+    """Delay lines that have long seen what is there now."""
+    late["slide_past"], late["wrench_past"], late["current_past"] = slide, wrench, current
+    late["angle_past"][..., :3], late["rate_past"] = q, 0.0
 
 
 def _zero(rig: Rig, signal: FloatArray) -> None:
