@@ -23,7 +23,11 @@ MOVING = {
     "platform.motion.amplitude": [0.03, 0.03, 0.03, 0.05, 0.05, 0.06],
     "arm.moves": [{"start": 0.1, "duration": 1.4, "to": [0.7, 1.0, 0.6]}],
 }
-QUIET = {"transducer.resolution": 0.0, "sensor.resolution": [0.0] * 6}
+QUIET = {
+    "transducer.resolution": 0.0,
+    "sensor.resolution": [0.0] * 6,
+    "arm.encoder_resolution": [0.0] * 3,
+}
 """Counts would turn round-off into counts."""
 
 STICKING = {"coulomb_friction", "joint_friction"}
