@@ -44,6 +44,22 @@ def test_growth_and_frequency_are_those_of_a_run(gain, figure):
     figure(f"frequency {less}", abs(growth.frequency - mode.frequency), 0.05, "Hz")
 
 
+@pytest.mark.slow
+def test_what_is_under_way_in_a_delay_line_is_part_of_the_state():
+    """Late valves make the loop unstable, by the growth that a run has; ranges as above."""
+
+    def late() -> vt.Simulator:
+        delay = vt.effects.ValveDelay("legs", delay=1.5e-3)
+        world = smooth_readings(vt.Plant.load("ves2")).extended(delay)
+        return vt.Simulator(world, vt.Scenario.load("beam_horizontal_truth", STILL))
+
+    mode = SampledLoop(late()).modes()[0]
+    growth = oscillation_growth(kicked(late())[80:], 37 * 341e-6, (8.0, 18.0), floor=1e-9)
+    assert mode.growth > 0.5 > 0.0 > SampledLoop(at_rest()).modes()[0].growth
+    assert abs(growth.rate - mode.growth) < 0.03  # 1/s
+    assert abs(growth.frequency - mode.frequency) < 0.05  # Hz
+
+
 def test_with_the_legs_at_gain_zero_the_modes_are_those_of_the_structure():
     """Another linearisation, by the engine itself, of the rig with valves closed."""
     standing = {"legs.gain": 0.0, "platform.motion.amplitude": [0.0] * 6, "arm.start": [0.0] * 3}
