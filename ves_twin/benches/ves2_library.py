@@ -12,7 +12,7 @@ from ves_twin.diagnosis.forward import Hypothesis, Parameter
 from ves_twin.effects.effect import Effect
 from ves_twin.effects.magnitude import Magnitude, Sign
 from ves_twin.effects.registry import EFFECTS, build_effect
-from ves_twin.plant.fidelity import Fidelity
+from ves_twin.plant.fidelity import ABSENT_EFFECTS, Fidelity
 from ves_twin.plant.hydraulics import Hydraulics
 from ves_twin.plant.plant import Plant
 from ves_twin.scenario.schema import Scenario
@@ -49,11 +49,13 @@ BENT = frozenset(
         "filter_edge",
         "hose_stiffness",
         "joint_friction",
+        "leg_bending",
         "leg_gain",
         "leg_rate_gain",
         "oil_air",
         "sensor_delay",
         "sensor_lag",
+        "servo_gain",
         "supply_droop",
         "transducer_delay",
         "valve_deadband",
@@ -77,6 +79,8 @@ def places(plant: Plant) -> Iterator[tuple[type[Effect], str]]:
     """Every kind of effect that a plant can have, on every target."""
     for kind in EFFECTS.values():
         if kind.kind in UNSEEN:
+            continue
+        if plant.fidelity is Fidelity.FAST and kind.kind in ABSENT_EFFECTS:
             continue
         if plant.hydraulics is Hydraulics.LINEAR and kind.kind in PRESSURE_ONLY:
             continue

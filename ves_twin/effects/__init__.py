@@ -10,7 +10,7 @@ from ves_twin.effects.arm import (
 )
 from ves_twin.effects.computers import ModelMass, StaleGravity
 from ves_twin.effects.cylinder import CoulombFriction, CylinderViscous, OilAir, PistonLeakage
-from ves_twin.effects.deployed import CommandLimit, FilterEdge, LegGain, LegRateGain
+from ves_twin.effects.deployed import CommandLimit, FilterEdge, LegGain, LegRateGain, ServoGain
 from ves_twin.effects.effect import Effect
 from ves_twin.effects.force_sensor import (
     SensorCrossTalk,
@@ -19,7 +19,7 @@ from ves_twin.effects.force_sensor import (
     SensorLag,
     SensorMounting,
 )
-from ves_twin.effects.geometry import AnchorPosition, BaseTilt, HoseStiffness
+from ves_twin.effects.geometry import AnchorPosition, BaseTilt, HoseStiffness, LegBending
 from ves_twin.effects.payload import LinkCentre, LinkMass, PayloadMass
 from ves_twin.effects.supply import SupplyDroop, SupplyPressure
 from ves_twin.effects.timing import DriveDelay, SensorDelay, TransducerDelay, ValveDelay
@@ -40,6 +40,7 @@ __all__ = [
     "HoseStiffness",
     "JointFriction",
     "JointViscous",
+    "LegBending",
     "LegGain",
     "LegRateGain",
     "LengthOffset",
@@ -57,6 +58,7 @@ __all__ = [
     "SensorGain",
     "SensorLag",
     "SensorMounting",
+    "ServoGain",
     "StaleGravity",
     "SupplyDroop",
     "SupplyPressure",

@@ -1,6 +1,6 @@
-"""Effects of the deployed leg controller: the program that runs is not the one that is written.
+"""Effects of the deployed leg and joint loops: what runs is not the program that is written.
 
-One program runs all six legs, so each has the target "legs"; a leg whose amplifier is off is
+One program runs all six legs, so its kinds have the target "legs"; a leg whose amplifier is off is
 `valve_gain`. The sd is zero: commissioning leaves nothing open in a number of a program.
 """
 
@@ -9,7 +9,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, ClassVar, final
 
-from ves_twin.effects.effect import ALL_LEGS, Effect
+from ves_twin.effects.effect import ALL_LEGS, JOINTS, Effect
 from ves_twin.effects.magnitude import Magnitude, Sign
 
 if TYPE_CHECKING:
@@ -92,3 +92,24 @@ class CommandLimit(Effect):
     def edit_loop(self, parameters: np.void) -> None:
         """Lower the limit."""
         parameters["legs"]["limit"] /= 1.0 + self.tightness
+
+
+@final
+@dataclass(frozen=True)
+class ServoGain(Effect):
+    """A joint's servo runs with another stiffness: K -> (1 + share) K.
+
+    The zero-g reference has the same servo: its arm is this arm, on the base that is meant.
+    """
+
+    share: float = 0.0
+
+    kind: ClassVar[str] = "servo_gain"
+    targets: ClassVar[tuple[str, ...]] = JOINTS
+    magnitudes: ClassVar[tuple[Magnitude, ...]] = (Magnitude("share", "1", 0.0, 0.02, 0.5),)
+    channels: ClassVar[tuple[str, ...]] = ("arm.q", "arm.torque")
+    source: ClassVar[str] = "thesis 2.4.3: gains set in the motion controller; size assumed"
+
+    def edit_loop(self, parameters: np.void) -> None:
+        """Scale the stiffness of the joint."""
+        parameters["servo"]["stiffness"][self.index] *= 1.0 + self.share

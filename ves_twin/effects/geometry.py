@@ -1,4 +1,4 @@
-"""Effects of geometry and surroundings: anchor positions, tilt of the base, hoses."""
+"""Effects of structure and surroundings: anchors, bending of a leg, tilt of the base, hoses."""
 
 from __future__ import annotations
 
@@ -93,3 +93,28 @@ class HoseStiffness(Effect):
         import numpy as np
 
         rig.joint("platform/free").stiffness = np.array([self.stiffness, 0.0, 0.0])
+
+
+@final
+@dataclass(frozen=True)
+class LegBending(Effect):
+    """A leg bends more easily: stiffness k -> (1 - loss) k, so that its mode falls by the root.
+
+    Transducers do not see it; straight legs (`fast`) have no room for it.
+    """
+
+    loss: float = 0.0
+
+    kind: ClassVar[str] = "leg_bending"
+    targets: ClassVar[tuple[str, ...]] = LEGS
+    magnitudes: ClassVar[tuple[Magnitude, ...]] = (
+        Magnitude("loss", "1", 0.02, 0.05, 0.8, Sign.POSITIVE),
+    )
+    channels: ClassVar[tuple[str, ...]] = ("sensor.wrench",)
+    source: ClassVar[str] = "thesis 5.2: first modes of 10 to 13 Hz; a loose or cracked leg"
+
+    def edit_rig(self, rig: mujoco.MjSpec) -> None:
+        """Lower the stiffness of the leg's two bending hinges."""
+        for axis in "xy":
+            joint = rig.joint(f"leg{self.index + 1}/bending_{axis}")
+            joint.stiffness = joint.stiffness * (1.0 - self.loss)

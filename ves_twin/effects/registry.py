@@ -37,6 +37,7 @@ _KINDS: tuple[type[Effect], ...] = (
     geometry.AnchorPosition,
     geometry.BaseTilt,
     geometry.HoseStiffness,
+    geometry.LegBending,
     force_sensor.SensorGain,
     force_sensor.SensorCrossTalk,
     force_sensor.SensorDrift,
@@ -59,6 +60,7 @@ _KINDS: tuple[type[Effect], ...] = (
     deployed.LegRateGain,
     deployed.FilterEdge,
     deployed.CommandLimit,
+    deployed.ServoGain,
     computers.ModelMass,
     computers.StaleGravity,
 )

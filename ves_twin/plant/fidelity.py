@@ -41,17 +41,23 @@ ABSENT_PARAMETERS = frozenset(
 """Numbers that the fast rig has no room for: bending, cylinder bodies, friction of the joints."""
 
 
+ABSENT_EFFECTS = frozenset({"leg_bending"})
+"""Kinds of effects on parts that the fast rig does not have."""
+
+
 def check_room(fidelity: Fidelity, changed: Iterable[str]) -> None:
-    """Refuse parameters that a fidelity has no room for, so that none is lost silently.
+    """Refuse parameters and effects that a fidelity has no room for, so that none is lost silently.
 
     Args:
         fidelity: how much is modelled.
-        changed: names of parameters that differ from nominal.
+        changed: names of parameters that differ from nominal, kinds of effects that it has.
 
     Raises:
-        InvalidInputError: the fast rig with a parameter of a bending or massive leg; says which.
+        InvalidInputError: the fast rig with a parameter or an effect of a bending or massive leg;
+            says which.
     """
-    lost = sorted(ABSENT_PARAMETERS.intersection(changed)) if fidelity is Fidelity.FAST else []
+    absent = ABSENT_PARAMETERS | ABSENT_EFFECTS
+    lost = sorted(absent.intersection(changed)) if fidelity is Fidelity.FAST else []
     if lost:
         raise InvalidInputError(
             "fidelity",

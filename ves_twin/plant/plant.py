@@ -122,7 +122,8 @@ class Plant:
         chosen = Fidelity(fidelity)
         if chosen is not Fidelity.FULL:
             nominal = Plant.load(NOMINAL).parameters
-            check_room(chosen, self.actual.differences(nominal))
+            kinds = (effect.kind for effect in self.effects)
+            check_room(chosen, [*self.actual.differences(nominal), *kinds])
         return replace(self, fidelity=chosen)
 
     def extended(self, *effects: Effect) -> Plant:
