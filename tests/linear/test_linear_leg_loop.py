@@ -47,6 +47,7 @@ def test_the_loop_answers_as_the_compiled_controller_stepped_with_its_clocks(
     moved = expm(block * tick)
     p, s = np.zeros(1, kernel.PARAMETERS), np.zeros(1, kernel.STATE)
     p["gain"], p["rate_gain"], p["place"] = settings.gain, rate_gain, place.code
+    p["limit"] = 1.0
     p["numerator"], p["denominator"] = kernel.chebyshev_section(1.0 / (5 * tick))
     p["period"], p["full_speed"] = 5 * tick, full_speed
     x, current, valve = np.zeros(n), 0.0, np.zeros(6)
