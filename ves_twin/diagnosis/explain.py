@@ -212,6 +212,7 @@ def judge(desk: Desk, fits: list[Fit]) -> Explanation:
     ranked.sort(key=lambda fit: fit.chi2)
     best = ranked[0]
     allowance = settings.model_error**2 * max(commissioning.chi2 - best.chi2, 0.0)
+    allowance += first.allowance
     chosen, weights = probabilities(ranked, allowance, settings.odds)
     before = cells(own, commissioning.residual)
     after = cells(own, chosen[0].residual)
