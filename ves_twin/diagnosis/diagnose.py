@@ -21,6 +21,7 @@ from ves_twin.diagnosis.runs import Progress, Runs, silent
 from ves_twin.diagnosis.settings import Settings
 from ves_twin.diagnosis.tolerances import FEWEST, naming_limit, tolerance_scale
 from ves_twin.diagnosis.verdict import Basis, Kind, Proposal, Verdict
+from ves_twin.diagnosis.whitening import Whitening
 from ves_twin.errors import UnknownNameError
 from ves_twin.recording.recording import Recording
 from ves_twin.workers import Workers
@@ -70,15 +71,7 @@ def diagnose(
         seen = observe(forward, recordings, workers, chosen.rate)
         whitening = whitening_of(seen.runs, standstill)
         if baseline:
-            changed = differential(
-                seen,
-                baseline,
-                lambda tuned: observe(tuned, recordings, workers, chosen.rate),
-                whitening,
-            )
-            seen = changed.seen
-            whitening = whitening_of(seen.runs, standstill)
-            whitening = replace(whitening, level=whitening.level * changed.noise)
+            seen, whitening = _changed(seen, whitening, recordings, baseline, standstill, chosen)
         bank = _bank(seen, chosen, progress).without(tuple(exclude))
         limits = cached_thresholds(bank, whitening, chosen, progress)
         pull = pull_limit(bank, chosen.alpha)
@@ -105,6 +98,24 @@ def diagnose(
             apart=apart,
         )
         return compose(findings, kind, basis, tuple(exclude))
+
+
+def _changed(
+    seen: Observed,
+    whitening: Whitening,
+    recordings: Sequence[Recording],
+    baseline: Sequence[Recording],
+    standstill: Recording | None,
+    settings: Settings,
+) -> tuple[Observed, Whitening]:
+    """The record about the rig as its baseline shows it, and its noise."""
+
+    def again(tuned: Forward) -> Observed:
+        return observe(tuned, recordings, seen.runs.workers, settings.rate)
+
+    changed = differential(seen, baseline, again, whitening)
+    own = whitening_of(changed.seen.runs, standstill)
+    return changed.seen, replace(own, level=own.level * changed.noise)
 
 
 def _bank(seen: Observed, settings: Settings, progress: Progress) -> Bank:
