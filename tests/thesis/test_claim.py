@@ -9,9 +9,10 @@ from ves_twin.plant.plant import Plant
 from ves_twin.thesis.claim import load_claims
 from ves_twin.thesis.evaluation import NotBuilt, NotTestable
 from ves_twin.thesis.evaluators import (
+    appendices_d_and_f,
     appendix_a,
     appendix_b,
-    appendix_c_to_f,
+    appendix_e,
     chapter_2,
     chapter_3,
     chapter_4,
@@ -36,7 +37,8 @@ def test_each_claim_is_answered_exactly_once(claims):
         chapter_5.CHAPTER_5,
         appendix_a.APPENDIX_A,
         appendix_b.APPENDIX_B,
-        appendix_c_to_f.APPENDICES_C_TO_F,
+        appendices_d_and_f.APPENDICES_D_AND_F,
+        appendix_e.APPENDIX_E,
         gravity_methods.GRAVITY_METHODS,
     )
     assert sorted(name for part in parts for name in part) == IDS

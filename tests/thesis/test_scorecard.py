@@ -8,7 +8,7 @@ import pytest
 from ves_twin.errors import UnreachableError
 from ves_twin.plant.plant import Plant
 from ves_twin.thesis.context import Context
-from ves_twin.thesis.evaluation import Evaluation, NotBuilt, NotTestable
+from ves_twin.thesis.evaluation import Evaluation, NotBuilt, NotRun, NotTestable
 from ves_twin.thesis.left_out import plant_without
 from ves_twin.thesis.page import scorecard_page
 from ves_twin.thesis.row import NOT_COMPUTED
@@ -86,8 +86,29 @@ def test_the_page_names_every_claim_and_shows_the_score_first(claims, answers, c
     score = page.split("\n")[2]
     assert f"{sum(card.score.values())} are neither inputs nor were used in calibration" in score
     for verdict in Verdict:
-        if verdict not in (Verdict.INPUT, Verdict.DIFFERS):
+        if verdict not in (Verdict.INPUT, Verdict.DIFFERS, Verdict.NOT_RUN):
             assert f"{card.score[verdict]} {verdict}" in score
+
+
+def test_what_only_the_full_run_tells_is_not_run_in_the_quick_one_and_not_kept(
+    claims, context, tmp_path
+):
+    def full_only(context, claim):
+        return NotRun("takes long") if context.quick else stroke(context, claim)
+
+    store, chosen = Store(tmp_path), [claims["C010"], claims["C132"]]
+    answers = dict.fromkeys(("C010", "C132"), full_only)
+    quick = replace(context, quick=True)
+    heavier = context.plant.with_values({"platform.mass": 61.0})
+    card = score_claims(chosen, answers, quick, store, without=lambda name: heavier)
+    assert {row.verdict for row in card.rows} == {Verdict.NOT_RUN}
+    assert "1 not run" in scorecard_page(card)
+    assert "takes long" in scorecard_page(card)
+    assert card.to_dict()["rows"][1]["leave_one_out"] == NOT_COMPUTED
+    assert not list(tmp_path.rglob("*.json"))
+    full = score_claims(chosen, answers, context, store, without=lambda name: None)
+    assert full.score["not run"] == 0
+    assert "not run" not in scorecard_page(full)
 
 
 def test_the_scorecard_is_json_even_where_a_value_is_not_finite(claims, answers, context):

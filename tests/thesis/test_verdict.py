@@ -6,7 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from ves_twin.thesis.claim import Claim, Kind
-from ves_twin.thesis.evaluation import Evaluation, NotBuilt, NotTestable
+from ves_twin.thesis.evaluation import Evaluation, NotBuilt, NotRun, NotTestable
 from ves_twin.thesis.tolerance import Comparison, Tolerance
 from ves_twin.thesis.verdict import Verdict, judge
 
@@ -55,6 +55,7 @@ def test_a_failed_condition_beside_good_values_differs():
 def test_what_is_not_there_has_a_verdict_of_its_own():
     assert judge(CLAIM, NotBuilt("something")) == Verdict.NOT_BUILT
     assert judge(CLAIM, NotTestable("a reason")) == Verdict.NOT_TESTABLE
+    assert judge(CLAIM, NotRun("a reason")) == Verdict.NOT_RUN
 
 
 def test_inputs_and_calibrated_claims_do_not_count():

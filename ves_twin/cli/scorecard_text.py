@@ -11,6 +11,7 @@ from ves_twin.thesis.verdict import Verdict
 from ves_twin.thesis.words import asked_words, predicted_words, thesis_words, value_words
 
 TOLD = (Verdict.REPRODUCED, Verdict.IN_KIND, Verdict.DIFFERS)
+LEFT = (Verdict.NOT_BUILT, Verdict.NOT_TESTABLE, Verdict.NOT_RUN)
 
 
 def scorecard_text(card: Scorecard, detailed: bool) -> str:
@@ -47,8 +48,8 @@ def _line(row: Row) -> str:
 
 
 def _left(rows: list[Row]) -> list[str]:
-    """A line for each thing that is not built, or cannot be tested, with its claims."""
-    left = [row for row in rows if row.verdict in (Verdict.NOT_BUILT, Verdict.NOT_TESTABLE)]
+    """A line for each thing not built, not testable or not run, with its claims."""
+    left = [row for row in rows if row.verdict in LEFT]
     return [
         f"  {verdict:<12}  {', '.join(r.claim.id for r in left if r.note == note)}: {note}"
         for verdict, note in dict.fromkeys((row.verdict.value, row.note) for row in left)

@@ -34,6 +34,12 @@ DRAWN = ("sensor.drift", "platform.level")
 GRAVITY_SOURCES = ("gravity model", "orientation", "sensor noise", "drift")
 """What the estimate and the reading get wrong; the other sources are the rig's."""
 
+TRUTH: Mapping[str, Any] = {"gravity.method": "truth", "gravity.file": None}
+BELIEVED: Mapping[str, Any] = {"gravity.method": "model", "gravity.file": None}
+
+Plans = dict[str, tuple[Plant, Mapping[str, Any]]]
+"""Name of a run -> plant, and what is changed in the scenario."""
+
 RIG_SOURCES = ("leg bandwidth", "delay", "structure", "left")
 
 
@@ -67,26 +73,43 @@ class ErrorSources:
         Raises:
             VesTwinError: a run that ended early.
         """
+        fast = _silent(self.ideal).with_fidelity(Fidelity.FAST)
+        runs = self._runs(
+            {
+                "everything": (self._everything(), {}),
+                "fast": (fast, TRUTH),
+                "quick": (fast, {**TRUTH, **QUICK}),
+                **self._gravity_plans(),
+            },
+            progress,
+        )
+        return {**_rig_differences(runs), **_gravity_differences(runs)}
+
+    def gravity_parts(self, progress: Progress) -> dict[str, FloatArray]:
+        """Of `parts`, those of GRAVITY_SOURCES [m, rad] (n, 6); the rig's are not run.
+
+        Raises:
+            VesTwinError: a run that ended early.
+        """
+        return _gravity_differences(self._runs(self._gravity_plans(), progress))
+
+    def _gravity_plans(self) -> Plans:
         clean = _silent(self.ideal)
-        truth = {"gravity.method": "truth", "gravity.file": None}
-        fast = clean.with_fidelity(Fidelity.FAST)
-        believed = {"gravity.method": "model", "gravity.file": None}
-        plans: dict[str, tuple[Plant, Mapping[str, Any]]] = {
-            "everything": (self._everything(), {}),
-            "clean": (clean, truth),
-            "fast": (fast, truth),
-            "quick": (fast, {**truth, **QUICK}),
+        return {
+            "clean": (clean, TRUTH),
             "gravity model": (_silent(self.real), {}),
-            "right model": (clean, believed),
-            "orientation": (self._on(ORIENTATION), believed),
-            "sensor noise": (self._on(SENSOR_NOISE), truth),
-            "drift": (self._on(DRIFT), truth),
+            "right model": (clean, BELIEVED),
+            "orientation": (self._on(ORIENTATION), BELIEVED),
+            "sensor noise": (self._on(SENSOR_NOISE), TRUTH),
+            "drift": (self._on(DRIFT), TRUTH),
         }
+
+    def _runs(self, plans: Plans, progress: Progress) -> dict[str, Recording]:
         runs: dict[str, Recording] = {}
         for number, (name, (plant, changes)) in enumerate(plans.items()):
             runs[name] = self._run(name, plant, changes)
             part_of(progress, number, len(plans))(1.0, name)
-        return _differences(runs)
+        return runs
 
     def _run(self, name: str, plant: Plant, changes: Mapping[str, Any]) -> Recording:
         scenario = Scenario.load(self.scenario, {**self.changes, **changes})
@@ -117,20 +140,27 @@ def _silent(plant: Plant) -> Plant:
     return plant.with_values({name: 0.0 * plant.parameters.array(name) for name in names})
 
 
-def _differences(runs: dict[str, Recording]) -> dict[str, FloatArray]:
+def _rig_differences(runs: dict[str, Recording]) -> dict[str, FloatArray]:
     """Each part as the difference of two runs, or of a run and a reference, at the cycles."""
     clean = runs["clean"]
     time, reference = clean.time, clean["reference.pose"]
     quick = runs["quick"]
     quick_pose = _at(time, quick, "truth.pose")
     quick_legs = _at(time, quick, "reference.pose_leg_lag")
-    pose = {name: run["truth.pose"] for name, run in runs.items() if name != "quick"}
+    pose = {name: runs[name]["truth.pose"] for name in ("everything", "clean", "fast")}
     return {
         "everything": pose["everything"] - reference,
         "leg bandwidth": clean["reference.pose_leg_lag"] - reference,
         "delay": pose["fast"] - quick_pose,
         "structure": pose["clean"] - pose["fast"],
         "left": quick_pose - quick_legs,
+    }
+
+
+def _gravity_differences(runs: dict[str, Recording]) -> dict[str, FloatArray]:
+    """Each part as the difference of two runs at the cycles."""
+    pose = {name: run["truth.pose"] for name, run in runs.items() if name != "quick"}
+    return {
         "gravity model": pose["gravity model"] - pose["clean"],
         "orientation": pose["orientation"] - pose["right model"],
         "sensor noise": pose["sensor noise"] - pose["clean"],

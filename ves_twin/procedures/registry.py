@@ -15,6 +15,7 @@ from ves_twin.procedures.frequency_response import FrequencyResponseTest
 from ves_twin.procedures.frozen_droop import FrozenDroop
 from ves_twin.procedures.gravity_sensitivity import GravitySensitivity
 from ves_twin.procedures.learning_method import LearningMethod
+from ves_twin.procedures.methods_agreement import MethodsAgreement
 from ves_twin.procedures.positioning_error import PositioningErrorTest
 from ves_twin.procedures.pped_release import PpedRelease
 from ves_twin.procedures.pped_release_emulated import PpedReleaseEmulated
@@ -35,6 +36,7 @@ PROCEDURES: dict[str, type[Procedure]] = {
     "gravity_sensitivity": GravitySensitivity,
     "emulation_error_budget": EmulationErrorBudget,
     "learning_method": LearningMethod,
+    "methods_agreement": MethodsAgreement,
     "sensor_drift": SensorDrift,
     "verify_gravity": VerifyGravity,
     "calibrate_plant": CalibratePlant,

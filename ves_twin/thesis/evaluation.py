@@ -42,7 +42,17 @@ class NotTestable:
     reason: str
 
 
-Evaluator = Callable[["Context", "Claim"], Evaluation]
+@dataclass(frozen=True)
+class NotRun:
+    """Left out of a quick scorecard: only the full run tells; `reason` says what it takes."""
+
+    reason: str
+
+
+Evaluator = Callable[["Context", "Claim"], Evaluation | NotRun]
 """Computes the twin's values for a claim by running code or simulations; never judges."""
+
+Found = Evaluation | NotBuilt | NotTestable | NotRun
+"""What there is to say of a claim."""
 
 Answer = Evaluator | NotBuilt | NotTestable

@@ -23,6 +23,9 @@ HALF_POWER = 1.0 / np.sqrt(2.0)
 HIGHEST = 24.0
 """Highest frequency tried [Hz], well below half the rate of the commands."""
 
+LOWEST = 0.05
+"""Below this no more octave downwards is tried [Hz]."""
+
 
 @dataclass(frozen=True)
 class LegSettings:
@@ -87,9 +90,18 @@ def leg_response(context: Context, legs: LegSettings, frequency: float) -> LegRe
 
 
 def bandwidth(context: Context, legs: LegSettings) -> Bandwidth:
-    """Bandwidth of the closed leg loop: octaves upwards, then secants on the log of frequency."""
-    low = leg_response(context, legs, 0.25)
+    """Bandwidth of the closed leg loop: octaves upwards, then secants on the log of frequency.
+
+    It begins at half the corner of the integrator alone, gain / (4 pi), which no loop of the rig
+    has fallen below; if one has, octaves lead downwards first. Slow sines are what costs time.
+    """
+    low = leg_response(context, legs, legs.gain / (4.0 * np.pi))
     runs = [low.command]
+    while abs(low.closed) < HALF_POWER:
+        if low.frequency <= LOWEST:
+            return Bandwidth(float("nan"), tuple(runs))
+        low = leg_response(context, legs, 0.5 * low.frequency)
+        runs.append(low.command)
     while True:
         high = leg_response(context, legs, 2.0 * low.frequency)
         runs.append(high.command)
@@ -98,7 +110,7 @@ def bandwidth(context: Context, legs: LegSettings) -> Bandwidth:
         if high.frequency >= HIGHEST:
             return Bandwidth(float("nan"), tuple(runs))
         low = high
-    for _ in range(2 if context.quick else 4):
+    for _ in range(4):
         middle = leg_response(context, legs, _crossing(low, high))
         runs.append(middle.command)
         low, high = (middle, high) if abs(middle.closed) >= HALF_POWER else (low, middle)

@@ -11,6 +11,7 @@ from ves_twin.thesis.verdict import Verdict
 from ves_twin.thesis.words import asked_words, predicted_words, thesis_words, value_words
 
 SHOWN = (Verdict.REPRODUCED, Verdict.IN_KIND, Verdict.DIFFERS)
+LEFT = (Verdict.NOT_BUILT, Verdict.NOT_TESTABLE, Verdict.NOT_RUN)
 HEAD = (
     "| claim | what | thesis | asked | twin | verdict | how, or why not |\n"
     "|---|---|---|---|---|---|---|"
@@ -40,7 +41,7 @@ def score_sentence(card: Scorecard) -> str:
     counts = ", ".join(
         f"{score[v]} {'differ' if v is Verdict.DIFFERS and score[v] != 1 else v}"
         for v in Verdict
-        if v is not Verdict.INPUT
+        if v is not Verdict.INPUT and (v is not Verdict.NOT_RUN or card.quick)
     )
     return (
         f"Of {len(card.rows)} claims, {sum(score.values())} are neither inputs nor were used in"
@@ -60,7 +61,7 @@ def input_sentence(card: Scorecard) -> str:
 
 
 def _top(card: Scorecard) -> list[str]:
-    quick = "`--quick` (shorter runs)" if card.quick else "full runs"
+    quick = "`--quick` (shorter runs, some on the `fast` rig)" if card.quick else "full runs"
     return [
         "# Scorecard of the thesis",
         "",
@@ -116,7 +117,7 @@ def _chapter(card: Scorecard, chapter: str) -> list[str]:
     lines = [f"## {chapter_title(chapter)}", ""]
     if told:
         lines += [HEAD, *(_table_row(row) for row in told), ""]
-    for verdict in (Verdict.NOT_BUILT, Verdict.NOT_TESTABLE):
+    for verdict in LEFT:
         left = [row for row in rows if row.verdict is verdict]
         for note in dict.fromkeys(row.note for row in left):
             same = ", ".join(row.claim.id for row in left if row.note == note)

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from pydantic import JsonValue
 
 from ves_twin.thesis.claim import Claim
-from ves_twin.thesis.evaluation import Evaluation, NotBuilt, NotTestable
+from ves_twin.thesis.evaluation import Evaluation, Found, NotBuilt
 from ves_twin.thesis.verdict import Verdict, judge
 
 NOT_COMPUTED = "leave-one-out not computed"
@@ -26,7 +26,7 @@ class Row:
     """
 
     claim: Claim
-    found: Evaluation | NotBuilt | NotTestable
+    found: Found
     predicted: Evaluation | None = None
 
     @property
@@ -44,7 +44,7 @@ class Row:
         """What was measured, what is needed, or why nothing can be."""
         if isinstance(self.found, NotBuilt):
             return f"needs {self.found.needs}"
-        return self.found.reason if isinstance(self.found, NotTestable) else self.found.note
+        return self.found.note if isinstance(self.found, Evaluation) else self.found.reason
 
     @property
     def runs(self) -> tuple[str, ...]:

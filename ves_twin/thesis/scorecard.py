@@ -10,7 +10,14 @@ from pydantic import JsonValue
 from ves_twin.errors import VesTwinError, one_line
 from ves_twin.thesis.claim import Claim, Kind
 from ves_twin.thesis.context import Context, Models
-from ves_twin.thesis.evaluation import Answer, Evaluation, Evaluator, NotBuilt, NotTestable
+from ves_twin.thesis.evaluation import (
+    Answer,
+    Evaluation,
+    Evaluator,
+    NotBuilt,
+    NotRun,
+    NotTestable,
+)
 from ves_twin.thesis.left_out import PlantWithout, plant_without
 from ves_twin.thesis.row import Row
 from ves_twin.thesis.store import Store, code_hash
@@ -89,7 +96,8 @@ def score_claims(
         other = without(claim.id) if claim.calibrated_on else None
         if other is not None:
             there = replace(context, plant=other, plant_name=other.name, _kept={})
-            predicted = _evaluate(answer, claim, there, store)
+            other_found = _evaluate(answer, claim, there, store)
+            predicted = other_found if isinstance(other_found, Evaluation) else None
         rows.append(Row(claim, found, predicted))
     progress(1.0, "done")
     return Scorecard(
@@ -99,14 +107,14 @@ def score_claims(
 
 def _evaluate(
     evaluator: Evaluator, claim: Claim, context: Context, store: Store | None
-) -> Evaluation:
-    found = store.get(context, claim.id) if store else None
+) -> Evaluation | NotRun:
+    found: Evaluation | NotRun | None = store.get(context, claim.id) if store else None
     if found is None:
         try:
             found = evaluator(context, claim)
         except VesTwinError as error:
             found = Evaluation(holds=False, note=f"could not be computed: {one_line(error)}")
-        if store:
+        if store and isinstance(found, Evaluation):
             store.put(context, claim.id, found)
     return found
 

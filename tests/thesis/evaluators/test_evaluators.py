@@ -12,8 +12,8 @@ from ves_twin.scenario.load import parse_setting
 from ves_twin.scenario.schema import Scenario
 from ves_twin.thesis.claim import load_claims
 from ves_twin.thesis.context import Context
-from ves_twin.thesis.evaluation import NotBuilt, NotTestable
-from ves_twin.thesis.evaluators import chapter_5
+from ves_twin.thesis.evaluation import Evaluation, NotBuilt, NotRun, NotTestable
+from ves_twin.thesis.evaluators import chapter_3, chapter_5
 from ves_twin.thesis.evaluators.registry import ANSWERS
 from ves_twin.thesis.leg_response import LegSettings, bandwidth, leg_response
 from ves_twin.thesis.scorecard import score_claims
@@ -21,6 +21,11 @@ from ves_twin.thesis.verdict import Verdict
 
 LONG = {
     "C016",
+    "C023",
+    "C035",
+    "C116",
+    "C118",
+    "C128",
     "C057",
     "C058",
     "C018",
@@ -55,6 +60,9 @@ def nominal():
 def test_an_evaluation_repeats_to_the_bit_and_has_values_to_compare(claims, nominal, name):
     one, two = (ANSWERS[name](Context(nominal, True), claims[name]) for _ in range(2))
     assert one == two
+    if isinstance(one, NotRun):
+        assert one.reason
+        return
     assert one.note
     assert one.values or one.holds is not None
 
@@ -77,6 +85,24 @@ def test_every_claim_is_computed_and_its_commands_exist():
             keys = dict(parse_setting(text) for text in changes)
             assert load_procedure(scenario, keys) or Scenario.load(scenario, keys)
     assert card.score["reproduced"] > 0
+
+
+def test_what_a_short_run_would_answer_otherwise_is_left_to_the_full_one(claims, nominal):
+    """4 s of Learning Method come out as reproduced or in kind where 20 s differ."""
+    for name in ("C029", "C030", "C031", "C056", "C132"):
+        found = ANSWERS[name](Context(nominal, quick=True), claims[name])
+        assert isinstance(found, NotRun)
+        assert "only the full run" in found.reason
+
+
+@pytest.mark.slow
+def test_random_wrench_errors_of_a_newton_cost_in_proportion(claims, nominal, monkeypatch):
+    """A linear emulation of 20 s: twice the noise with the same seed moves it twice as far, 3 %."""
+    one = ANSWERS["C023"](Context(nominal, quick=True), claims["C023"])
+    monkeypatch.setattr(chapter_3, "WRENCH_ERROR", [2.0, 2.0, 2.0, 3.0, 3.0, 3.0])
+    two = ANSWERS["C023"](Context(nominal, quick=True), claims["C023"])
+    assert isinstance(one, Evaluation)
+    assert two.values[0] / one.values[0] == pytest.approx(2.0, rel=0.03)
 
 
 @pytest.mark.parametrize(

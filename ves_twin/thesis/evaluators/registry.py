@@ -5,9 +5,10 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 from ves_twin.thesis.evaluation import Answer
+from ves_twin.thesis.evaluators.appendices_d_and_f import APPENDICES_D_AND_F
 from ves_twin.thesis.evaluators.appendix_a import APPENDIX_A
 from ves_twin.thesis.evaluators.appendix_b import APPENDIX_B
-from ves_twin.thesis.evaluators.appendix_c_to_f import APPENDICES_C_TO_F
+from ves_twin.thesis.evaluators.appendix_e import APPENDIX_E
 from ves_twin.thesis.evaluators.chapter_2 import CHAPTER_2
 from ves_twin.thesis.evaluators.chapter_3 import CHAPTER_3
 from ves_twin.thesis.evaluators.chapter_4 import CHAPTER_4
@@ -21,7 +22,8 @@ ANSWERS: Mapping[str, Answer] = {
     **CHAPTER_5,
     **APPENDIX_A,
     **APPENDIX_B,
-    **APPENDICES_C_TO_F,
+    **APPENDICES_D_AND_F,
+    **APPENDIX_E,
     **GRAVITY_METHODS,
 }
 """Claim -> evaluator, or why there is none."""

@@ -1,4 +1,4 @@
-"""APPENDICES_C_TO_F: mass parameters, sensor, operating rules, noise."""
+"""APPENDICES_D_AND_F: the sensor: where it is, its zero, its noise and its drift."""
 
 from __future__ import annotations
 
@@ -7,23 +7,18 @@ from collections.abc import Mapping
 import numpy as np
 
 from ves_twin.control.leg_loop import FilterPlace
-from ves_twin.errors import UnreachableError
 from ves_twin.kinematics.wrenches import sensor_to_top
 from ves_twin.plant.layout import Layout
 from ves_twin.plant.physics.force_sensor import STATE, sample_wrench
-from ves_twin.plant.statics import check_reach
 from ves_twin.scenario.schema import Legs, Scenario
 from ves_twin.simulator.blocks import parameter_block
 from ves_twin.simulator.build import belief_of
 from ves_twin.simulator.clock import Clock
 from ves_twin.thesis.claim import Claim
 from ves_twin.thesis.context import Context
-from ves_twin.thesis.evaluation import Answer, Evaluation, NotBuilt, NotTestable
-from ves_twin.thesis.evaluators.chapter_2 import WHOLE_TICKS, model_rates
+from ves_twin.thesis.evaluation import Answer, Evaluation, NotTestable
 from ves_twin.thesis.standing_rig import StandingRig
 
-OPERATION = NotBuilt("the operating states of Appendix E")
-PARKED = "release_table_5_2"
 STILL: dict[str, object] = {"platform.motion.amplitude": [0.0] * 6, "gravity.method": "truth"}
 
 
@@ -49,27 +44,6 @@ def _residual(context: Context, claim: Claim) -> Evaluation:
     share = np.abs(np.mean(residual, axis=0)) / context.plant.parameters.array("sensor.noise")
     note = "largest of six axes, mean over the first second after zeroing for 10 s"
     return Evaluation((float(np.max(share)),), note=note, runs=(run.command,))
-
-
-def _rates(context: Context, claim: Claim) -> Evaluation:
-    return Evaluation(model_rates(context), note=f"set to 85, 80, 75; {WHOLE_TICKS}")
-
-
-def _low_home(context: Context, claim: Claim) -> Evaluation:
-    number, geometry = context.plant.parameters.number, context.plant.geometry
-    travel = number("leg.stroke") / 2.0 - number("leg.margin")
-    pose = np.array([0.0, 0.0, -0.15, 0.0, 0.0, 0.0])
-    need = float(np.max(np.abs(geometry.lengths(pose) - geometry.lengths(np.zeros(6)))))
-    try:
-        check_reach(geometry, pose, travel, "home with Z offset")
-    except UnreachableError as error:
-        return Evaluation(holds=False, note=str(error))
-    return Evaluation(holds=True, note=f"legs move {need:.3f} of {travel:.3f} m")
-
-
-def _parking(context: Context, claim: Claim) -> Evaluation:
-    angles = np.degrees(Scenario.load(PARKED).arm.start)
-    return Evaluation(tuple(map(float, angles)), note=f"start of {PARKED}")
 
 
 def _low_pass(context: Context, claim: Claim) -> Evaluation:
@@ -111,19 +85,11 @@ def _drift(context: Context, claim: Claim) -> Evaluation:
     return Evaluation((worst,), note=note, runs=(run.command,))
 
 
-APPENDICES_C_TO_F: Mapping[str, Answer] = {
+APPENDICES_D_AND_F: Mapping[str, Answer] = {
     "C115": _sensor_offset,
-    **dict.fromkeys((f"C{number}" for number in range(116, 122)), OPERATION),
     "C122": _residual,
-    "C123": _rates,
-    "C124": OPERATION,
-    "C125": _low_home,
-    "C126": OPERATION,
-    "C127": _parking,
-    "C128": OPERATION,
     "C129": _low_pass,
     "C130": NotTestable("the figure's data are lost; only its caption survives"),
     "C131": _drift,
-    "C132": NotBuilt("the error budget of the slow verification motion (3.4.6)"),
 }
 """Claim -> answer."""
