@@ -10,7 +10,7 @@ from ves_twin.recording.recording import Recording
 
 
 def write_agreement(learned: Recording, model: Recording, path: Path) -> None:
-    """Dynamic moment about X of the sensor, and rotation about X, by both methods.
+    """Dynamic moment about X of the sensor (mean of 5 rows), and rotation about X, by both methods.
 
     Args:
         learned: last full-speed run of the Learning Method.
@@ -30,7 +30,7 @@ def write_agreement(learned: Recording, model: Recording, path: Path) -> None:
         smooth = np.convolve(dynamic, np.ones(5) / 5.0, mode="same")
         left.plot(run.time, smooth, style, lw=0.8, label=f"{name} Method")
         right.plot(run.time, run["truth.pose"][:, 3] * 1e3, style, lw=0.9, label=f"{name} Method")
-    left.set_ylabel("dynamic moment about X, mean of 5 rows [N m]")
+    left.set_ylabel("dynamic moment about X [N m]")
     right.set_ylabel("rotation about X [mrad]")
     for axes in (left, right):
         axes.set_xlabel("time [s]")

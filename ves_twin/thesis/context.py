@@ -36,7 +36,8 @@ class Context:
 
     Attributes:
         plant: the world.
-        quick: shorter simulations, so that all claims take less than two minutes.
+        quick: shorter simulations, so that all claims take less than two minutes; what would come
+            out otherwise in a shorter one is not run (`NotRun`).
         models: which form of the emulated models is used where there are two.
         plant_name: what `--plant` must say to get this plant; empty for the nominal one.
     """

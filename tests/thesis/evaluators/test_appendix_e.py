@@ -4,9 +4,10 @@ from dataclasses import replace
 
 import pytest
 
+from ves_twin.operation import machine
 from ves_twin.operation.laboratory import Laboratory
 from ves_twin.operation.machine import Machine
-from ves_twin.operation.state import State
+from ves_twin.operation.state import Action, State
 from ves_twin.plant.plant import Plant
 from ves_twin.simulator.switches import Switches
 from ves_twin.thesis.context import Context
@@ -24,6 +25,7 @@ def fast():
     return Plant.load("ves2_fast")
 
 
+@pytest.mark.slow
 def test_a_button_that_leaves_the_legs_powered_fails_the_first_rule(verdict_on, fast, monkeypatch):
     assert verdict_on("C116", fast) == Verdict.REPRODUCED
     monkeypatch.setattr(Machine, "legs_powered", property(lambda machine: True))
@@ -62,7 +64,7 @@ def test_loops_that_close_beside_the_legs_lengths_move_the_platform(verdict_on, 
 
 def test_readers_that_share_the_board_fail_the_rule_of_the_flag(verdict_on, fast, monkeypatch):
     assert verdict_on("C121", fast) == Verdict.REPRODUCED
-    monkeypatch.setattr(Machine, "read_sensor", lambda machine: [])
+    monkeypatch.setitem(machine._BUTTONS, Action.READ_SENSOR, lambda machine: [])
     assert verdict_on("C121", fast) == Verdict.DIFFERS
 
 
@@ -91,5 +93,6 @@ def test_a_machine_that_goes_to_sleep_from_anywhere_fails_the_order(verdict_on, 
 
 def test_the_recovery_is_in_the_order_of_the_handbook(verdict_on, fast, monkeypatch):
     assert verdict_on("C128", fast) == Verdict.REPRODUCED
-    monkeypatch.setattr(Machine, "release_panic", lambda machine: [])  # a button that stays in
+    stuck = {Action.RELEASE_PANIC: lambda machine: []}
+    monkeypatch.setattr(machine, "_BUTTONS", {**machine._BUTTONS, **stuck})
     assert verdict_on("C128", fast) == Verdict.DIFFERS
