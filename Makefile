@@ -6,7 +6,7 @@ PYTHON ?= $(shell for p in python3.12 python3.11 python3 python; do \
 BIN := .venv/bin
 PIP := $(BIN)/python -m pip install --quiet --disable-pip-version-check
 
-.PHONY: demo demo-diagnosis test check fast fuzz types lint layers bench figures fidelity scorecard diagnosis-scorecard picture clean
+.PHONY: demo demo-diagnosis test check fast fuzz types lint layers bench figures fidelity scorecard diagnosis-scorecard picture docs clean
 
 demo: .venv/.run
 	$(BIN)/ves-twin run beam_horizontal_truth --out runs/demo
@@ -47,6 +47,10 @@ bench: .venv/.dev
 	$(BIN)/python benchmarks/measured.py
 	$(BIN)/python benchmarks/environments.py
 
+# into site/; warnings are errors. The variable silences an advertisement of the theme's.
+docs: .venv/.dev
+	NO_MKDOCS_2_WARNING=1 $(BIN)/mkdocs build
+
 picture: .venv/.dev
 	$(BIN)/python benchmarks/picture.py docs/run.png
 
@@ -75,4 +79,4 @@ fidelity: .venv/.dev
 	@touch $@
 
 clean:
-	rm -rf .venv build dist runs
+	rm -rf .venv build dist runs site

@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Annotated, Any
 
-from pydantic import BaseModel, BeforeValidator, ConfigDict
+from pydantic import BaseModel, BeforeValidator, ConfigDict, GetJsonSchemaHandler
+from pydantic.json_schema import JsonSchemaValue
+from pydantic_core import CoreSchema
 
 from ves_twin.errors import InvalidInputError, UnknownNameError, shown
 from ves_twin.units import to_si
@@ -17,9 +19,21 @@ TURNS = 4.0 * math.pi
 
 @dataclass(frozen=True)
 class InUnit(BeforeValidator):
-    """A validator that knows the SI unit of what it lets through."""
+    """A validator that knows the SI unit, and for a row the length, of what it lets through."""
 
     unit: str = "1"
+    length: int | None = None
+
+    def __get_pydantic_json_schema__(
+        self, core: CoreSchema, handler: GetJsonSchemaHandler
+    ) -> JsonSchemaValue:
+        """The schema with the unit in it, and texts with a unit allowed wherever numbers are."""
+        found = handler(core)
+        if self.length is None:
+            return {"anyOf": [found, {"type": "string"}], "unit": self.unit}
+        either = {"anyOf": [{"type": "number"}, {"type": "string"}]}
+        size = {"minItems": self.length, "maxItems": self.length}
+        return {"type": "array", "items": either, **size, "unit": self.unit}
 
 
 def si(unit: str) -> InUnit:
@@ -55,6 +69,20 @@ def _row(value: object, units: tuple[str, ...]) -> tuple[float, ...]:
         raise ValueError(str(error)) from None
 
 
+@dataclass(frozen=True)
+class OneOf(BeforeValidator):
+    """A validator that knows the names that it lets through."""
+
+    known: Any = field(default=(), hash=False, compare=False)
+
+    def __get_pydantic_json_schema__(
+        self, core: CoreSchema, handler: GetJsonSchemaHandler
+    ) -> JsonSchemaValue:
+        """The schema with the names in it; examples, since installed packages may add some."""
+        found = handler(core)
+        return {**found, "examples": list(self.known)} if found.get("type") == "string" else found
+
+
 def named(kind: str, known: Any) -> BeforeValidator:
     """A name out of `known`; anything else is answered with the nearest one."""
 
@@ -63,15 +91,15 @@ def named(kind: str, known: Any) -> BeforeValidator:
             raise ValueError(str(UnknownNameError(kind, str(value), known)))
         return value
 
-    return BeforeValidator(check)
+    return OneOf(check, known=known)
 
 
 Seconds = Annotated[float, si("s")]
 Hertz = Annotated[float, si("Hz")]
 PerSecond = Annotated[float, si("1/s")]
 Metres = Annotated[float, si("m")]
-Pose = Annotated[tuple[float, ...], InUnit(_pose, unit="m, rad")]
-Joints = Annotated[tuple[float, ...], InUnit(_joints, unit="rad")]
+Pose = Annotated[tuple[float, ...], InUnit(_pose, unit="m, rad", length=6)]
+Joints = Annotated[tuple[float, ...], InUnit(_joints, unit="rad", length=3)]
 ZERO_POSE = (0.0,) * 6
 ZERO_JOINTS = (0.0,) * 3
 

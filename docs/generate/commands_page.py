@@ -1,0 +1,73 @@
+"""commands_page: every command and option, out of the parsers themselves."""
+
+from __future__ import annotations
+
+import argparse
+from collections.abc import Iterator
+from functools import partial
+
+from ves_twin.cli.main import build_parser
+
+
+def commands_page() -> str:
+    """A section for each command, with usage and a table of what it takes."""
+    lines = [
+        "# Commands",
+        "",
+        "Out of the parsers of `ves-twin`, as `ves-twin COMMAND --help` prints them.",
+        "Exit codes: 0 done, 2 bad input, 3 the run ended early, 4 out of tolerance, 130 interrupted.",
+        "",
+    ]
+    for parser in _parsers(build_parser()):
+        lines += _section(parser)
+    return "\n".join(lines) + "\n"
+
+
+def _section(parser: argparse.ArgumentParser) -> list[str]:
+    parser.formatter_class = partial(argparse.HelpFormatter, width=84)  # type: ignore[assignment]
+    usage = parser.format_usage().removeprefix("usage: ").rstrip()
+    lines = [f"## {parser.prog}", "", f"{parser.description or ''}", ""]
+    lines += ["```", usage, "```", ""]
+    shown = [a for a in _actions(parser) if a.help != argparse.SUPPRESS]
+    shown = [a for a in shown if not isinstance(a, argparse._HelpAction)]
+    rows = [_row(a) for a in shown if not isinstance(a, argparse._SubParsersAction)]
+    if rows:
+        lines += ["| argument | meaning | default |", "|---|---|---|", *rows, ""]
+    return lines
+
+
+def _row(action: argparse.Action) -> str:
+    value = action.metavar or (
+        f"{{{','.join(map(str, action.choices))}}}" if action.choices else ""
+    )
+    takes = action.nargs != 0
+    if action.option_strings:
+        name = ", ".join(action.option_strings)
+        name += f" {value or action.dest.upper()}" if takes else ""
+    else:
+        name = str(value or action.dest)
+    meaning = (action.help or "") + (" **required**" if _required(action) else "")
+    plain = action.default in (None, False, [], argparse.SUPPRESS)
+    default = "" if plain else f"`{action.default}`"
+    return f"| `{_cell(name)}` | {_cell(meaning)} | {_cell(default)} |"
+
+
+def _required(action: argparse.Action) -> bool:
+    return bool(action.option_strings) and action.required
+
+
+def _parsers(parser: argparse.ArgumentParser) -> Iterator[argparse.ArgumentParser]:
+    """The parser and those below it, in order."""
+    yield parser
+    for action in _actions(parser):
+        if isinstance(action, argparse._SubParsersAction):
+            for below in action.choices.values():
+                yield from _parsers(below)
+
+
+def _actions(parser: argparse.ArgumentParser) -> list[argparse.Action]:
+    return parser._actions  # argparse has no public way to list them
+
+
+def _cell(text: str) -> str:
+    return " ".join(text.split()).replace("|", "\\|")

@@ -1,0 +1,26 @@
+"""hooks: what mkdocs calls; adds the generated pages to the ones of docs/."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from commands_page import commands_page
+from format_pages import format_pages
+from home_page import home_page
+from mkdocs.config.defaults import MkDocsConfig
+from mkdocs.structure.files import File, Files
+from notebook_pages import notebook_pages
+
+
+def on_files(files: Files, config: MkDocsConfig) -> Files:
+    """Add home, commands, file formats with their schemas, and notebooks."""
+    root = Path(config.config_file_path).parent
+    pages = {
+        "index.md": home_page(root),
+        "commands.md": commands_page(),
+        **format_pages(),
+        **notebook_pages(root / "notebooks"),
+    }
+    for name, text in pages.items():
+        files.append(File.generated(config, name, content=text))
+    return files
