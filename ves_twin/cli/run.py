@@ -21,6 +21,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("scenario", metavar="SCENARIO", help="a name or a TOML file")
     add_run_options(parser)
     parser.add_argument("--json", action="store_true", help="the summary as JSON on stdout")
+    parser.add_argument("--video", metavar="FILE.gif", help="draw the run as a moving picture")
 
 
 def add_run_options(parser: argparse.ArgumentParser) -> None:
@@ -51,7 +52,17 @@ def execute(arguments: argparse.Namespace) -> int:
     ended = run_procedure(arguments)
     if ended is not None:
         return ended
+    video = None if arguments.video is None else Path(arguments.video)
+    if video is not None:
+        from ves_twin.envs.film import check_video
+
+        check_video(video)
     summary, folder = run_scenario(arguments)
+    if video is not None:
+        from ves_twin.envs.film import write_gif
+        from ves_twin.recording.files import load_recording
+
+        write_gif(load_recording(folder), video)
     if arguments.json:
         print(summary.to_json())
     else:

@@ -32,6 +32,8 @@ def run_procedure(arguments: argparse.Namespace) -> int | None:
         return None
     if arguments.controller is not None:
         raise InvalidInputError("--controller", arguments.controller, "a scenario, not a procedure")
+    if arguments.video is not None:
+        raise InvalidInputError("--video", arguments.video, "a scenario, not a procedure")
     if arguments.seed is not None and not 0 <= arguments.seed < 2**63:
         raise InvalidInputError("--seed", arguments.seed, "at least 0 and below 2^63")
     plant = Plant.load(arguments.plant) if arguments.plant else None

@@ -54,6 +54,11 @@ class Picture:
         self._opened, self._model = None, None
 
 
+def check_off_screen() -> None:
+    """Raise NoPictureError where no picture can be made off screen."""
+    _gl_context().free()
+
+
 class _OffScreen:
     """MuJoCo's classic renderer on a context of our own choice.
 

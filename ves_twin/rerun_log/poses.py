@@ -56,8 +56,8 @@ def body_frames(
         Frames without a gap in rows; a signal that is absent leaves the rig at home, rows that
         are not finite are left out.
     """
-    pose = _first(recording, pose_from, 6)
-    joints = _first(recording, arm_from, 3)
+    pose = first_present(recording, pose_from, 6)
+    joints = first_present(recording, arm_from, 3)
     rows = frame_rows(recording.time)
     finite = np.isfinite(pose[rows]).all(axis=1) & np.isfinite(joints[rows]).all(axis=1)
     rows = rows[finite]
@@ -75,7 +75,8 @@ def frame_rows(time: FloatArray) -> IntArray:
     return np.unique(rows).astype(np.int64)
 
 
-def _first(recording: Recording, names: tuple[str, ...], width: int) -> FloatArray:
+def first_present(recording: Recording, names: tuple[str, ...], width: int) -> FloatArray:
+    """The first of some signals that a recording has (n, width); zeros if it has none."""
     for name in names:
         if name in recording.signals:
             return recording[name]
