@@ -32,6 +32,7 @@ def frames(path):
             yield film.info["duration"] / 1000.0, np.asarray(film.convert("RGB")).astype(int)
 
 
+@pytest.mark.slow
 def test_a_run_is_drawn_in_real_time(can_draw, tmp_path, capsys):
     path = tmp_path / "run.gif"
     assert main([*WORDS, "--out", str(tmp_path / "run"), "--video", str(path)]) == 0
