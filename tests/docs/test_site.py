@@ -4,6 +4,7 @@ import argparse
 import html
 import json
 import re
+import textwrap
 import tomllib
 from pathlib import Path
 
@@ -11,7 +12,9 @@ import jsonschema
 import pytest
 import yaml
 
+import ves_twin as vt
 from ves_twin.cli.main import build_parser
+from ves_twin.diagnosis.verdict import Basis, Cause, Estimate, Kind, Statistics, Verdict
 from ves_twin.scenario.schema import Scenario
 
 ROOT = Path(__file__).parents[2]
@@ -88,6 +91,39 @@ def test_the_schema_of_scenarios_refuses_what_the_program_refuses(site):
     for wrong in ({"platform": {**good["platform"], "home": [0.0] * 5}}, {"unknown": 1}):
         with pytest.raises(jsonschema.ValidationError):
             jsonschema.validate({**good, **wrong}, schema)
+
+
+def schema_of(site, name):
+    return json.loads((site / "formats" / f"{name}.schema.json").read_text(encoding="utf-8"))
+
+
+def test_what_the_program_writes_keeps_to_the_schemas(site):
+    changes = {"run.duration": 0.3, "run.settle": 0.3, "effects.valve_null.leg.3.null": 0.001}
+    run = vt.simulate(vt.Scenario.load("position_sine", changes), vt.Plant.load("ves2_fast"))
+    jsonschema.validate(json.loads(json.dumps(run.info.to_dict())), schema_of(site, "recording"))
+    basis = Basis("measured", "declared", "none")
+    sizes = {"leg.3:null": Estimate(0.001, 0.0009, 0.0011, "1", 0.0)}
+    cause = Cause("valve_null", "leg.3", sizes, 0.99, True, None)
+    verdict = Verdict(Kind.NAMED, basis, Statistics(9.0, 4.0, 2.0, 3.0), (cause,), ((0,),))
+    content = json.loads(verdict.to_json())
+    jsonschema.validate(content, schema_of(site, "verdict"))
+    with pytest.raises(jsonschema.ValidationError):
+        jsonschema.validate({**content, "verdict": "perhaps"}, schema_of(site, "verdict"))
+
+
+def test_the_map_of_the_page_on_measured_data_keeps_to_its_schema(site):
+    page = (ROOT / "docs" / "measured-data.md").read_text(encoding="utf-8")
+    block = page.split("## Map\n\n")[1].split("\n\nEvery wrong key")[0]
+    content = tomllib.loads(textwrap.dedent(block))
+    jsonschema.validate(content, schema_of(site, "import-map"))
+    assert len(content) >= 6
+
+
+def test_the_example_of_the_page_on_python_runs(capsys):
+    page = (ROOT / "docs" / "python.md").read_text(encoding="utf-8")
+    (code,) = re.findall(r"```python\n(.*?)```", page, re.DOTALL)
+    exec(compile(code, "python.md", "exec"), {})
+    assert capsys.readouterr().out.startswith("completed (")
 
 
 @pytest.mark.parametrize("name", ["scenario", "import-map", "experiment", "recording", "verdict"])
