@@ -14,6 +14,7 @@ from ves_twin.diagnosis.verdict import Verdict
 from ves_twin.measured.import_map import ImportMap
 from ves_twin.procedures.registry import PROCEDURES
 from ves_twin.recording.recording import RecordingInfo
+from ves_twin.rigs.description import KIND, RigDescription
 from ves_twin.scenario.experiment import Experiment
 from ves_twin.scenario.schema import Scenario
 from ves_twin.signals import SIGNALS
@@ -28,6 +29,7 @@ unit (`"180 deg"`, `"12 mm"`). Tables and schemas here are generated from the cl
 | [scenario](scenario.md) | one experiment on the rig | [JSON schema](scenario.schema.json) |
 | [procedure](procedure.md) | an experiment of many runs with one result | a JSON schema each |
 | [plant](plant.md) | every number of a rig, with unit, sd, grade and source | |
+| [rig](rig.md) | a machine that is not VES II, beside its MuJoCo model | [JSON schema](rig.schema.json) |
 | [import map](import-map.md) | which column of a lab file is which signal | [JSON schema](import-map.schema.json) |
 | [experiment](experiment.md) | how a recording was made | [JSON schema](experiment.schema.json) |
 | [recording](recording.md) | signals on one clock, with metadata | [JSON schema](recording.schema.json) |
@@ -35,6 +37,8 @@ unit (`"180 deg"`, `"12 mm"`). Tables and schemas here are generated from the cl
 """
 
 _HEADS = {
+    "rig": "# Rig\n\nTOML beside a MuJoCo model; worked example in [bring your own rig](../bring-your-own-rig.md). The file begins with"
+    f' `schema = 1` and `kind = "{KIND}"`, and may name another one as its `base`; the schema is of the rest.',
     "scenario": "# Scenario\n\nTOML in `scenarios/`, run by `ves-twin run NAME`. The first line is a comment: the question.",
     "import-map": "# Import map\n\nTOML, read by `ves-twin import --map` and drafted by `ves-twin inspect --draft-map`;"
     " worked example in [measured data](../measured-data.md#map).",
@@ -50,6 +54,7 @@ def format_pages() -> dict[str, str]:
     """Name of a page or schema -> its text."""
     schemas = {
         "scenario": Scenario.model_json_schema(),
+        "rig": RigDescription.model_json_schema(),
         "import-map": ImportMap.model_json_schema(),
         "experiment": Experiment.model_json_schema(),
         "recording": TypeAdapter(RecordingInfo).json_schema(),

@@ -6,7 +6,7 @@ from pathlib import Path
 
 from commands_page import commands_page
 from format_pages import format_pages
-from home_page import home_page
+from home_page import home_page, rigs_page
 from mkdocs.config.defaults import MkDocsConfig
 from mkdocs.structure.files import File, Files
 from notebook_pages import notebook_pages
@@ -17,6 +17,7 @@ def on_files(files: Files, config: MkDocsConfig) -> Files:
     root = Path(config.config_file_path).parent
     pages = {
         "index.md": home_page(root),
+        "rigs.md": rigs_page(root),
         "commands.md": commands_page(),
         **format_pages(),
         **notebook_pages(root / "notebooks"),
@@ -24,3 +25,8 @@ def on_files(files: Files, config: MkDocsConfig) -> Files:
     for name, text in pages.items():
         files.append(File.generated(config, name, content=text))
     return files
+
+
+def on_page_markdown(markdown: str, **_: object) -> str:
+    """Links that leave docs/ for what the site has as a page of its own."""
+    return markdown.replace("](../models/rigs/README.md)", "](rigs.md)")

@@ -20,7 +20,7 @@ from ves_twin.scenario.schema import Scenario
 ROOT = Path(__file__).parents[2]
 SCENARIOS = sorted((ROOT / "scenarios").glob("*.toml"))
 CONFIG = (ROOT / "mkdocs.yml").read_text(encoding="utf-8")
-GENERATED = ("index.md", "commands.md", "formats/", "notebooks/")
+GENERATED = ("index.md", "rigs.md", "commands.md", "formats/", "notebooks/")
 LOADED = re.compile(
     r'<(?:script|img|iframe)[^>]*src="(https?:[^"]+)"|<link[^>]*href="(https?:[^"]+)"'
 )
@@ -126,7 +126,9 @@ def test_the_example_of_the_page_on_python_runs(capsys):
     assert capsys.readouterr().out.startswith("completed (")
 
 
-@pytest.mark.parametrize("name", ["scenario", "import-map", "experiment", "recording", "verdict"])
+@pytest.mark.parametrize(
+    "name", ["scenario", "rig", "import-map", "experiment", "recording", "verdict"]
+)
 def test_each_key_of_a_schema_is_on_its_page(site, name):
     schema = json.loads((site / "formats" / f"{name}.schema.json").read_text(encoding="utf-8"))
     text = (site / "formats" / f"{name}.html").read_text(encoding="utf-8")
