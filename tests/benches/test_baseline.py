@@ -25,13 +25,13 @@ def record(seed, programme="train", hidden=None):
     values = BENCH.commissioned(np.random.default_rng(7))
     for name, size in (hidden or {}).items():
         values[name] = values.get(name, 0.0) + size
-    rig = BlindRig(values, "quadratic_drag", 0.02)
+    rig = BlindRig(values, "quadratic_drag", 0.005)
     return BENCH.record(rig, programme, np.random.default_rng(seed))
 
 
 @pytest.mark.slow
 def test_what_is_always_there_is_no_fault_and_what_came_is_named(settings):
-    sick = record(1, hidden={"joint.stiffness": 0.05})
+    sick = record(1, hidden={"joint.stiffness": 0.02})
     assert diagnose(PLANT, [sick], settings=settings).verdict is not Kind.NAMED
     usual = [record(2)]
     verdict = diagnose(PLANT, [sick], baseline=usual, settings=settings)
