@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from scipy.stats import norm
@@ -18,10 +18,6 @@ from ves_twin.types import FloatArray, SingleArray
 ROUNDS = 3
 """Linearisations at most for the commissioning errors of one record."""
 
-BENDS = 2e-3
-"""Relative error of what fitted commissioning errors explain: what three linearisations of VES II
-leave of signals of a thousand sigma (measured on rigs in order; assumed for other plants)."""
-
 
 @dataclass(frozen=True)
 class Assessment:
@@ -35,6 +31,7 @@ class Assessment:
         suspects: hypotheses by falling score.
         misfit: largest cell score.
         commissioning: fit of commissioning errors alone; None while it was not needed.
+        bends: relative error of what fitted commissioning errors explain.
     """
 
     evidence: Evidence
@@ -44,6 +41,7 @@ class Assessment:
     suspects: list[Suspect]
     misfit: float
     commissioning: Fit | None
+    bends: float = 0.0
 
     @property
     def score(self) -> float:
@@ -60,7 +58,7 @@ class Assessment:
     def allowance(self) -> float:
         """chi^2 that may stay of what commissioning errors explain, since they bend: a share."""
         explained = float(self.z @ self.z - self.left @ self.left)
-        return BENDS**2 * max(explained, 0.0)
+        return self.bends**2 * max(explained, 0.0)
 
     def exceeds(self, effect: float, misfit: float, pull: float) -> bool:
         """Whether something is there."""
@@ -75,6 +73,7 @@ def assess(
     effect: float,
     level: float,
     pull: float,
+    bends: float = 0.0,
 ) -> Assessment:
     """Screen a record; where it looks faulty, once more with the nuisances fitted in full.
 
@@ -85,16 +84,17 @@ def assess(
         effect: score that leads to the second look.
         level: misfit that leads to it.
         pull: commissioning error [sd] that leads to it.
+        bends: relative error of what fitted commissioning errors explain.
     """
     runs = bank.base.runs
-    first = first_look(measured, bank, whitening)
+    first = replace(first_look(measured, bank, whitening), bends=bends)
     if not first.exceeds(effect, level, pull):
         return first
     look = first
     for rounds in (0, ROUNDS):
         fit = _fitted(look, rounds)
         own = whitening.adapted(whitening.apply(bare_residual(look.evidence, fit)))
-        look = _look(Evidence(runs, measured, own), Screen(bank, own), fit)
+        look = replace(_look(Evidence(runs, measured, own), Screen(bank, own), fit), bends=bends)
         if not look.exceeds(effect, level, pull):
             break
     return look

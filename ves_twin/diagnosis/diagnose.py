@@ -75,7 +75,9 @@ def diagnose(
         bank = _bank(seen, chosen, progress).without(tuple(exclude))
         limits = cached_thresholds(bank, whitening, chosen, progress)
         pull = pull_limit(bank, chosen.alpha)
-        first = assess(seen.measured, bank, whitening, limits.effect, limits.misfit, pull)
+        first = assess(
+            seen.measured, bank, whitening, limits.effect, limits.misfit, pull, limits.bends
+        )
         scale = _scale(forward, commissioning, workers, chosen.rate)
         basis = _basis(standstill, scale, held_out, baseline)
         findings = Findings(seen, first, limits, chosen, naming_limit(bank, scale), scale)

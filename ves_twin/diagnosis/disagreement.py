@@ -70,7 +70,7 @@ def disagreement(
         )
         rows = seen.measured[runs.slices[k]]
         pull = pull_limit(part, settings.alpha)
-        first = assess(rows, part, own, limits.effect, limits.misfit, pull)
+        first = assess(rows, part, own, limits.effect, limits.misfit, pull, limits.bends)
         name = f"{programme.name} ({k + 1})"
         if not first.exceeds(limits.effect, limits.misfit, pull):
             found.append(Alone(name, True, (), ()))

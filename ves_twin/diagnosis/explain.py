@@ -212,13 +212,13 @@ def judge(desk: Desk, fits: list[Fit]) -> Explanation:
     ranked.sort(key=lambda fit: fit.chi2)
     best = ranked[0]
     allowance = settings.model_error**2 * max(commissioning.chi2 - best.chi2, 0.0)
-    allowance += first.allowance
     chosen, weights = probabilities(ranked, allowance, settings.odds)
     before = cells(own, commissioning.residual)
     after = cells(own, chosen[0].residual)
     score = misfit(after, before, settings.model_error)
-    second = _second(desk, evidence, chosen[0], allowance)
-    limit = desk.thresholds.effect + allowance
+    beside = allowance + first.allowance
+    second = _second(desk, evidence, chosen[0], beside)
+    limit = desk.thresholds.effect + beside
     fall = commissioning.chi2 - chosen[0].chi2
     strained = chosen[0].pull > pull_limit(first.screen.bank, settings.alpha)
     enough = fall > LEAST * desk.thresholds.effect and not strained
