@@ -48,7 +48,7 @@ def test_fresh_and_cached_compile_agree_and_an_edited_helper_is_compiled_anew(tm
     assert result(project, cache) == fresh
     helper = project / "ves_twin" / "plant" / "physics" / "valve.py"
     text = helper.read_text()
-    assert "decay = np.exp(-step / p.lag[i])" in text
+    assert "s.decay[i] = np.exp(-step / p.lag[i])" in text
     helper.write_text(text.replace("np.exp(-step / p.lag[i])", "np.exp(-0.5 * step / p.lag[i])"))
     assert result(project, cache) != fresh
     helper.write_text(text)

@@ -34,7 +34,6 @@ def add_tendon_legs(
             top.add_body(
                 name=f"{name}/rod",
                 pos=geometry.top[i],
-                ipos=np.zeros(3),  # left open, it would be copied from pos
                 mass=rod_mass,
                 explicitinertial=True,
             )

@@ -81,4 +81,13 @@ class Context:
 
 def _text(value: object) -> str:
     """A value as `--set KEY=VALUE` reads it."""
-    return value if isinstance(value, str) else json.dumps(value, separators=(",", ":"))
+    return value if isinstance(value, str) else _inline(value)
+
+
+def _inline(value: object) -> str:
+    """A value in TOML, on one line."""
+    if isinstance(value, Mapping):
+        return "{" + ",".join(f"{key}={_inline(item)}" for key, item in value.items()) + "}"
+    if isinstance(value, list | tuple):
+        return "[" + ",".join(map(_inline, value)) + "]"
+    return json.dumps(value)
