@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import random
 import resource
+import tempfile
 import warnings
 from collections.abc import Iterator
 from pathlib import Path
@@ -92,7 +93,7 @@ def _stands(use, path: Path, seed: str) -> bool:
         assert len(text) < LONGEST, f"{seed}: {len(text)} characters: {text[:300]}"
         return False
     except BaseException as error:
-        kept = Path(f"/tmp/fuzz-{seed.replace(' ', '-')}")
+        kept = Path(tempfile.gettempdir()) / f"fuzz-{seed.replace(' ', '-')}"
         kept.write_bytes(path.read_bytes())
         said = f"{type(error).__name__}: {str(error)[:200]}"
         raise AssertionError(f"{seed}: {said}; kept in {kept}") from error

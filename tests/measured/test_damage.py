@@ -1,7 +1,5 @@
 """Whatever happens to a file, a look at it ends in what could be read or in one line."""
 
-import contextlib
-
 import numpy as np
 import pyarrow as pa
 import pyarrow.feather as feather
@@ -54,8 +52,14 @@ def damaged(content: bytes, rng: np.random.Generator) -> bytes:
 
 
 def look(path):
-    with contextlib.suppress(VesTwinError):
-        inspection_text(inspect_log(open_log(path)))
+    """What could be read is told; else the refusal is one line."""
+    try:
+        told = inspection_text(inspect_log(open_log(path)))
+        refused = ""
+    except VesTwinError as error:
+        told, refused = "", str(error)
+    assert told or refused, path
+    assert "\n" not in refused, path
 
 
 NAMES = ("a.csv", "a.parquet", "a.feather", "a.mat", "b.mat", "a.npz", "a.npy", "recording.arrows")
