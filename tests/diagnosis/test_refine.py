@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
-from toy import SD, Toy, programme, shape
+from toy import NUISANCES, SD, Toy, programme, shape
 
 from ves_twin.diagnosis.linearise import linearise
 from ves_twin.diagnosis.metric import Metric
@@ -115,3 +117,62 @@ def test_equal_rivals_share_the_probability():
     local = linearise(runs, runs.origin)
     fits = [refine(evidence, (h,), runs.origin, local) for h in twins.hypotheses[1:]]
     assert probabilities(fits, 0.0, 100.0)[1] == pytest.approx([0.5, 0.5], abs=0.01)
+
+
+class Turning(Toy):
+    """Its slope turns the response from one channel to the other, by 0.25 rad for one sd."""
+
+    def simulate(self, programme, values, refined=False):
+        turn = 5.0 * values.get("plant.slope", 0.0)
+        u = programme.drive["drive.u"]
+        rows = super().simulate(programme, {**values, "plant.slope": 0.0})
+        return rows + 3.0 * u * [np.sin(turn), np.cos(turn)]
+
+
+@pytest.fixture(scope="module")
+def turned():
+    """A record of a plant that stands three sd from nominal, where the columns are 43 deg off."""
+    known = replace(NUISANCES[0], sd=0.0)  # a gain would take the blame for a part of the turn
+    fed, plant = programme(), Turning(nuisances=(known, *NUISANCES[1:]))
+    runs = Runs(plant, (fed,), (0, 1))
+    true = {"plant.slope": 0.15, "plant.offset": 0.06}
+    noise = np.random.default_rng(3).standard_normal((len(fed.time), 2)) * SD
+    rows = (plant.simulate(fed, true) + noise).astype(np.float32)
+    evidence = Evidence(runs, rows, whitening_declared(runs))
+    return runs, evidence, linearise(runs, runs.origin), true
+
+
+def test_a_search_follows_a_plant_that_turns_without_new_columns(turned):
+    runs, evidence, local, true = turned
+    fit = refine(evidence, (), runs.origin, local)
+    names = [axis.parameter.name for axis in runs.coordinates]
+    at_truth = runs.origin
+    for name, value in true.items():
+        axis = names.index(name)
+        at_truth[axis] = value - runs.coordinates[axis].parameter.nominal
+    there = evidence.whitening.apply(evidence.measured - runs.one(at_truth))
+    # the truth's chi^2 with its priors, which the best point can only undercut; one unit of chi^2
+    # is a third of what parts two names
+    prior = np.sum((at_truth[runs.nuisances] / runs.sd[runs.nuisances]) ** 2)
+    assert fit.chi2 < there @ there + prior + 1.0
+
+
+def test_the_columns_that_a_fit_hands_on_hold_along_the_way_it_came(turned):
+    runs, evidence, local, _ = turned
+    fit = refine(evidence, (), runs.origin, local)
+    step = 1e-3
+    slope = (runs.one(fit.shift * (1.0 + step)) - runs.one(fit.shift)) / step
+    spreads = (fit.shift[runs.nuisances] / runs.sd[runs.nuisances]).astype(np.float32)
+
+    def off(columns):
+        return np.linalg.norm(np.tensordot(spreads, columns[:-1], axes=1) - slope)
+
+    # the secant of its last moves, 0 at best; the columns it was given are 43 deg off
+    assert off(fit.local.columns) < 0.25 * off(local.columns)
+
+
+def test_a_fit_begins_at_the_step_share_it_is_given(case):
+    _, runs, evidence, local, *_ = case
+    found = refine(evidence, (), runs.origin, local, step_share=0.3)
+    # the toy has no step: its column is zero and the prior alone pulls the share back
+    assert found.step_share == pytest.approx(0.0, abs=1e-6)

@@ -9,7 +9,7 @@ from scipy.stats import norm
 
 from ves_twin.diagnosis.adequacy import cells, misfit
 from ves_twin.diagnosis.bank import Bank
-from ves_twin.diagnosis.metric import Metric
+from ves_twin.diagnosis.prewhitened import Prewhitened
 from ves_twin.diagnosis.refine import Evidence, Fit, bare_residual, refine, residual_about
 from ves_twin.diagnosis.screen import Screen, Suspect
 from ves_twin.diagnosis.whitening import Whitening
@@ -87,25 +87,27 @@ def assess(
         bends: relative error of what fitted commissioning errors explain.
     """
     runs = bank.base.runs
-    first = replace(first_look(measured, bank, whitening), bends=bends)
+    shaped = Prewhitened(bank, whitening)
+    first = replace(first_look(measured, shaped), bends=bends)
     if not first.exceeds(effect, level, pull):
         return first
     look = first
     for rounds in (0, ROUNDS):
         fit = _fitted(look, rounds)
         own = whitening.adapted(whitening.apply(bare_residual(look.evidence, fit)))
-        look = replace(_look(Evidence(runs, measured, own), Screen(bank, own), fit), bends=bends)
+        look = _look(Evidence(runs, measured, own), Screen(bank, own, shaped=shaped), fit)
+        look = replace(look, bends=bends)
         if not look.exceeds(effect, level, pull):
             break
     return look
 
 
-def first_look(measured: SingleArray, bank: Bank, whitening: Whitening) -> Assessment:
+def first_look(measured: SingleArray, shaped: Prewhitened) -> Assessment:
     """With the nuisances as the linearisation at nominal has them, and the record's own noise."""
+    bank, whitening = shaped.bank, shaped.whitening
     raw = whitening.apply(measured - bank.base.prediction)
-    metric = Metric(whitening.apply(bank.base.columns).T)
-    own = whitening.adapted(metric.project(raw))
-    return _look(Evidence(bank.base.runs, measured, own), Screen(bank, own), None)
+    own = whitening.adapted(shaped.metric.project(raw))
+    return _look(Evidence(bank.base.runs, measured, own), Screen(bank, own, shaped=shaped), None)
 
 
 def _fitted(look: Assessment, rounds: int) -> Fit:
@@ -113,7 +115,8 @@ def _fitted(look: Assessment, rounds: int) -> Fit:
     base = look.screen.bank.base
     if look.commissioning is None:
         return refine(look.evidence, (), base.runs.origin, base, rounds)
-    return refine(look.evidence, (), look.commissioning.shift, look.commissioning.local, rounds)
+    last = look.commissioning
+    return refine(look.evidence, (), last.shift, last.local, rounds, last.step_share)
 
 
 def _look(evidence: Evidence, screen: Screen, fit: Fit | None) -> Assessment:

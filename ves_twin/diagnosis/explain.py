@@ -134,23 +134,29 @@ class _Job:
     causes: tuple[Hypothesis, ...]
     shift: FloatArray
     local: Linearisation
+    step_share: float
+
+    @staticmethod
+    def again(evidence: Evidence, fit: Fit, local: Linearisation | None = None) -> _Job:
+        """From where a fit ended, under another noise or with other columns."""
+        return _Job(evidence, fit.causes, fit.shift, local or fit.local, fit.step_share)
 
     @staticmethod
     def run(job: _Job) -> Fit:
-        return refine(job.evidence, job.causes, job.shift, job.local)
+        return refine(job.evidence, job.causes, job.shift, job.local, step_share=job.step_share)
 
 
 def _job(
     evidence: Evidence,
     causes: tuple[Hypothesis, ...],
     sizes: list[FloatArray],
-    start: tuple[FloatArray, Linearisation],
+    start: _Start,
 ) -> _Job:
     """From a point and the columns there, with the causes at given sizes."""
-    runs, (shift, local) = evidence.runs, start
+    runs, shift = evidence.runs, start.shift
     for cause, size in zip(causes, sizes, strict=True):
         shift = runs.depart(shift, runs.indices(cause), size)
-    return _Job(evidence, causes, shift, local)
+    return _Job(evidence, causes, shift, start.local, start.step_share)
 
 
 def _refined(jobs: list[_Job], desk: Desk, what: str) -> list[Fit]:
@@ -161,11 +167,21 @@ def _refined(jobs: list[_Job], desk: Desk, what: str) -> list[Fit]:
     return fits
 
 
-def _start(first: Assessment) -> tuple[FloatArray, Linearisation]:
+@dataclass(frozen=True)
+class _Start:
+    """Where fits begin: commissioning errors, the columns there, the step's share."""
+
+    shift: FloatArray
+    local: Linearisation
+    step_share: float = 0.0
+
+
+def _start(first: Assessment) -> _Start:
     """Commissioning errors as the last look left them, and the newest columns."""
-    if first.commissioning is None:
-        return first.evidence.runs.origin, first.screen.bank.base
-    return first.commissioning.shift, first.commissioning.local
+    last = first.commissioning
+    if last is None:
+        return _Start(first.evidence.runs.origin, first.screen.bank.base)
+    return _Start(last.shift, last.local, last.step_share)
 
 
 def _settled(evidence: Evidence, fits: list[Fit], desk: Desk) -> list[Fit]:
@@ -175,15 +191,20 @@ def _settled(evidence: Evidence, fits: list[Fit], desk: Desk) -> list[Fit]:
     """
     for _ in range(2):
         leader = min(fits, key=lambda fit: fit.chi2)
-        settled = refine(evidence, leader.causes, leader.shift, leader.local, desk.settings.rounds)
+        settled = _again(evidence, leader, desk.settings.rounds)
         near = HOPELESS * settled.chi2
         others = [fit for fit in fits if fit is not leader]
-        jobs = [_Job(evidence, f.causes, f.shift, settled.local) for f in others if f.chi2 < near]
+        jobs = [_Job.again(evidence, f, settled.local) for f in others if f.chi2 < near]
         rivals = _refined(jobs, desk, "fitting its rivals")
         fits = [settled, *rivals, *(fit for fit in others if fit.chi2 >= near)]
         if all(rival.chi2 >= settled.chi2 for rival in rivals):
             break
     return fits
+
+
+def _again(evidence: Evidence, fit: Fit, rounds: int) -> Fit:
+    """From where a fit ended, with columns computed there."""
+    return refine(evidence, fit.causes, fit.shift, fit.local, rounds, fit.step_share)
 
 
 def _starts(first: Assessment, suspect: Suspect) -> list[FloatArray]:
@@ -207,7 +228,7 @@ def judge(desk: Desk, fits: list[Fit]) -> Explanation:
     evidence = Evidence(runs, first.evidence.measured, own)
     commissioning = _commissioning(desk, evidence, leader)
     near = HOPELESS * leader.chi2
-    jobs = [_Job(evidence, fit.causes, fit.shift, fit.local) for fit in fits if fit.chi2 < near]
+    jobs = [_Job.again(evidence, fit) for fit in fits if fit.chi2 < near]
     ranked = _refined(jobs, desk, "weighing rivals")
     ranked.sort(key=lambda fit: fit.chi2)
     best = ranked[0]
@@ -243,12 +264,13 @@ def _commissioning(desk: Desk, evidence: Evidence, leader: Fit) -> Fit:
     computed anew only where the cause takes off little.
     """
     first, runs = desk.first, evidence.runs
-    beside = _Job(evidence, (), np.where(runs.sd > 0.0, leader.shift, 0.0), leader.local)
-    alone = _Job(evidence, (), *_start(first))
+    shift, start = np.where(runs.sd > 0.0, leader.shift, 0.0), _start(first)
+    beside = _Job(evidence, (), shift, leader.local, leader.step_share)
+    alone = _Job(evidence, (), start.shift, start.local, start.step_share)
     best = min(_refined([beside, alone], desk, "commissioning errors alone"), key=lambda f: f.chi2)
     if best.chi2 - leader.chi2 > CLEAR * desk.thresholds.effect:
         return best
-    return refine(evidence, (), best.shift, best.local, desk.settings.rounds)
+    return _again(evidence, best, desk.settings.rounds)
 
 
 def _second(desk: Desk, evidence: Evidence, fit: Fit, allowance: float) -> float:
@@ -292,7 +314,7 @@ def _pairs(desk: Desk, single: Explanation) -> Explanation | None:
     errors = best.shift.copy()
     errors[best.active[: len(best.sizes)]] = 0.0
     jobs = [
-        _job(single.evidence, causes, sizes, (errors, best.local))
+        _job(single.evidence, causes, sizes, _Start(errors, best.local, best.step_share))
         for causes, sizes in list(starts.values())[:PAIRS]
     ]
     if not jobs:

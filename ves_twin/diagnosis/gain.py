@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from ves_twin.diagnosis.linearise import linearise
+from ves_twin.diagnosis.linearise import Linearisation, linearise
 from ves_twin.diagnosis.metric import Metric
 from ves_twin.diagnosis.refine import Fit
 from ves_twin.diagnosis.runs import Runs
@@ -19,6 +19,9 @@ BLOCK_SECONDS = 0.5
 
 WORSE = 1.5
 """Growth of a channel's error that a forecast is not forgiven."""
+
+FORWARD_STEP = 1.0
+"""Of the fit's own sd, or of the prior of what is new: one side, where nothing moves on."""
 
 DRAWS = 2000
 """Resamples of the stretches."""
@@ -90,10 +93,10 @@ def held_out_gain(
         confidence: of the interval.
         seed: of the resampling.
     """
-    left = _energies(runs, measured, whitening, extended)
-    own = whitening.adapted(left[1])
-    after, _, error_after = _energies(runs, measured, own, extended)
-    before, _, error_before = _energies(runs, measured, own, nominal)
+    better, plain = _Carried.of(runs, extended), _Carried.of(runs, nominal)
+    own = whitening.adapted(better.left(measured, whitening))
+    after, before = better.energies(measured, own), plain.energies(measured, own)
+    error_after, error_before = better.errors(measured), plain.errors(measured)
     names = [runs.forward.channels[c].name for c in runs.columns]
     pairs = zip(error_before, error_after, strict=True)
     errors = {n: (float(a), float(b)) for n, (a, b) in zip(names, pairs, strict=True)}
@@ -114,36 +117,61 @@ def held_out_gain(
     return Gain(float(share), float(low), float(high), *means, errors)
 
 
-def _energies(
-    runs: Runs, measured: SingleArray, whitening: Whitening, fit: Fit
-) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Predictive chi^2 of each stretch of time, the residual left, and the rms of each channel."""
-    there = fit.local.runs
-    shared = [n for n, i in enumerate(fit.active) if there.coordinates[i].recording == -1]
-    names = [axis.parameter.name for axis in runs.coordinates]
-    carried = np.array(
-        [names.index(there.coordinates[fit.active[n]].parameter.name) for n in shared], int
-    )
-    point = runs.origin
-    point[carried] = fit.shift[fit.active[shared]]
-    new = np.array([i for i in runs.nuisances if runs.coordinates[i].recording != -1], int)
-    covariance = fit.posterior[np.ix_(shared, shared)]
-    sd = np.sqrt(np.maximum(np.diag(covariance), 1e-30))
-    spreads = np.concatenate([sd, runs.sd[new]])
-    local = linearise(runs, point, axes=(np.concatenate([carried, new]), spreads))
-    columns = whitening.apply(local.columns).T
-    count = len(shared)
-    values, vectors = np.linalg.eigh(covariance / np.outer(sd, sd))
-    root = vectors * np.sqrt(np.maximum(values, 0.0))
-    columns = np.concatenate([columns[:, :count] @ root, columns[:, count:]], axis=1)
-    z = whitening.apply(measured - local.prediction)
-    left = Metric(columns).project(z)
-    parts = [
-        np.add.reduceat(np.sum(block, axis=1), _starts(runs, k, len(block)))
-        for k, block in enumerate(whitening.blocks(z * left))
-    ]
-    rms = np.sqrt(np.mean(np.square(measured - local.prediction, dtype=float), axis=0))
-    return np.concatenate(parts), left, np.asarray(rms)
+@dataclass(frozen=True)
+class _Carried:
+    """A fit carried over to other recordings.
+
+    Attributes:
+        local: prediction there, and columns for one sd of what is carried and of what is new.
+        root: of the carried covariance, in those sd (carried, carried).
+    """
+
+    local: Linearisation
+    root: FloatArray
+
+    @staticmethod
+    def of(runs: Runs, fit: Fit) -> _Carried:
+        there = fit.local.runs
+        shared = [n for n, i in enumerate(fit.active) if there.coordinates[i].recording == -1]
+        names = [axis.parameter.name for axis in runs.coordinates]
+        carried = np.array(
+            [names.index(there.coordinates[fit.active[n]].parameter.name) for n in shared], int
+        )
+        point = runs.origin
+        point[carried] = fit.shift[fit.active[shared]]
+        new = np.array([i for i in runs.nuisances if runs.coordinates[i].recording != -1], int)
+        covariance = fit.posterior[np.ix_(shared, shared)]
+        sd = np.sqrt(np.maximum(np.diag(covariance), 1e-30))
+        axes = np.concatenate([carried, new]), np.concatenate([sd, runs.sd[new]])
+        values, vectors = np.linalg.eigh(covariance / np.outer(sd, sd))
+        local = linearise(runs, point, axes=axes, forward_step=FORWARD_STEP)
+        return _Carried(local, vectors * np.sqrt(np.maximum(values, 0.0)))
+
+    def left(self, measured: SingleArray, whitening: Whitening) -> FloatArray:
+        """What the nuisances cannot explain, whitened (samples,)."""
+        return self._metric(whitening).project(whitening.apply(measured - self.local.prediction))
+
+    def energies(self, measured: SingleArray, whitening: Whitening) -> FloatArray:
+        """Predictive chi^2 of each stretch of time."""
+        z = whitening.apply(measured - self.local.prediction)
+        products = whitening.blocks(z * self._metric(whitening).project(z))
+        runs = self.local.runs
+        return np.concatenate(
+            [
+                np.add.reduceat(np.sum(block, axis=1), _starts(runs, k, len(block)))
+                for k, block in enumerate(products)
+            ]
+        )
+
+    def errors(self, measured: SingleArray) -> FloatArray:
+        """Rms of each channel."""
+        off = np.square(measured - self.local.prediction, dtype=float)
+        return np.asarray(np.sqrt(np.mean(off, axis=0)))
+
+    def _metric(self, whitening: Whitening) -> Metric:
+        columns = whitening.apply(self.local.columns).T
+        count = len(self.root)
+        return Metric(np.concatenate([columns[:, :count] @ self.root, columns[:, count:]], axis=1))
 
 
 def _starts(runs: Runs, k: int, rows: int) -> IntArray:

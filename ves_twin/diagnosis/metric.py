@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from scipy.linalg import cho_factor, cho_solve
+from scipy.linalg import cho_factor, cho_solve, solve_triangular
 
 from ves_twin.types import FloatArray
 
@@ -37,6 +37,12 @@ class Metric:
     def nuisances(self, z: FloatArray) -> FloatArray:
         """Most probable nuisances in sd (k, ...) if z is noise and nuisances alone."""
         return np.asarray(cho_solve(self._factor, self.columns.T @ z))
+
+    def reduced(self, signals: FloatArray) -> FloatArray:
+        """R (k, ...) of signals (samples, ...), so that <a, b> = a'b - R_a' R_b."""
+        factor, lower = self._factor
+        inner = self.columns.T @ signals
+        return np.asarray(solve_triangular(factor, inner, trans=0 if lower else 1, lower=lower))
 
     def covariance(self) -> FloatArray:
         """Posterior covariance of the nuisances (k, k), in sd^2."""

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from scipy.stats import chi2
@@ -12,6 +13,7 @@ from ves_twin.diagnosis.adequacy import cells, misfit_floor
 from ves_twin.diagnosis.assess import assess, first_look, pull_limit
 from ves_twin.diagnosis.bank import Bank, bank_key, write_arrays
 from ves_twin.diagnosis.linearise import STEP_SD
+from ves_twin.diagnosis.prewhitened import Prewhitened
 from ves_twin.diagnosis.runs import Progress, silent
 from ves_twin.diagnosis.settings import Settings
 from ves_twin.diagnosis.whitening import Whitening
@@ -118,11 +120,15 @@ class _NullStudy:
         levels, colours = MEASURED if self.whitening.measured else DECLARED
         noise = self.whitening.draw(rng, rng.uniform(*levels), rng.uniform(*colours))
         if not self.simulated:
-            found = first_look(clean + noise, self.bank, self.whitening)
+            found = first_look(clean + noise, self._shaped)
             return found.score, found.misfit
         limit = pull_limit(self.bank, self.alpha)
         found = assess(clean + noise, self.bank, self.whitening, self.effect, self.misfit, limit)
         return found.score, found.misfit
+
+    @cached_property
+    def _shaped(self) -> Prewhitened:
+        return Prewhitened(self.bank, self.whitening)
 
     def _linear(self, shift: FloatArray, refined: bool) -> SingleArray:
         base = self.bank.base

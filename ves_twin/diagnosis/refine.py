@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -12,7 +12,7 @@ from ves_twin.diagnosis.runs import Runs
 from ves_twin.diagnosis.whitening import Whitening
 from ves_twin.types import FloatArray, IntArray, SingleArray
 
-ITERATIONS = 12
+ITERATIONS = 40
 """Steps at most from one linearisation."""
 
 FARTHEST = 30.0
@@ -20,6 +20,9 @@ FARTHEST = 30.0
 
 CONVERGED = 0.02
 """Fall of chi^2 that is not worth another run; names turn on differences of 9 and more."""
+
+WORTHLESS = 1e-4
+"""The same, of all of chi^2: what is lost and won by chance where parts stick and slip."""
 
 NEAR = 0.3
 """Commissioning sd within which nuisance columns are taken to hold; absent parameters: 6 %."""
@@ -34,8 +37,12 @@ BENT = 0.01
 """Squared error [sigma^2] of a predicted change above which the Jacobian is turned: single
 precision makes 1e-6 of it, and a smaller error moves no estimate."""
 
-HALVINGS = (1.0, 0.4, 0.1)
-"""Shares of a step that are tried until chi^2 falls."""
+DAMPING = 10.0
+"""First weight, and growth of the weight, that a step which did not help adds to the priors: a
+strong commissioning error that is a little off its column leaks into weak ones, many sd of them."""
+
+ATTEMPTS = 4
+"""Dampings that are tried before a search ends."""
 
 
 @dataclass(frozen=True)
@@ -103,7 +110,8 @@ class _Search:
 
     J has a column for each free parameter, for one sd of each nuisance, and for delta. After a
     move m that changed the prediction by c instead of J m it becomes J + (c - J m) m' / m'm, so
-    columns that no longer hold turn right without a run of their own.
+    columns that no longer hold turn right without a run of their own. They are turned before
+    whitening too, for whoever goes on from the fit, with another noise or another cause.
 
     Source: Broyden 1965, the good update.
     """
@@ -111,15 +119,17 @@ class _Search:
     def __init__(self, evidence: Evidence, free: IntArray, local: Linearisation) -> None:
         runs = evidence.runs
         self.evidence, self.runs, self.free, self.local = evidence, runs, free, local
-        kept = np.flatnonzero(~np.isin(runs.nuisances, free))
-        self.nuisances = runs.nuisances[kept]
-        picked = local.columns[[*kept, len(runs.nuisances)]]
+        self.kept = np.flatnonzero(~np.isin(runs.nuisances, free))
+        self.nuisances = runs.nuisances[self.kept]
+        self.turned = local.columns.copy()
+        picked = local.columns[[*self.kept, len(runs.nuisances)]]
         self.columns = evidence.whitening.apply(picked).T
         self.low = runs.low.copy()
         self.high = runs.high.copy()
         reach = FARTHEST * runs.sd[self.nuisances]
         self.low[self.nuisances] = np.maximum(self.low[self.nuisances], -reach)
         self.high[self.nuisances] = np.minimum(self.high[self.nuisances], reach)
+        self.damping = 0.0
         self.unit = np.ones(len(free) + len(self.nuisances) + 1)
         self.unit[len(free) : -1] = runs.sd[self.nuisances]
 
@@ -137,7 +147,7 @@ class _Search:
 
     def jacobian(self, point: _Point) -> FloatArray:
         """Columns at a point: free parameters by a step of 4 %, nuisances as they were given."""
-        columns = []
+        columns, raw = [], []
         for n, i in enumerate(self.free):
             step = 0.04 * abs(point.shift[i]) + 1e-3 * self.runs.sd[i]
             step = max(step, 1e-5 * (self.high[i] - self.low[i]))
@@ -147,12 +157,14 @@ class _Search:
             moved[i] += step
             change = self.runs.one(moved) - point.prediction
             self.unit[n] = abs(step)
-            columns.append(self.evidence.whitening.apply(change) * np.sign(step))
+            raw.append(change * np.float32(np.sign(step)))
+            columns.append(self.evidence.whitening.apply(raw[-1]))
+        self.raw = np.array(raw, np.float32).reshape(-1, *point.prediction.shape)
         free = np.array(columns).reshape(-1, len(point.residual)).T
         return np.concatenate([free, self.columns], axis=1)
 
-    def hessian(self, jacobian: FloatArray) -> FloatArray:
-        prior = np.ones(len(self.unit))
+    def hessian(self, jacobian: FloatArray, damping: float = 0.0) -> FloatArray:
+        prior = np.full(len(self.unit), 1.0 + damping)
         prior[: len(self.free)] = 0.0
         return np.asarray(jacobian.T @ jacobian + np.diag(prior))
 
@@ -164,33 +176,52 @@ class _Search:
             found = self._step(point, jacobian)
             fall = point.chi2 - found.chi2
             point = found
-            if fall < CONVERGED + 1e-6 * point.chi2:
+            if fall < CONVERGED + WORTHLESS * point.chi2:
                 break
         return point, jacobian
 
+    def _turn(self, change: SingleArray, move: FloatArray) -> None:
+        """The same before whitening; only what belongs to the nuisances is kept."""
+        here = move.astype(np.float32)
+        count = len(self.free)
+        change = change - np.tensordot(here[:count], self.raw, axes=1)
+        change -= np.tensordot(here[count:-1], self.turned[self.kept], axes=1)
+        share = here / np.float32(move @ move)
+        self.raw += share[:count, None, None] * change
+        self.turned[self.kept] += share[count:-1, None, None] * change
+
     def _step(self, point: _Point, jacobian: FloatArray) -> _Point:
-        """The next point, or the same one if none is better; updates the Jacobian in place."""
+        """The next point, or the same one if none is better; updates the Jacobian in place.
+
+        Source: Marquardt 1963, with the priors' own unit as the scale of the damping.
+        """
         axes = np.concatenate([self.free, self.nuisances])
-        for share in HALVINGS:
-            here = np.append(point.shift[axes], point.delta) / self.unit
-            prior = np.where(np.arange(len(here)) < len(self.free), 0.0, here)
-            hessian = self.hessian(jacobian)
+        here = np.append(point.shift[axes], point.delta) / self.unit
+        prior = np.where(np.arange(len(here)) < len(self.free), 0.0, here)
+        for _ in range(ATTEMPTS):
+            hessian = self.hessian(jacobian, self.damping)
             scale = 1.0 / np.sqrt(np.maximum(np.diag(hessian), 1e-30))
             scaled = hessian * np.outer(scale, scale) + 1e-10 * np.eye(len(scale))
             gradient = jacobian.T @ point.residual - prior
-            there = here + share * scale * np.linalg.solve(scaled, scale * gradient)
+            there = here + scale * np.linalg.solve(scaled, scale * gradient)
             shift = point.shift.copy()
             shift[axes] = (there * self.unit)[:-1]
             trial = self.at(np.clip(shift, self.low, self.high), float(there[-1]))
-            if not np.isfinite(trial.chi2):
-                continue
-            move = np.append(trial.shift[axes], trial.delta) / self.unit - here
-            surprise = point.residual - trial.residual - jacobian @ move
-            if surprise @ surprise > BENT:
-                jacobian += np.outer(surprise, move / (move @ move))
+            if np.isfinite(trial.chi2):
+                self._learn(point, trial, jacobian, np.append(trial.shift[axes], trial.delta))
             if trial.chi2 < point.chi2:
+                self.damping = self.damping / DAMPING if self.damping > DAMPING else 0.0
                 return trial
+            self.damping = DAMPING * max(self.damping, 1.0)
         return point
+
+    def _learn(self, point: _Point, trial: _Point, jacobian: FloatArray, there: FloatArray) -> None:
+        axes = np.concatenate([self.free, self.nuisances])
+        move = (there - np.append(point.shift[axes], point.delta)) / self.unit
+        surprise = point.residual - trial.residual - jacobian @ move
+        if surprise @ surprise > BENT:
+            jacobian += np.outer(surprise, move / (move @ move))
+            self._turn(trial.prediction - point.prediction, move)
 
 
 def refine(
@@ -199,6 +230,7 @@ def refine(
     shift: FloatArray,
     local: Linearisation,
     rounds: int = 0,
+    step_share: float = 0.0,
 ) -> Fit:
     """Fit causes and nuisances with the full forward.
 
@@ -209,6 +241,7 @@ def refine(
         local: nuisance columns to use.
         rounds: how often at most the nuisance columns are computed anew at the fit; ends when
             it has stayed within NEAR of where they were computed, or gains no more by it.
+        step_share: of the discretisation column, to start from.
     """
     runs = evidence.runs
     free = (
@@ -218,7 +251,7 @@ def refine(
     )
     search = _Search(evidence, free, local)
     start = np.clip(shift, search.low, search.high)
-    point, jacobian = search.run(search.at(start, 0.0))
+    point, jacobian = search.run(search.at(start, step_share))
     for _ in range(rounds):
         if _near(runs, search, point.shift):
             break
@@ -245,7 +278,7 @@ def refine(
         chi2=point.chi2,
         residual=point.residual,
         free=jacobian[:, :count],
-        local=search.local,
+        local=replace(search.local, columns=search.turned),
         prediction=point.prediction,
     )
 

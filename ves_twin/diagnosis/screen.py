@@ -9,6 +9,7 @@ import numpy as np
 
 from ves_twin.diagnosis.bank import Bank
 from ves_twin.diagnosis.metric import Metric
+from ves_twin.diagnosis.prewhitened import Prewhitened
 from ves_twin.diagnosis.whitening import Whitening
 from ves_twin.types import FloatArray
 
@@ -42,16 +43,23 @@ class Screen:
         whitening: of this record.
         extra: whitened directions that are free besides the nuisances (samples, k): the
             parameters of a cause that is fitted already.
+        shaped: the bank before this record's colour and level; made here if None.
+        shaped: the bank under the whitening that this record's comes from; made here if None.
     """
 
     bank: Bank
     whitening: Whitening
     extra: FloatArray | None = None
+    shaped: Prewhitened | None = None
+
+    @cached_property
+    def _shaped(self) -> Prewhitened:
+        return self.shaped or Prewhitened(self.bank, self.whitening)
 
     @cached_property
     def metric(self) -> Metric:
         """Nuisances of the bank's base, and the extra directions with no prior to speak of."""
-        columns = self.whitening.apply(self.bank.base.columns).T
+        columns = self._shaped.columns(self.whitening)
         if self.extra is not None:
             norm = np.linalg.norm(self.extra, axis=0)
             columns = np.concatenate([columns, 1e3 * self.extra / np.maximum(norm, 1e-9)], axis=1)
@@ -61,28 +69,29 @@ class Screen:
     def shapes(self) -> FloatArray:
         """Whitened shapes: columns of the base, then the bent ones (samples, shapes)."""
         columns = self.metric.columns[:, : len(self.bank.base.columns)]
-        return np.concatenate([columns, self.whitening.apply(self.bank.bent).T], axis=1)
+        return np.concatenate([columns, self._shaped.bent(self.whitening)], axis=1)
 
     @cached_property
-    def projected(self) -> FloatArray:
-        """Shapes after the nuisances took what they can (samples, shapes)."""
-        return self.metric.project(self.shapes)
+    def _reduced(self) -> FloatArray:
+        """What the nuisances can explain of the shapes, in coordinates of their own (k, shapes)."""
+        return self.metric.reduced(self.shapes)
 
     @cached_property
     def gram(self) -> FloatArray:
         """<s_j, s_k> (entries, entries)."""
-        gram = self.shapes.T @ self.projected
+        gram = self.shapes.T @ self.shapes - self._reduced.T @ self._reduced
         which, factor = self.bank.shape, self.bank.factor
         return np.asarray(gram[np.ix_(which, which)] * np.outer(factor, factor))
 
     def match(self, z: FloatArray) -> FloatArray:
         """<s_k, z> of each entry with a whitened residual (samples,)."""
-        return np.asarray((self.projected.T @ z)[self.bank.shape] * self.bank.factor)
+        inner = self.shapes.T @ self.metric.project(z)
+        return np.asarray(inner[self.bank.shape] * self.bank.factor)
 
     @cached_property
     def power(self) -> FloatArray:
         """d^2 of each entry: its size in sigma, squared."""
-        power = np.sum(self.shapes * self.projected, axis=0)
+        power = np.sum(self.shapes**2, axis=0) - np.sum(self._reduced**2, axis=0)
         return np.asarray(np.maximum(power[self.bank.shape] * self.bank.factor**2, 1e-12))
 
     def suspects(self, z: FloatArray) -> list[Suspect]:

@@ -60,15 +60,18 @@ class Whitening:
 
     def apply(self, stack: SingleArray) -> FloatArray:
         """Whitened rows, flattened: (..., rows, c) -> (..., samples)."""
-        if stack.size == 0:
-            pairs = enumerate(self.runs.slices)
-            count = sum(s.stop - s.start - self.lost(k) for k, s in pairs)
-            return np.zeros((*stack.shape[:-2], count * self.mixing.shape[1]))
-        parts = []
-        for k, rows in enumerate(self.runs.slices):
-            piece = self._one(k, stack[..., rows, :])
-            parts.append(piece.reshape(*piece.shape[:-2], -1))
-        z = np.concatenate(parts, axis=-1)
+        return self.finished(self.prewhitened(stack))
+
+    def prewhitened(self, stack: SingleArray) -> list[FloatArray]:
+        """Without colour and level, which `adapted` changes: (..., rows, c) of each recording."""
+        return [self._mixed(k, stack[..., rows, :]) for k, rows in enumerate(self.runs.slices)]
+
+    def finished(self, parts: Sequence[FloatArray]) -> FloatArray:
+        """What `prewhitened` gave, with colour and level, flattened: (..., samples)."""
+        pieces = [self._levelled(k, part) for k, part in enumerate(parts)]
+        z = np.concatenate(
+            [p.reshape(*p.shape[:-2], p.shape[-2] * p.shape[-1]) for p in pieces], -1
+        )
         return z if self.weights is None else z * self.weights
 
     @cached_property
@@ -150,14 +153,18 @@ class Whitening:
             parts.append(np.stack(shaped, axis=1)[50:])
         return np.concatenate(parts).astype(np.float32)
 
-    def _one(self, k: int, rows: SingleArray) -> FloatArray:
+    def _mixed(self, k: int, rows: SingleArray) -> FloatArray:
         if self.runs.programmes[k].poses:
-            return np.asarray(rows @ self.mixing[k].T / self.level[k])
+            return np.asarray(rows @ self.mixing[k].T)
         shaped = np.stack(
             [lfilter(a, [1.0], rows[..., c], axis=-1) for c, a in enumerate(self.filters[k])],
             axis=-1,
         )
-        white = shaped[..., ORDER:, :] @ self.mixing[k].T
+        return np.asarray(shaped[..., ORDER:, :] @ self.mixing[k].T)
+
+    def _levelled(self, k: int, white: FloatArray) -> FloatArray:
+        if self.runs.programmes[k].poses:
+            return np.asarray(white / self.level[k])
         return np.asarray((white[..., 1:, :] - self.colour[k] * white[..., :-1, :]) / self.level[k])
 
 
