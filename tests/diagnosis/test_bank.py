@@ -57,6 +57,17 @@ def test_a_cached_bank_is_the_same_and_another_programme_is_another_bank(runs, t
     assert len(list(tmp_path.iterdir())) == 2
 
 
+def test_a_kept_bank_of_a_plant_whose_code_has_changed_is_built_anew(runs, tmp_path, monkeypatch):
+    cached_bank(runs, tmp_path, lambda: build_bank(runs))
+    before = Toy.simulate
+    monkeypatch.setattr(Toy, "simulate", lambda *a, **k: 1.01 * before(*a, **k))
+    fresh = build_bank(runs)
+    again = cached_bank(runs, tmp_path, lambda: fresh)
+    assert again is fresh
+    read = cached_bank(runs, tmp_path, lambda: pytest.fail("built twice"))
+    assert np.array_equal(read.base.prediction, fresh.base.prediction)
+
+
 def test_processes_change_nothing(runs):
     two = Runs(Toy(), (programme(),), (0, 1), Workers(2))
     assert np.array_equal(build_bank(two).bent, build_bank(runs).bent)

@@ -23,6 +23,9 @@ STRAIGHT = 4.0
 LADDER = 6.0
 """Step between the sizes of a cause that is linear throughout; scaling bridges a factor of 8."""
 
+SAME = 1e-2
+"""Sd of one sample by which a kept prediction may be off: rounding of another processor."""
+
 SCHEMA = 2
 """Version of the cached file; another one is built anew."""
 
@@ -177,7 +180,7 @@ def _ladder(hypothesis: Hypothesis, sd: float) -> list[float]:
 
 
 def cached_bank(runs: Runs, folder: Path | None, build: Callable[[], Bank]) -> Bank:
-    """The bank of a plant and its programmes from a file, built and written where there is none.
+    """The bank of a plant and its programmes from a file, built and written where none holds.
 
     Raises:
         FileAccessError: the folder cannot be written.
@@ -185,8 +188,9 @@ def cached_bank(runs: Runs, folder: Path | None, build: Callable[[], Bank]) -> B
     if folder is None:
         return build()
     path = folder / f"bank-{bank_key(runs)}.npz"
-    if path.is_file():
-        return _read(path, runs)
+    kept = _read(path, runs) if path.is_file() else None
+    if kept is not None and _holds(kept):
+        return kept
     bank = build()
     write_arrays(
         path,
@@ -199,6 +203,17 @@ def cached_bank(runs: Runs, folder: Path | None, build: Callable[[], Bank]) -> B
         bent=bank.bent,
     )
     return bank
+
+
+def _holds(bank: Bank) -> bool:
+    """Whether the forward still predicts what it did when the bank was built.
+
+    No key can know that a line of code has changed; one run of the nominal plant does.
+    """
+    runs = bank.base.runs
+    sds = np.array([runs.forward.channels[c].sd for c in runs.columns])
+    off = np.abs(runs.one(runs.origin) - bank.base.prediction) / sds
+    return bool(np.all(off < SAME))
 
 
 def bank_key(runs: Runs, more: bytes = b"") -> str:
