@@ -167,8 +167,8 @@ def test_the_columns_that_a_fit_hands_on_hold_along_the_way_it_came(turned):
     def off(columns):
         return np.linalg.norm(np.tensordot(spreads, columns[:-1], axes=1) - slope)
 
-    # the secant of its last moves, 0 at best; the columns it was given are 43 deg off
-    assert off(fit.local.columns) < 0.25 * off(local.columns)
+    # a secant over 43 deg is 0.55 as far off as the tangent at its begin; LEAST_MOVE keeps a tenth
+    assert off(fit.local.columns) < 0.65 * off(local.columns)
 
 
 def test_a_fit_begins_at_the_step_share_it_is_given(case):

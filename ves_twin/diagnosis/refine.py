@@ -27,7 +27,7 @@ WORTHLESS = 1e-4
 NEAR = 0.3
 """Commissioning sd within which nuisance columns are taken to hold; absent parameters: 6 %."""
 
-FORWARD_STEP = 0.5
+FORWARD_STEP = 1.0
 """Commissioning sd of a one-sided difference at a fit."""
 
 WORTH = 3e-4
@@ -36,6 +36,10 @@ WORTH = 3e-4
 BENT = 0.01
 """Squared error [sigma^2] of a predicted change above which the Jacobian is turned: single
 precision makes 1e-6 of it, and a smaller error moves no estimate."""
+
+LEAST_MOVE = 1.0
+"""Move [sd] below which the columns learn less from it: a rig that sticks and slips answers some
+7 sigma off by chance, whatever the move."""
 
 DAMPING = 10.0
 """First weight, and growth of the weight, that a step which did not help adds to the priors: a
@@ -186,7 +190,7 @@ class _Search:
         count = len(self.free)
         change = change - np.tensordot(here[:count], self.raw, axes=1)
         change -= np.tensordot(here[count:-1], self.turned[self.kept], axes=1)
-        share = here / np.float32(move @ move)
+        share = here / np.float32(move @ move + LEAST_MOVE**2)
         self.raw += share[:count, None, None] * change
         self.turned[self.kept] += share[count:-1, None, None] * change
 
@@ -220,7 +224,7 @@ class _Search:
         move = (there - np.append(point.shift[axes], point.delta)) / self.unit
         surprise = point.residual - trial.residual - jacobian @ move
         if surprise @ surprise > BENT:
-            jacobian += np.outer(surprise, move / (move @ move))
+            jacobian += np.outer(surprise, move / (move @ move + LEAST_MOVE**2))
             self._turn(trial.prediction - point.prediction, move)
 
 
