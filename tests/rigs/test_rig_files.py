@@ -84,8 +84,22 @@ def test_options_that_a_rig_does_not_have_are_refused(tmp_path, capsys):
 
 def test_a_rig_is_told_from_a_form_of_ves_ii(tmp_path):
     assert is_rig(str(write_files(tmp_path)))
+    assert shipped_rigs() == ["emps", "ft_wrist"]
     assert all(is_rig(name) for name in shipped_rigs())
     assert not is_rig("ves2")
+
+
+@pytest.mark.parametrize("name", shipped_rigs())
+def test_every_rig_that_comes_with_the_twin_loads(name):
+    """A set of rigs, or any other file that is none, does not lie among them."""
+    assert Rig.load(name).description.name == name
+
+
+def test_a_set_of_rigs_is_no_rig(tmp_path, capsys):
+    assert not is_rig("train-v0")
+    (tmp_path / "log.csv").write_text(LOG)
+    assert main(["compare", str(tmp_path / "log.csv"), "--plant", "train-v0"]) == 2
+    assert "train-v0" in capsys.readouterr().err
 
 
 def test_columns_become_si_and_a_vector_turns_into_its_frame(tmp_path):

@@ -57,6 +57,7 @@ def general_content() -> dict[str, object]:
     from ves_twin.envs.baselines import BASELINES
     from ves_twin.plant.plant import Plant
     from ves_twin.resources import resource_folder
+    from ves_twin.rigs.description import shipped_rigs
     from ves_twin.scenario.load import scenario_questions
     from ves_twin.signals import SIGNALS
     from ves_twin.simulator.simulate import versions
@@ -76,7 +77,8 @@ def general_content() -> dict[str, object]:
         },
         "scenarios": list(scenario_questions()),
         "environments": list(ENVIRONMENTS),
-        "sets of rigs": [p.stem for p in sorted((models / "rigs").glob("*.toml"))],
+        "rigs of two files": shipped_rigs(),
+        "sets of rigs": [p.stem for p in sorted((models / "rig_sets").glob("*.toml"))],
         "baseline policies": list(BASELINES),
         "signals": {
             s.name: f"{s.width} {', '.join(dict.fromkeys(s.units))}; {s.role.value}; {s.meaning}"

@@ -108,7 +108,7 @@ class RigSet:
 
     @staticmethod
     def load(name_or_path: str) -> RigSet:
-        """A set from models/rigs/ ("train-v0"), or from a file.
+        """A set from models/rig_sets/ ("train-v0"), or from a file.
 
         Raises:
             FileAccessError: missing or unreadable.
@@ -116,7 +116,7 @@ class RigSet:
             InvalidInputError: sizes that are none.
             VersionError: another version of the format.
         """
-        path = find_resource("set of rigs", "models/rigs", name_or_path)
+        path = find_resource("set of rigs", "models/rig_sets", name_or_path)
         content, _ = read_toml("set of rigs", path)
         check_schema(content, path, SCHEMA)
         try:
