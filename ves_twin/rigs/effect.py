@@ -13,46 +13,12 @@ import numpy as np
 from ves_twin.effects.magnitude import Magnitude
 from ves_twin.errors import InvalidInputError
 from ves_twin.rigs.element import Element
+from ves_twin.rigs.place import Place
+from ves_twin.rigs.size import Size
 from ves_twin.types import FloatArray
 
 if TYPE_CHECKING:
     import mujoco
-
-LEAST = 0.001
-"""Smallest size of interest, as a share of the largest, where a kind says nothing else."""
-
-
-@dataclass(frozen=True)
-class Place:
-    """A target with the typical sizes that sizes of effects follow from.
-
-    Attributes:
-        element: what it is.
-        name: as the file has it: "axis", "motor", "tool.x", "wrist.force.3".
-        hinge: whether a joint turns rather than slides.
-        effort, speed, travel: typical at a joint [N or N m, m/s or rad/s, m or rad].
-        unit: of a signal.
-        span: typical range of a signal [its unit].
-        mass: of a body [kg].
-        begin, end, terms: stretch that drift shapes span, and their count.
-    """
-
-    element: Element
-    name: str
-    hinge: bool = False
-    effort: float = 0.0
-    speed: float = 0.0
-    travel: float = 0.0
-    unit: str = "1"
-    span: float = 0.0
-    mass: float = 0.0
-    begin: float = 0.0
-    end: float = 1.0
-    terms: int = 4
-
-    def pick(self, slide: str, hinge: str) -> str:
-        """One of two units, by the kind of joint."""
-        return hinge if self.hinge else slide
 
 
 @dataclass(frozen=True)
@@ -73,6 +39,8 @@ class RigEffect(ABC):
 
     kind: ClassVar[str]
     element: ClassVar[Element]
+    size: ClassVar[Size]
+    """Of a kind with one number; a kind with more overrides `magnitudes`."""
     attribute: ClassVar[str] = ""
     """Attribute of the model that it changes; its nominal value is then that of the model."""
     source: ClassVar[str] = "assumed: sizes follow from the typical ones of the rig's file"
@@ -88,7 +56,7 @@ class RigEffect(ABC):
     @classmethod
     def magnitudes(cls, place: Place) -> tuple[Magnitude, ...]:
         """Sizes with unit and range at a place."""
-        raise NotImplementedError
+        return (cls.size.at(place),)
 
     @property
     def sizes(self) -> dict[str, float]:

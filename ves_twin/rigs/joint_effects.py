@@ -3,30 +3,25 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, ClassVar, final
+from typing import ClassVar, final
 
 import numpy as np
 
-from ves_twin.effects.magnitude import Magnitude, Sign
-from ves_twin.rigs.effect import LEAST, Place, RigEffect, play
+from ves_twin.effects.magnitude import Sign
+from ves_twin.rigs.effect import RigEffect, play
 from ves_twin.rigs.element import Element
+from ves_twin.rigs.model_number import ModelNumber
+from ves_twin.rigs.size import Size
 from ves_twin.types import FloatArray
 
-if TYPE_CHECKING:
-    import mujoco
-
-
-def _effort(place: Place) -> str:
-    return place.pick("N", "N*m")
-
-
-def _one(name: str, unit: str, largest: float, sign: Sign = Sign.BOTH) -> tuple[Magnitude, ...]:
-    return (Magnitude(name, unit, 0.0, LEAST * largest, largest, sign),)
+EFFORT = ("N", "N*m")
+DAMPING = ("N*s/m", "N*m*s/rad")
+"""Units on a slide and on a hinge."""
 
 
 @final
 @dataclass(frozen=True)
-class ViscousFriction(RigEffect):
+class ViscousFriction(ModelNumber):
     """A joint moves harder in proportion to its speed: MuJoCo's damping."""
 
     damping: float = 0.0
@@ -34,25 +29,16 @@ class ViscousFriction(RigEffect):
     kind: ClassVar[str] = "viscous_friction"
     element: ClassVar[Element] = Element.JOINT
     attribute: ClassVar[str] = "damping"
-
-    @classmethod
-    def magnitudes(cls, place: Place) -> tuple[Magnitude, ...]:
-        """Up to three times what takes the typical effort at the typical speed."""
-        unit = place.pick("N*s/m", "N*m*s/rad")
-        return _one("damping", unit, 3.0 * place.effort / place.speed, Sign.POSITIVE)
-
-    def present(self, model: mujoco.MjModel) -> float:
-        """Of the joint, in the model."""
-        return float(model.dof_damping[model.joint(self.target).dofadr[0]])
-
-    def edit_model(self, model: mujoco.MjModel) -> None:
-        """Add to the damping of the joint."""
-        model.dof_damping[model.joint(self.target).dofadr[0]] += self.damping
+    array: ClassVar[str] = "dof_damping"
+    # up to three times what takes the typical effort at the typical speed
+    size: ClassVar[Size] = Size(
+        "damping", DAMPING, lambda p: 3.0 * p.effort / p.speed, sign=Sign.POSITIVE
+    )
 
 
 @final
 @dataclass(frozen=True)
-class CoulombFriction(RigEffect):
+class CoulombFriction(ModelNumber):
     """Dry friction: MuJoCo's friction loss forward, level * tanh(v / slow) where motion is given.
 
     Inverse dynamics of MuJoCo's friction loss weighs acceleration against speed near a reversal,
@@ -64,19 +50,8 @@ class CoulombFriction(RigEffect):
     kind: ClassVar[str] = "coulomb_friction"
     element: ClassVar[Element] = Element.JOINT
     attribute: ClassVar[str] = "frictionloss"
-
-    @classmethod
-    def magnitudes(cls, place: Place) -> tuple[Magnitude, ...]:
-        """Up to the typical effort."""
-        return _one("level", _effort(place), place.effort, Sign.POSITIVE)
-
-    def present(self, model: mujoco.MjModel) -> float:
-        """Of the joint, in the model."""
-        return float(model.dof_frictionloss[model.joint(self.target).dofadr[0]])
-
-    def edit_model(self, model: mujoco.MjModel) -> None:
-        """Add to the friction loss of the joint."""
-        model.dof_frictionloss[model.joint(self.target).dofadr[0]] += self.level
+    array: ClassVar[str] = "dof_frictionloss"
+    size: ClassVar[Size] = Size("level", EFFORT, lambda p: p.effort, sign=Sign.POSITIVE)
 
 
 @final
@@ -88,11 +63,7 @@ class ViscousAsymmetry(RigEffect):
 
     kind: ClassVar[str] = "viscous_asymmetry"
     element: ClassVar[Element] = Element.JOINT
-
-    @classmethod
-    def magnitudes(cls, place: Place) -> tuple[Magnitude, ...]:
-        """Up to what takes the typical effort at the typical speed."""
-        return _one("slope", place.pick("N*s/m", "N*m*s/rad"), place.effort / place.speed)
+    size: ClassVar[Size] = Size("slope", DAMPING, lambda p: p.effort / p.speed)
 
     def resist(self, speed: FloatArray, slow: float) -> FloatArray:
         """Slope times the size of the speed."""
@@ -108,11 +79,7 @@ class CoulombAsymmetry(RigEffect):
 
     kind: ClassVar[str] = "coulomb_asymmetry"
     element: ClassVar[Element] = Element.JOINT
-
-    @classmethod
-    def magnitudes(cls, place: Place) -> tuple[Magnitude, ...]:
-        """Up to half the typical effort."""
-        return _one("level", _effort(place), 0.5 * place.effort)
+    size: ClassVar[Size] = Size("level", EFFORT, lambda p: 0.5 * p.effort)
 
     def resist(self, speed: FloatArray, slow: float) -> FloatArray:
         """The level, gone where the joint stands."""
@@ -128,11 +95,7 @@ class ForceOffset(RigEffect):
 
     kind: ClassVar[str] = "force_offset"
     element: ClassVar[Element] = Element.JOINT
-
-    @classmethod
-    def magnitudes(cls, place: Place) -> tuple[Magnitude, ...]:
-        """Up to half the typical effort."""
-        return _one("offset", _effort(place), 0.5 * place.effort)
+    size: ClassVar[Size] = Size("offset", EFFORT, lambda p: 0.5 * p.effort)
 
     def resist(self, speed: FloatArray, slow: float) -> FloatArray:
         """The offset."""
@@ -141,7 +104,7 @@ class ForceOffset(RigEffect):
 
 @final
 @dataclass(frozen=True)
-class JointSpring(RigEffect):
+class JointSpring(ModelNumber):
     """A cable or hose pulls the joint towards its reference: MuJoCo's stiffness."""
 
     stiffness: float = 0.0
@@ -149,25 +112,15 @@ class JointSpring(RigEffect):
     kind: ClassVar[str] = "joint_spring"
     element: ClassVar[Element] = Element.JOINT
     attribute: ClassVar[str] = "stiffness"
-
-    @classmethod
-    def magnitudes(cls, place: Place) -> tuple[Magnitude, ...]:
-        """Up to the typical effort over the typical travel."""
-        unit = place.pick("N/m", "N*m/rad")
-        return _one("stiffness", unit, place.effort / place.travel, Sign.POSITIVE)
-
-    def present(self, model: mujoco.MjModel) -> float:
-        """Of the joint, in the model."""
-        return float(model.jnt_stiffness[model.joint(self.target).id])
-
-    def edit_model(self, model: mujoco.MjModel) -> None:
-        """Add to the stiffness of the joint."""
-        model.jnt_stiffness[model.joint(self.target).id] += self.stiffness
+    array: ClassVar[str] = "jnt_stiffness"
+    size: ClassVar[Size] = Size(
+        "stiffness", ("N/m", "N*m/rad"), lambda p: p.effort / p.travel, sign=Sign.POSITIVE
+    )
 
 
 @final
 @dataclass(frozen=True)
-class RotorInertia(RigEffect):
+class RotorInertia(ModelNumber):
     """Rotor and gears have more inertia than assumed, seen at the joint: MuJoCo's armature."""
 
     inertia: float = 0.0
@@ -175,20 +128,14 @@ class RotorInertia(RigEffect):
     kind: ClassVar[str] = "rotor_inertia"
     element: ClassVar[Element] = Element.JOINT
     attribute: ClassVar[str] = "armature"
-
-    @classmethod
-    def magnitudes(cls, place: Place) -> tuple[Magnitude, ...]:
-        """Up to what takes the typical effort to reach the typical speed over half the travel."""
-        largest = place.effort * place.travel / place.speed**2
-        return _one("inertia", place.pick("kg", "kg*m^2"), largest, Sign.POSITIVE)
-
-    def present(self, model: mujoco.MjModel) -> float:
-        """Of the joint, in the model."""
-        return float(model.dof_armature[model.joint(self.target).dofadr[0]])
-
-    def edit_model(self, model: mujoco.MjModel) -> None:
-        """Add to the armature of the joint."""
-        model.dof_armature[model.joint(self.target).dofadr[0]] += self.inertia
+    array: ClassVar[str] = "dof_armature"
+    # up to what takes the typical effort to reach the typical speed over half the travel
+    size: ClassVar[Size] = Size(
+        "inertia",
+        ("kg", "kg*m^2"),
+        lambda p: p.effort * p.travel / p.speed**2,
+        sign=Sign.POSITIVE,
+    )
 
 
 @final
@@ -200,12 +147,7 @@ class Backlash(RigEffect):
 
     kind: ClassVar[str] = "backlash"
     element: ClassVar[Element] = Element.JOINT
-
-    @classmethod
-    def magnitudes(cls, place: Place) -> tuple[Magnitude, ...]:
-        """Up to a twentieth of the typical travel."""
-        largest = 0.05 * place.travel
-        return _one("gap", place.pick("m", "rad"), largest, Sign.POSITIVE)
+    size: ClassVar[Size] = Size("gap", ("m", "rad"), lambda p: 0.05 * p.travel, sign=Sign.POSITIVE)
 
     def edit_position(self, position: FloatArray) -> FloatArray:
         """The side that is dragged along."""

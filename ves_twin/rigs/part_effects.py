@@ -1,25 +1,27 @@
-"""Effects of an actuator (gain, delay) and of a body (mass, centre of mass)."""
+"""Effects of an actuator (gain, delay) and of a body (mass, centre of mass, inertia)."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, ClassVar, final
 
-from ves_twin.effects.magnitude import Magnitude, Sign
-from ves_twin.rigs.effect import Place, RigEffect, shifted
+from ves_twin.effects.magnitude import Sign
+from ves_twin.rigs.effect import RigEffect, shifted
 from ves_twin.rigs.element import Element
+from ves_twin.rigs.model_number import ModelNumber
+from ves_twin.rigs.size import Size
 from ves_twin.types import FloatArray
 
 if TYPE_CHECKING:
     import mujoco
 
-SLOWEST = 0.05
-"""Largest delay that is looked for [s]: assumed, a slow fieldbus and its filters."""
+DELAY = Size("delay", "s", 0.05, 1e-4, Sign.POSITIVE)
+"""Up to 50 ms: assumed, a slow fieldbus and its filters."""
 
 
 @final
 @dataclass(frozen=True)
-class ActuatorGain(RigEffect):
+class ActuatorGain(ModelNumber):
     """An actuator gives another effort for its command, or its current: a motor's gain."""
 
     gain: float = 0.0
@@ -27,20 +29,13 @@ class ActuatorGain(RigEffect):
     kind: ClassVar[str] = "actuator_gain"
     element: ClassVar[Element] = Element.ACTUATOR
     attribute: ClassVar[str] = "gain"
+    array: ClassVar[str] = "actuator_gainprm"
+    size: ClassVar[Size] = Size("gain", "1", 0.5, 0.002)
     source: ClassVar[str] = "assumed; magnets and amplifiers, per cents"
 
-    @classmethod
-    def magnitudes(cls, place: Place) -> tuple[Magnitude, ...]:
-        """Up to a half of one."""
-        return (Magnitude("gain", "1", 0.0, 0.002, 0.5),)
-
-    def present(self, model: mujoco.MjModel) -> float:
-        """Of the actuator, in the model."""
-        return float(model.actuator_gainprm[model.actuator(self.target).id, 0])
-
-    def edit_model(self, model: mujoco.MjModel) -> None:
-        """Add to the gain of the actuator."""
-        model.actuator_gainprm[model.actuator(self.target).id, 0] += self.gain
+    def entry(self, model: mujoco.MjModel) -> tuple[int, int]:
+        """The first number of its gain."""
+        return int(model.actuator(self.target).id), 0
 
 
 @final
@@ -52,11 +47,7 @@ class ActuatorDelay(RigEffect):
 
     kind: ClassVar[str] = "actuator_delay"
     element: ClassVar[Element] = Element.ACTUATOR
-
-    @classmethod
-    def magnitudes(cls, place: Place) -> tuple[Magnitude, ...]:
-        """Up to 50 ms."""
-        return (Magnitude("delay", "s", 0.0, 1e-4, SLOWEST, Sign.POSITIVE),)
+    size: ClassVar[Size] = DELAY
 
     def edit_command(self, command: FloatArray, time: FloatArray) -> FloatArray:
         """That of a delay ago."""
@@ -69,7 +60,7 @@ class ActuatorDelay(RigEffect):
 
 @final
 @dataclass(frozen=True)
-class BodyMass(RigEffect):
+class BodyMass(ModelNumber):
     """A body is heavier than assumed, its inertia in proportion: a payload, a tool."""
 
     mass: float = 0.0
@@ -77,28 +68,19 @@ class BodyMass(RigEffect):
     kind: ClassVar[str] = "body_mass"
     element: ClassVar[Element] = Element.BODY
     attribute: ClassVar[str] = "mass"
+    array: ClassVar[str] = "body_mass"
+    size: ClassVar[Size] = Size("mass", "kg", lambda p: 0.5 * p.mass, lambda p: 0.001 * p.mass)
     source: ClassVar[str] = "assumed: up to half of the body"
 
-    @classmethod
-    def magnitudes(cls, place: Place) -> tuple[Magnitude, ...]:
-        """Up to half of its mass."""
-        return (Magnitude("mass", "kg", 0.0, 0.001 * place.mass, 0.5 * place.mass),)
-
-    def present(self, model: mujoco.MjModel) -> float:
-        """Of the body, in the model."""
-        return float(model.body_mass[model.body(self.target).id])
-
     def edit_model(self, model: mujoco.MjModel) -> None:
-        """Scale mass and inertia."""
-        body = model.body(self.target).id
-        factor = 1.0 + self.mass / float(model.body_mass[body])
-        model.body_mass[body] += self.mass
-        model.body_inertia[body] *= factor
+        """Scale the inertia, add to the mass."""
+        model.body_inertia[self.entry(model)] *= 1.0 + self.mass / self.present(model)
+        super().edit_model(model)
 
 
 @final
 @dataclass(frozen=True)
-class MassCentre(RigEffect):
+class MassCentre(ModelNumber):
     """The centre of mass of a body lies off along one of its axes; target "tool.x"."""
 
     shift: float = 0.0
@@ -106,24 +88,14 @@ class MassCentre(RigEffect):
     kind: ClassVar[str] = "mass_centre"
     element: ClassVar[Element] = Element.BODY
     attribute: ClassVar[str] = "centre"
+    array: ClassVar[str] = "body_ipos"
+    size: ClassVar[Size] = Size("shift", "m", 0.2, 2e-4)
     source: ClassVar[str] = "assumed: up to 0.2 m"
 
-    @classmethod
-    def magnitudes(cls, place: Place) -> tuple[Magnitude, ...]:
-        """Up to 0.2 m."""
-        return (Magnitude("shift", "m", 0.0, 2e-4, 0.2),)
-
-    def present(self, model: mujoco.MjModel) -> float:
-        """Of the body, in the model."""
-        return float(model.body_ipos[self._where(model)])
-
-    def edit_model(self, model: mujoco.MjModel) -> None:
-        """Move the inertial frame."""
-        model.body_ipos[self._where(model)] += self.shift
-
-    def _where(self, model: mujoco.MjModel) -> tuple[int, int]:
+    def entry(self, model: mujoco.MjModel) -> tuple[int, int]:
+        """The axis of the inertial frame's place."""
         body, _, axis = self.target.rpartition(".")
-        return model.body(body).id, "xyz".index(axis)
+        return int(model.body(body).id), "xyz".index(axis)
 
 
 @final
@@ -135,12 +107,8 @@ class BodyInertia(RigEffect):
 
     kind: ClassVar[str] = "body_inertia"
     element: ClassVar[Element] = Element.BODY
+    size: ClassVar[Size] = Size("share", "1", 0.5, 0.002)
     source: ClassVar[str] = "assumed: up to half"
-
-    @classmethod
-    def magnitudes(cls, place: Place) -> tuple[Magnitude, ...]:
-        """Up to half."""
-        return (Magnitude("share", "1", 0.0, 0.002, 0.5),)
 
     def edit_model(self, model: mujoco.MjModel) -> None:
         """Scale the inertia about the centre of mass."""

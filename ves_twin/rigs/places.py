@@ -6,8 +6,8 @@ import mujoco
 
 from ves_twin.errors import InvalidInputError, UnknownNameError
 from ves_twin.rigs.description import RigDescription, Span
-from ves_twin.rigs.effect import Place
 from ves_twin.rigs.element import Element
+from ves_twin.rigs.place import Place
 from ves_twin.units import to_si
 
 SINGLE = (int(mujoco.mjtJoint.mjJNT_HINGE), int(mujoco.mjtJoint.mjJNT_SLIDE))

@@ -14,8 +14,9 @@ from ves_twin.diagnosis.forward import Hypothesis, Parameter
 from ves_twin.effects.magnitude import Magnitude, Sign
 from ves_twin.errors import FileAccessError, InvalidInputError, UnknownNameError, one_line
 from ves_twin.rigs.description import Allowed, Mode, RigDescription, Setting, load_description
-from ves_twin.rigs.effect import Place, RigEffect
+from ves_twin.rigs.effect import RigEffect
 from ves_twin.rigs.element import Element
+from ves_twin.rigs.place import Place
 from ves_twin.rigs.places import place_of
 from ves_twin.rigs.registry import RIG_EFFECTS, build_rig_effect
 from ves_twin.units import to_si

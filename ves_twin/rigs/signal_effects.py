@@ -8,10 +8,12 @@ from typing import ClassVar, final
 import numpy as np
 from numpy.polynomial.legendre import legvander
 
-from ves_twin.effects.magnitude import Magnitude, Sign
-from ves_twin.rigs.effect import LEAST, Place, RigEffect, shifted
+from ves_twin.effects.magnitude import Magnitude
+from ves_twin.rigs.effect import RigEffect, shifted
 from ves_twin.rigs.element import Element
-from ves_twin.rigs.part_effects import SLOWEST
+from ves_twin.rigs.part_effects import DELAY
+from ves_twin.rigs.place import Place
+from ves_twin.rigs.size import Size
 from ves_twin.types import FloatArray
 
 
@@ -24,20 +26,14 @@ class SensorGain(RigEffect):
 
     kind: ClassVar[str] = "sensor_gain"
     element: ClassVar[Element] = Element.SIGNAL
+    size: ClassVar[Size] = Size("gain", "1", 0.3, 0.001)
     linear: ClassVar[bool] = True
-
-    @classmethod
-    def magnitudes(cls, place: Place) -> tuple[Magnitude, ...]:
-        """Up to 30 %."""
-        return (Magnitude("gain", "1", 0.0, 0.001, 0.3),)
 
     def edit_reading(
         self, reading: FloatArray, true: FloatArray, time: FloatArray, place: Place
     ) -> FloatArray:
         """Add its share of the true value."""
-        reading = reading.copy()
-        reading[:, self.column] += self.gain * true[:, self.column]
-        return reading
+        return _added(reading, self.column, self.gain * true[:, self.column])
 
 
 @final
@@ -49,21 +45,15 @@ class CrossTalk(RigEffect):
 
     kind: ClassVar[str] = "cross_talk"
     element: ClassVar[Element] = Element.SIGNAL
+    size: ClassVar[Size] = Size("share", "1", 0.2, 0.001)
     linear: ClassVar[bool] = True
-
-    @classmethod
-    def magnitudes(cls, place: Place) -> tuple[Magnitude, ...]:
-        """Up to 20 %."""
-        return (Magnitude("share", "1", 0.0, 0.001, 0.2),)
 
     def edit_reading(
         self, reading: FloatArray, true: FloatArray, time: FloatArray, place: Place
     ) -> FloatArray:
         """Add its share of the other column."""
         to, of = (int(number) - 1 for number in self.target.split(".")[-2:])
-        reading = reading.copy()
-        reading[:, to] += self.share * true[:, of]
-        return reading
+        return _added(reading, to, self.share * true[:, of])
 
 
 @final
@@ -75,21 +65,14 @@ class SensorOffset(RigEffect):
 
     kind: ClassVar[str] = "sensor_offset"
     element: ClassVar[Element] = Element.SIGNAL
+    size: ClassVar[Size] = Size("offset", "", lambda p: 3.0 * p.span)
     linear: ClassVar[bool] = True
-
-    @classmethod
-    def magnitudes(cls, place: Place) -> tuple[Magnitude, ...]:
-        """Up to three times the typical range."""
-        largest = 3.0 * place.span
-        return (Magnitude("offset", place.unit, 0.0, LEAST * largest, largest),)
 
     def edit_reading(
         self, reading: FloatArray, true: FloatArray, time: FloatArray, place: Place
     ) -> FloatArray:
         """Add the offset."""
-        reading = reading.copy()
-        reading[:, self.column] += self.offset
-        return reading
+        return _added(reading, self.column, self.offset)
 
 
 @final
@@ -125,9 +108,7 @@ class SensorDrift(RigEffect):
         """Add the wander."""
         s = 2.0 * (time - place.begin) / (place.end - place.begin) - 1.0
         weights = np.array([0.0, *self.sizes.values()])
-        reading = reading.copy()
-        reading[:, self.column] += legvander(s, len(weights) - 1) @ weights
-        return reading
+        return _added(reading, self.column, legvander(s, len(weights) - 1) @ weights)
 
 
 @final
@@ -139,14 +120,17 @@ class SensorDelay(RigEffect):
 
     kind: ClassVar[str] = "sensor_delay"
     element: ClassVar[Element] = Element.SIGNAL
-
-    @classmethod
-    def magnitudes(cls, place: Place) -> tuple[Magnitude, ...]:
-        """Up to 50 ms."""
-        return (Magnitude("delay", "s", 0.0, 1e-4, SLOWEST, Sign.POSITIVE),)
+    size: ClassVar[Size] = DELAY
 
     def edit_reading(
         self, reading: FloatArray, true: FloatArray, time: FloatArray, place: Place
     ) -> FloatArray:
         """What was read a delay ago."""
         return shifted(reading, time, self.delay)
+
+
+def _added(reading: FloatArray, column: int, change: FloatArray | float) -> FloatArray:
+    """A reading (n, w) with something added to one column."""
+    reading = reading.copy()
+    reading[:, column] += change
+    return reading

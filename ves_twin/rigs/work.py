@@ -11,15 +11,16 @@ import numpy as np
 
 from ves_twin.diagnosis.forward import Programme
 from ves_twin.rigs.description import Compared
-from ves_twin.rigs.effect import Place, RigEffect
+from ves_twin.rigs.effect import RigEffect
 from ves_twin.rigs.element import Element
 from ves_twin.rigs.joint_effects import CoulombFriction
+from ves_twin.rigs.place import Place
 from ves_twin.rigs.rig import Rig
 from ves_twin.types import FloatArray
 
 SMOOTH = 0.0005
-"""Share of the typical speed over which a sign is smoothed. Four times as much makes 20 N of dry
-friction read 0.8 % high and 200 N s/m of damping 0.8 % low (EMPS)."""
+"""Share of the typical speed over which a sign is smoothed, chosen on EMPS: four times as much
+makes its 20 N of dry friction read 0.8 % high and its 200 N s/m of damping 0.8 % low."""
 
 
 @dataclass(frozen=True)
