@@ -15,6 +15,7 @@ from ves_twin.measured.import_map import ImportMap
 from ves_twin.procedures.registry import PROCEDURES
 from ves_twin.recording.recording import RecordingInfo
 from ves_twin.rigs.description import KIND, RigDescription
+from ves_twin.rigs.experiment import RigExperiment
 from ves_twin.scenario.experiment import Experiment
 from ves_twin.scenario.schema import Scenario
 from ves_twin.signals import SIGNALS
@@ -31,7 +32,8 @@ unit (`"180 deg"`, `"12 mm"`). Tables and schemas here are generated from the cl
 | [plant](plant.md) | every number of a rig, with unit, sd, grade and source | |
 | [rig](rig.md) | a machine that is not VES II, beside its MuJoCo model | [JSON schema](rig.schema.json) |
 | [import map](import-map.md) | which column of a lab file is which signal | [JSON schema](import-map.schema.json) |
-| [experiment](experiment.md) | how a recording was made | [JSON schema](experiment.schema.json) |
+| [experiment](experiment.md) | how a recording of VES II was made | [JSON schema](experiment.schema.json) |
+| [rig experiment](rig-experiment.md) | how a recording of another rig was made | [JSON schema](rig-experiment.schema.json) |
 | [recording](recording.md) | signals on one clock, with metadata | [JSON schema](recording.schema.json) |
 | [verdict](verdict.md) | what a diagnosis says | [JSON schema](verdict.schema.json) |
 """
@@ -43,6 +45,8 @@ _HEADS = {
     "import-map": "# Import map\n\nTOML, read by `ves-twin import --map` and drafted by `ves-twin inspect --draft-map`;"
     " worked example in [measured data](../measured-data.md#map).",
     "experiment": "# Experiment\n\nTOML, read by `ves-twin compare --experiment` and `ves-twin diagnose --experiment`;"
+    " see [measured data](../measured-data.md#experiment-file).",
+    "rig-experiment": "# Rig experiment\n\nTOML, the `--experiment` of a rig of two files;"
     " see [measured data](../measured-data.md#experiment-file).",
     "recording": "# Recording\n\n`recording.parquet`: a column `t` [s] and a column for each axis of each signal, as doubles. The metadata are JSON"
     " under the Parquet key `ves_twin`; while a run goes on, the same rows are in `recording.arrows`.",
@@ -57,6 +61,7 @@ def format_pages() -> dict[str, str]:
         "rig": RigDescription.model_json_schema(),
         "import-map": ImportMap.model_json_schema(),
         "experiment": Experiment.model_json_schema(),
+        "rig-experiment": RigExperiment.model_json_schema(),
         "recording": TypeAdapter(RecordingInfo).json_schema(),
         "verdict": _verdict_schema(),
     }

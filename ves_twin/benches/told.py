@@ -13,6 +13,7 @@ from ves_twin.kinematics.stewart import leg_lengths
 from ves_twin.plant.plant import Plant
 from ves_twin.recording.files import load_recording
 from ves_twin.recording.recording import Recording
+from ves_twin.recording.stretch import compared_stretch
 from ves_twin.scenario.experiment import Experiment, StartState
 from ves_twin.scenario.schema import Scenario
 from ves_twin.simulator.build import belief_of
@@ -95,16 +96,7 @@ def _lengths(poses: FloatArray, scenario: Scenario) -> FloatArray:
 
 
 def _windowed(recording: Recording, told: Experiment, name: str) -> Recording:
-    time = recording.time - recording.time[0]
     start = told.window.start
     if told.start.state is StartState.ESTIMATED:
         start = max(start, told.start.forget)
-    inside = time < told.window.stop
-    if np.count_nonzero(inside & (time >= start)) < 2:
-        came = f"nothing between {start:g} and {told.window.stop:g} s"
-        raise InvalidInputError(f"window of {name}", came, f"some of 0 to {time[-1]:g} s")
-    signals = {n: values[inside].copy() for n, values in recording.signals.items()}
-    for signal, values in signals.items():
-        if signal not in DRIVE:
-            values[time[inside] < start] = np.nan
-    return replace(recording, time=recording.time[inside], signals=signals)
+    return compared_stretch(recording, start, told.window.stop, DRIVE, name)

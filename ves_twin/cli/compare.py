@@ -40,11 +40,13 @@ def execute(arguments: argparse.Namespace) -> int:
     """Compare, write page and JSON, print the answer."""
     if means_rig(arguments):
         return _rig(arguments)
+    from ves_twin.cli.rig_recordings import refuse_rig_options
     from ves_twin.cli.run import output_folder
     from ves_twin.comparison.report import comparison_page
     from ves_twin.report.page import write_page
     from ves_twin.simulator.simulate import make_folder
 
+    refuse_rig_options(arguments)
     comparison = _compare(arguments)
     folder = output_folder(arguments.out, "compare")
     page = comparison_page(comparison)
@@ -66,11 +68,12 @@ def _rig(arguments: argparse.Namespace) -> int:
     from ves_twin.rigs.compare_page import comparison_lines, rig_comparison_page
     from ves_twin.simulator.simulate import make_folder
 
-    for option in ("against", "experiment", "tolerance", "standstill"):
+    for option in ("against", "tolerance", "standstill"):
         if getattr(arguments, option):
             raise InvalidInputError(f"--{option}", "a rig", "a plant of VES II beside it")
-    given = rig_recordings(arguments, arguments.recordings)
-    found = compare_mjcf(given.measured, given.rig)
+    given = rig_recordings(arguments, arguments.recordings, alike=False)
+    pairs = zip(given.measured, given.rigs, strict=True)
+    found = [one for recording, rig in pairs for one in compare_mjcf([recording], rig)]
     content = {"schema": SCHEMA, "recordings": [one.to_dict() for one in found]}
     text = json.dumps(content, indent=2, allow_nan=False)
     folder = output_folder(arguments.out, "compare")

@@ -75,9 +75,11 @@ def _ves2(
     from ves_twin.benches.diagnose_rig import diagnose_rig
     from ves_twin.benches.ves2_menu import write_setpoints
     from ves_twin.cli.progress import RunProgress
+    from ves_twin.cli.rig_recordings import refuse_rig_options
     from ves_twin.plant.write_plant import write_plant
     from ves_twin.recording.files import load_recording
 
+    refuse_rig_options(arguments)
     measured = [load_recording(name) for name in arguments.measured]
     held_out = [load_recording(name) for name in arguments.held_out]
     baseline = [load_recording(name) for name in arguments.baseline]
@@ -124,16 +126,11 @@ def _mjcf(
     """A rig of two files."""
     from ves_twin.cli.progress import RunProgress
     from ves_twin.cli.rig_recordings import read_file, rig_recordings
-    from ves_twin.errors import InvalidInputError
     from ves_twin.rigs.diagnose_mjcf import diagnose_mjcf
     from ves_twin.rigs.extend import write_rig
 
-    if arguments.experiment:
-        raise InvalidInputError("--experiment", "a rig", "a plant of VES II beside it")
     given = rig_recordings(arguments, arguments.measured)
     commissioning = [read_file(arguments, given.rig, n) for n in arguments.commissioning]
-    still = arguments.standstill
-    standstill = read_file(arguments, given.rig, still) if still else None
     ready()
     with RunProgress("diagnose", 1.0, unit="share") as progress:
         found = diagnose_mjcf(
@@ -141,7 +138,8 @@ def _mjcf(
             given.rig,
             held_out=given.held_out,
             commissioning=commissioning,
-            standstill=standstill,
+            standstill=given.standstill,
+            baseline=given.baseline,
             exclude=arguments.exclude,
             settings=_settings(),
             progress=progress.share,

@@ -8,7 +8,11 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+
     from ves_twin.measured.import_map import Window
+    from ves_twin.measured.suspicions import Range
+    from ves_twin.signals import Signal
 
 SUMMARY = "make a recording of a lab file as a map says"
 
@@ -21,7 +25,10 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--end", metavar="S", help="last second")
     parser.add_argument("--out", metavar="REC", required=True, help="the recording (Parquet)")
     parser.add_argument(
-        "--plant", metavar="FILE", default="ves2", help="whose ranges tell mixed units"
+        "--plant",
+        metavar="FILE",
+        default="ves2",
+        help="whose ranges tell mixed units; a rig of two files: whose signals they are, too",
     )
     parser.add_argument("--json", action="store_true", help="the account as JSON on stdout")
 
@@ -31,15 +38,13 @@ def execute(arguments: argparse.Namespace) -> int:
     from ves_twin.measured.import_log import import_log
     from ves_twin.measured.import_map import ImportMap
     from ves_twin.measured.open_log import open_log
-    from ves_twin.plant.plant import Plant
-    from ves_twin.plant.signal_ranges import signal_ranges
     from ves_twin.recording.files import save_recording
 
     told = ImportMap.load(arguments.map)
     window = _window(arguments, told.window)
-    ranges = signal_ranges(Plant.load(arguments.plant))
+    ranges, known = _plant(arguments.plant)
     path = _target(arguments.out)
-    imported = import_log(open_log(arguments.file), told, window, ranges)
+    imported = import_log(open_log(arguments.file), told, window, ranges, known)
     path.parent.mkdir(parents=True, exist_ok=True)
     save_recording(imported.recording, path)
     if arguments.json:
@@ -48,6 +53,22 @@ def execute(arguments: argparse.Namespace) -> int:
     else:
         print(f"{imported.account.to_text()}\nrecording {path}")
     return 0
+
+
+def _plant(name: str) -> tuple[Mapping[str, Range], Sequence[Signal]]:
+    """Ranges of a plant's signals; of a rig of two files also the signals, which are its own."""
+    from ves_twin.rigs.description import is_rig
+
+    if is_rig(name):
+        from ves_twin.rigs.rig import Rig
+        from ves_twin.rigs.signals import rig_ranges, rig_signals
+
+        rig = Rig.load(name)
+        return rig_ranges(rig), rig_signals(rig)
+    from ves_twin.plant.plant import Plant
+    from ves_twin.plant.signal_ranges import signal_ranges
+
+    return signal_ranges(Plant.load(name)), ()
 
 
 def _target(out: str) -> Path:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from importlib.metadata import version
 from pathlib import Path
@@ -21,7 +21,7 @@ from ves_twin.measured.suspicions import Range, suspicions
 from ves_twin.measured.targets import Target, resolve
 from ves_twin.quality.gate import quality_gate
 from ves_twin.recording.recording import Recording, RecordingInfo
-from ves_twin.signals import Signal
+from ves_twin.signals import SIGNALS, Signal
 from ves_twin.types import FloatArray
 from ves_twin.units import to_unit
 
@@ -45,6 +45,7 @@ def import_log(
     told: ImportMap,
     window: Window | None = None,
     plausible: Mapping[str, Range] | None = None,
+    known: Sequence[Signal] = (),
 ) -> Imported:
     """Make a recording of a lab file as a map says.
 
@@ -56,12 +57,13 @@ def import_log(
         told: the map.
         window: stretch to import; the map's if left out.
         plausible: ranges of the plant's signals, by which mixed units are suspected.
+        known: signals of a rig of two files, which the map then need not declare.
 
     Raises:
         UnknownNameError: a column, clock, frame or signal that does not exist, with the nearest.
         InvalidInputError: units that do not convert, times that do not rise, or no rows.
     """
-    targets = resolve(log, told)
+    targets = resolve(log, told, known)
     aligned = align(log, told, targets)
     rows, step = _rows(aligned, told, window or told.window)
     signals, own, done, held = _signals(aligned, told, targets, rows, step)
@@ -155,7 +157,7 @@ def _signals(
         done.append(
             ChannelAccount(channel.from_, channel.to, target.conversion, found.how, missing)
         )
-    own = {t.signal.name: t.signal for t in targets if t.signal.name in told.signals}
+    own = {t.signal.name: t.signal for t in targets if SIGNALS.get(t.signal.name) != t.signal}
     return signals, tuple(own.values()), done, held
 
 

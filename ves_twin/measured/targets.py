@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 from ves_twin.errors import InvalidInputError, UnknownNameError
@@ -51,16 +52,27 @@ class Target:
         return f"{inner} [{self.unit}] -> [{self.si}]"
 
 
-def resolve(log: Log, told: ImportMap) -> tuple[Target, ...]:
+def resolve(log: Log, told: ImportMap, given: Sequence[Signal] = ()) -> tuple[Target, ...]:
     """Every channel of a map.
+
+    Args:
+        log: the file.
+        told: the map.
+        given: signals of a rig of two files, in place of those of VES II.
 
     Raises:
         UnknownNameError: a column, signal, clock or frame that does not exist, with the nearest.
         InvalidInputError: a text, no unit, or one of another dimension.
     """
     names = log.full_names()
-    own = _own_signals(told)
-    columns = {c: (s, i) for s in (*SIGNALS.values(), *own) for i, c in enumerate(s.columns)}
+    plant = {s.name: s for s in given} or SIGNALS
+    own = {s.name: s for s in _own_signals(told)}
+    for both in own.keys() & plant.keys():
+        if own[both].units != plant[both].units:
+            wanted = f"{', '.join(plant[both].units)}, as the rig has it"
+            raise InvalidInputError(f"units of signals.{both}", own[both].units, wanted)
+    signals = {**own, **plant}
+    columns = {c: (s, i) for s in signals.values() for i, c in enumerate(s.columns)}
     found = []
     for channel in told.channel:
         where = f"column in {log.path.name}"

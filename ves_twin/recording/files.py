@@ -10,7 +10,7 @@ import pyarrow.parquet as pq
 from ves_twin.errors import FileAccessError, InvalidInputError
 from ves_twin.recording.recording import Recording
 from ves_twin.recording.stream import FILE_NAME, ROW_GROUP, STREAM_NAME, stream_batches
-from ves_twin.recording.table import batch_of, recording_of, schema_of
+from ves_twin.recording.table import KEY, batch_of, recording_of, schema_of
 from ves_twin.whole_file import whole_file
 
 
@@ -42,6 +42,19 @@ def recording_name(path: str | Path) -> str:
     file = Path(path)
     own = file.name in {FILE_NAME, STREAM_NAME}
     return file.parent.name if own and file.parent.name else file.name
+
+
+def is_recording(path: str | Path) -> bool:
+    """Whether a path is a recording of ours, by its metadata, or a run's folder or stream."""
+    file = Path(path)
+    if file.is_dir() or file.suffix == ".arrows":
+        return True
+    if file.suffix != ".parquet" or not file.is_file():
+        return False
+    try:
+        return KEY in (pq.read_schema(file).metadata or {})
+    except (pa.ArrowInvalid, OSError):
+        return False  # whoever reads it says what is wrong
 
 
 def save_recording(recording: Recording, path: Path) -> None:

@@ -9,12 +9,12 @@ import numpy as np
 import pyarrow as pa
 import pyarrow.csv as pacsv
 import pyarrow.parquet as pq
-from scipy.spatial.transform import Rotation
 
 from ves_twin.errors import FileAccessError, InvalidInputError, UnknownNameError
 from ves_twin.recording.recording import POSES, Recording, RecordingInfo
 from ves_twin.rigs.description import Column
 from ves_twin.rigs.rig import Rig
+from ves_twin.rigs.turned import turned
 from ves_twin.types import FloatArray
 
 UNEVEN = 0.01
@@ -43,7 +43,7 @@ def read_rig_recording(path: Path, rig: Rig) -> Recording:
     signals = {name: _signal(table, c, path) for name, c in told.signals.items()}
     for name, column in told.signals.items():
         if column.into:
-            signals[name] = _turned(signals[name], signals, name, column.into)
+            signals[name] = turned(signals[name], signals, name, column.into)
     log = POSES if told.clock.poses else ""
     info = RecordingInfo("measured", scenario=path.stem, log=log, outcome="finished")
     return Recording(time if told.clock.poses else _even(time), signals, info)
@@ -83,16 +83,3 @@ def _column(table: pa.Table, name: str, path: Path) -> FloatArray:
 def _signal(table: pa.Table, told: Column, path: Path) -> FloatArray:
     columns = [_column(table, name, path) for name in told.columns]
     return np.asarray(told.scale * np.stack(columns, axis=1) + told.offset)
-
-
-def _turned(
-    values: FloatArray, signals: dict[str, FloatArray], name: str, frame: str
-) -> FloatArray:
-    """Vectors (n, 3) of the world in the frame of a quaternion signal."""
-    if frame not in signals:
-        raise UnknownNameError(f"signal that {name} is turned into", frame, signals)
-    if values.shape[1] != 3 or signals[frame].shape[1] not in (4, 7):
-        shapes = (values.shape[1], signals[frame].shape[1])
-        raise InvalidInputError(f"columns of {name} and {frame}", shapes, "3 and 4 (or 7)")
-    turns = Rotation.from_quat(signals[frame][:, -4:])
-    return np.asarray(turns.inv().apply(values))

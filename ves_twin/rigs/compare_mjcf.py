@@ -9,12 +9,12 @@ import numpy as np
 
 from ves_twin.diagnosis.forward import Channel, Programme
 from ves_twin.diagnosis.grid import AnalysisGrid
-from ves_twin.errors import InvalidInputError
+from ves_twin.errors import InvalidInputError, UnknownNameError
 from ves_twin.recording.recording import Recording
 from ves_twin.rigs.description import Mode
 from ves_twin.rigs.forward import MjcfForward
 from ves_twin.rigs.rig import Rig
-from ves_twin.types import FloatArray
+from ves_twin.types import BoolArray, FloatArray, SingleArray
 
 FORGET = 1.0
 """Time [s] at the begin that is not compared in forward simulation: a start is read from noisy
@@ -51,7 +51,7 @@ class ColumnGap:
             "rms_slow": self.rms_slow,
             "peak": self.peak,
             "mean": self.mean,
-            "measured_rms": float(np.sqrt(np.mean(self.measured**2))),
+            "measured_rms": float(np.sqrt(np.nanmean(self.measured**2))),
             "noise": self.channel.sd,
             "unit": self.channel.unit,
         }
@@ -96,15 +96,17 @@ def compare_mjcf(recordings: Sequence[Recording], rig: Rig) -> tuple[RigComparis
     """
     if not recordings:
         raise InvalidInputError("recordings", "none", "at least one")
-    return tuple(_one(recording, rig, mode) for recording in recordings for mode in modes_of(rig))
+    return tuple(_one(r, rig, mode) for r in recordings for mode in modes_of(rig, r))
 
 
-def modes_of(rig: Rig) -> tuple[Mode, ...]:
-    """Modes that a rig's file has the signals for, its own first."""
+def modes_of(rig: Rig, recording: Recording) -> tuple[Mode, ...]:
+    """The mode of a rig's file, and closed loop where set-points were recorded."""
     told = rig.description
     own = told.drive.mode
-    closed = [Mode.REFERENCE] if told.controllers and own is not Mode.REFERENCE else []
-    return (own, *closed)
+    if not told.controllers or own is Mode.REFERENCE:
+        return (own,)
+    fed = MjcfForward.of(rig, Mode.REFERENCE).drive
+    return (own, Mode.REFERENCE) if all(n in recording.signals for n in fed) else (own,)
 
 
 def _one(recording: Recording, rig: Rig, mode: Mode) -> RigComparison:
@@ -115,23 +117,40 @@ def _one(recording: Recording, rig: Rig, mode: Mode) -> RigComparison:
     grid = AnalysisGrid.of(programme.period, programme.rate)
     grid = AnalysisGrid(programme.period, 1) if programme.poses else grid
     columns = []
-    for c, channel in enumerate(forward.channels):
+    here = [c for c in enumerate(forward.channels) if c[1].signal in recording.signals]
+    if not here:
+        wanted = forward.channels[0].signal
+        raise UnknownNameError("signal in the recording", wanted, recording.signals)
+    for c, channel in here:
         measured = recording[channel.signal][skip:, channel.column]
         expected = simulated[skip:, c]
         gap = measured - expected
-        slow = grid.reduce(gap[:, None])[:, 0]
+        bad = ~np.isfinite(gap)
+        if bad.all():
+            raise InvalidInputError(channel.name, "no number in its rows", "a measurement")
+        kept = gap[~bad]
+        slow = _slow(gap, bad, grid)
         columns.append(
             ColumnGap(
                 channel=channel,
                 time=recording.time[skip:],
                 measured=measured,
                 simulated=expected,
-                rms=float(np.sqrt(np.mean(gap**2))),
-                peak=float(np.max(np.abs(gap))),
-                mean=float(np.mean(gap)),
+                rms=float(np.sqrt(np.mean(kept**2))),
+                peak=float(np.max(np.abs(kept))),
+                mean=float(np.mean(kept)),
                 rms_slow=float(np.sqrt(np.mean(np.square(slow, dtype=float)))),
             )
         )
     name = recording.info.scenario
     told = rig.description
     return RigComparison(name, told.name, rig.identity, mode, told.rate, tuple(columns))
+
+
+def _slow(gap: FloatArray, bad: BoolArray, grid: AnalysisGrid) -> SingleArray:
+    """The difference on the analysis grid, without the rows that a hole goes into."""
+    at = np.arange(len(gap))
+    filled = np.where(bad, np.interp(at, at[~bad], gap[~bad]), gap)
+    found = grid.reduce(filled[:, None])[:, 0]
+    touched = grid.touched(bad[:, None])[:, 0]
+    return np.asarray(found if touched.all() or not bad.any() else found[~touched])

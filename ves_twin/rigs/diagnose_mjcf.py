@@ -46,6 +46,7 @@ def diagnose_mjcf(
     held_out: Sequence[Recording] = (),
     commissioning: Sequence[Recording] = (),
     standstill: Recording | None = None,
+    baseline: Sequence[Recording] = (),
     exclude: Sequence[str] = (),
     settings: Settings | None = None,
     progress: Progress = silent,
@@ -59,6 +60,7 @@ def diagnose_mjcf(
             each must prove itself there.
         commissioning: recordings of healthy rigs, or of this one mounted anew.
         standstill: the rig standing still, which tells the noise.
+        baseline: of this rig in order, with the same signals fed in; see `diagnose`.
         exclude: causes that are not considered, by kind or kind@target.
         settings: how sure, how many; rate and number of causes are those of the rig's file.
         progress: told what is being done.
@@ -78,6 +80,7 @@ def diagnose_mjcf(
         held_out=held_out,
         commissioning=commissioning,
         standstill=standstill,
+        baseline=baseline,
         exclude=exclude,
         settings=chosen,
         progress=progress,

@@ -66,11 +66,13 @@ class Rig:
         description: the TOML file.
         folder: that the model's path starts from.
         file: name or path it was loaded by.
+        payloads: known point masses on it, each a body, a mass [kg] and a place in the body [m].
     """
 
     description: RigDescription
     folder: Path
     file: str = ""
+    payloads: tuple[tuple[str, float, tuple[float, float, float]], ...] = ()
 
     @staticmethod
     def load(name_or_path: str) -> Rig:
@@ -95,7 +97,7 @@ class Rig:
         if not path.is_file():
             raise FileAccessError(f"model file '{path}' of rig {self.description.name} is missing")
         try:
-            model = mujoco.MjModel.from_xml_path(str(path))
+            model = self._loaded(path) if self.payloads else mujoco.MjModel.from_xml_path(str(path))
         except ValueError as error:
             raise InvalidInputError(str(path), one_line(error), "a MuJoCo model") from None
         for setting in self.description.parameters:
@@ -169,7 +171,7 @@ class Rig:
     @cached_property
     def identity(self) -> str:
         """Hash of both files' content and of MuJoCo's version."""
-        parts = (self.description.model_dump_json(), mujoco.__version__)
+        parts = (self.description.model_dump_json(), mujoco.__version__, *self.payloads)
         digest = hashlib.sha256(repr(parts).encode())
         digest.update((self.folder / self.description.model).read_bytes())
         return digest.hexdigest()[:16]
@@ -196,7 +198,11 @@ class Rig:
         if told.drive.mode is Mode.REFERENCE and not told.controllers:
             raise InvalidInputError("controllers", "none", "one where drive.mode is 'reference'")
         for names, known, what in (
-            ([*told.drive.joints, *(c.joint for c in told.compare.values())], "jnt", "joint"),
+            (
+                [*told.drive.joints, *told.start, *(c.joint for c in told.compare.values())],
+                "jnt",
+                "joint",
+            ),
             (
                 [*told.drive.actuators, *told.controllers]
                 + [c.actuator for c in told.compare.values()],
@@ -209,7 +215,23 @@ class Rig:
             for name in filter(None, names):
                 if name not in there:
                     raise UnknownNameError(f"{what} in {told.model}", name, there)
+        positions = {c.joint for c in told.compare.values() if c.of == "position"}
+        for joint, start in told.start.items():
+            if start.position == "measured" and joint not in {*positions, *told.drive.joints}:
+                raise InvalidInputError(f"start.{joint}", "measured", "a signal of its position")
         _ = self.hypotheses, self.parameters
+
+    def _loaded(self, path: Path) -> mujoco.MjModel:
+        """The model with its payloads: bodies without a joint and without extent."""
+        spec = mujoco.MjSpec.from_file(str(path))
+        for name, mass, place in self.payloads:
+            body = spec.body(name)
+            if body is None or name == "world":
+                known = {b.name for b in spec.bodies if b.name != "world"}
+                raise UnknownNameError("body of the payload", name, known)
+            point = body.add_body(pos=place, mass=mass, ipos=[0.0] * 3, inertia=[0.0] * 3)
+            point.explicitinertial = True
+        return spec.compile()
 
     def _entry(self, allowed: Allowed, target: str, setting: Setting | None) -> Entry:
         if allowed.kind not in RIG_EFFECTS:
