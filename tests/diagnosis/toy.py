@@ -127,3 +127,6 @@ def record(
 
 
 QUICK = Settings(nulls=100)
+
+SERIES_DAYS = (0, 3, 7, 10, 14, 17, 21, 24)
+"""Days of a series of recordings."""

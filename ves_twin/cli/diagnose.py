@@ -107,7 +107,7 @@ def _ves2(
             baseline=baseline,
             exclude=arguments.exclude,
             scenario=scenario,
-            settings=_settings(),
+            settings=diagnosis_settings(),
             progress=progress.share,
         )
 
@@ -141,7 +141,7 @@ def _mjcf(
             standstill=given.standstill,
             baseline=given.baseline,
             exclude=arguments.exclude,
-            settings=_settings(),
+            settings=diagnosis_settings(),
             progress=progress.share,
         )
 
@@ -152,7 +152,8 @@ def _mjcf(
     return found, save
 
 
-def _settings() -> Settings:
+def diagnosis_settings() -> Settings:
+    """All cores, banks kept beside the compiled code."""
     from ves_twin.compiled import cache_folder
     from ves_twin.diagnosis.settings import Settings
 

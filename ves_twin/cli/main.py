@@ -24,6 +24,7 @@ from ves_twin.cli import (
     run,
     scenarios,
     sweep,
+    trend,
     view,
 )
 from ves_twin.errors import UnknownNameError, VesTwinError, one_line
@@ -34,6 +35,7 @@ COMMANDS = {
     "sweep": sweep,
     "plan": plan,
     "diagnose": diagnose,
+    "trend": trend,
     "compare": compare,
     "blind": blind,
     "reproduce": reproduce,

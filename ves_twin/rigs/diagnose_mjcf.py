@@ -72,7 +72,7 @@ def diagnose_mjcf(
     told = rig.description
     forward = MjcfForward.of(rig)
     chosen = replace(settings or Settings(), rate=told.rate, causes=told.causes)
-    if recordings and _quick(forward, recordings[0], told.rate):
+    if recordings and is_quick(forward, recordings[0], told.rate):
         chosen = replace(chosen, workers=1)
     verdict = diagnose(
         forward,
@@ -92,7 +92,7 @@ def diagnose_mjcf(
     return MjcfDiagnosis(verdict, new, _refused(verdict))
 
 
-def _quick(forward: MjcfForward, recording: Recording, rate: float) -> bool:
+def is_quick(forward: MjcfForward, recording: Recording, rate: float) -> bool:
     """Whether a prediction takes less than it takes to hand it to another process."""
     programme = Programme.of(recording, forward.drive, rate=rate)
     begin = perf_counter()

@@ -1,0 +1,156 @@
+"""trend: a folder of recordings of one rig on different days to what changed, and since when."""
+
+from __future__ import annotations
+
+import argparse
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from ves_twin.diagnosis.trend.calendar import Calendar
+    from ves_twin.diagnosis.trend.result import Trend
+    from ves_twin.recording.recording import Recording
+
+from ves_twin.cli.rig_recordings import add_rig_arguments, means_rig, rig_name, rig_recordings
+
+SUMMARY = "follow one cause over recordings of different days: constant, step, ramp, and since when"
+
+SUFFIXES = (
+    *(".csv", ".txt", ".tsv", ".gz", ".bz2", ".mat", ".npz", ".npy", ".mcap"),
+    *(".parquet", ".feather", ".arrow", ".arrows"),
+)
+"""Endings of files in a folder that count as recordings."""
+
+JSON_NAME, PAGE_NAME = "trend.json", "report.html"
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Options of the command."""
+    parser.add_argument(
+        "measured", metavar="FOLDER|FILE", nargs="+", help="recordings of one rig, dated by name"
+    )
+    parser.add_argument("--plant", metavar="FILE", help="the rig of two files")
+    parser.add_argument("--experiment", metavar="FILE", help="how they were made (TOML)")
+    add_rig_arguments(parser, alternate=False)
+    parser.add_argument("--standstill", metavar="REC", help="the rig standing still: its noise")
+    parser.add_argument(
+        "--cause", metavar="EFFECT@TARGET", default="", help="follow this one, whatever else"
+    )
+    parser.add_argument(
+        "--exclude", metavar="EFFECT", action="append", default=[], help="a cause not considered"
+    )
+    parser.add_argument(
+        "--false-alarm",
+        metavar="RATE",
+        type=float,
+        default=0.01,
+        help="of unchanged machines, how many may be called changed",
+    )
+    parser.add_argument(
+        "--numbered", action="store_true", help="ignore dates: in order of the names"
+    )
+    parser.add_argument("--out", metavar="DIR", help="output folder (default: runs/trend)")
+    parser.add_argument("--json", action="store_true", help="the trend as JSON on stdout")
+
+
+def execute(arguments: argparse.Namespace) -> int:
+    """Read, follow, write page and JSON, print the answer."""
+    from ves_twin.cli.diagnose import diagnosis_settings
+    from ves_twin.cli.progress import RunProgress
+    from ves_twin.cli.run import output_folder
+    from ves_twin.diagnosis.report.trend_page import trend_page
+    from ves_twin.errors import InvalidInputError
+    from ves_twin.report.page import write_page
+    from ves_twin.rigs.trend_mjcf import trend_mjcf
+    from ves_twin.simulator.simulate import make_folder
+
+    if not means_rig(arguments):
+        named = rig_name(arguments) or "none"
+        raise InvalidInputError("--plant", named, "a rig of two files; VES II is not followed")
+    names = recordings_in(arguments.measured)
+    given = rig_recordings(arguments, names)
+    calendar = _calendar(names, given.measured, arguments.numbered)
+    folder = output_folder(arguments.out, "trend")
+    make_folder(folder)
+    with RunProgress("trend", 1.0, unit="share") as progress:
+        found = trend_mjcf(
+            given.measured,
+            given.rig,
+            calendar,
+            standstill=given.standstill,
+            exclude=arguments.exclude,
+            cause=arguments.cause,
+            false_alarm=arguments.false_alarm,
+            settings=diagnosis_settings(),
+            progress=progress.share,
+        )
+    found.save(folder / JSON_NAME)
+    title = f"Trend of {len(names)} recordings of {given.rig.description.name}"
+    write_page(folder / PAGE_NAME, trend_page(found, title))
+    print(found.to_json() if arguments.json else _text(found, folder))
+    return 0
+
+
+def recordings_in(given: Sequence[str]) -> list[str]:
+    """Files as they are named, and those in folders that look like recordings, by name.
+
+    Raises:
+        FileAccessError: a folder without one.
+    """
+    from ves_twin.errors import FileAccessError
+    from ves_twin.recording.stream import FILE_NAME, STREAM_NAME
+
+    found: list[str] = []
+    for name in given:
+        folder = Path(name)
+        whole = any((folder / one).is_file() for one in (FILE_NAME, STREAM_NAME))
+        if not folder.is_dir() or whole:
+            found.append(name)
+            continue
+        inside = [p for p in sorted(folder.iterdir()) if _is_recording(p)]
+        if not inside:
+            raise FileAccessError(
+                f"folder {name} holds no recording; {', '.join(sorted(SUFFIXES))}"
+            )
+        found += [str(path) for path in inside]
+    return found
+
+
+def _is_recording(path: Path) -> bool:
+    from ves_twin.recording.stream import FILE_NAME, STREAM_NAME
+
+    if path.name.startswith("."):
+        return False
+    if path.is_dir():
+        return any((path / one).is_file() for one in (FILE_NAME, STREAM_NAME))
+    return path.suffix.lower() in SUFFIXES
+
+
+def _calendar(names: Sequence[str], recordings: Sequence[Recording], numbered: bool) -> Calendar:
+    from ves_twin.diagnosis.trend.calendar import Calendar
+    from ves_twin.recording.date_of import date_of
+    from ves_twin.recording.files import recording_name
+
+    shown = [recording_name(name) for name in names]
+    pairs = zip(shown, recordings, strict=True)
+    dates = [None if numbered else date_of(name, recording) for name, recording in pairs]
+    return Calendar.of(shown, dates)
+
+
+def _text(trend: Trend, folder: Path) -> str:
+    from ves_twin.diagnosis.report.trend_words import trend_basis, trend_headline
+    from ves_twin.report.quantity import quantity
+
+    lines = [f"answer    {trend.answer.value}", f"          {trend_headline(trend)}", ""]
+    if trend.cause is not None:
+        width = max(len(size.recording) for size in trend.sizes)
+        unit = trend.cause.unit
+        for size in trend.sizes:
+            span = f"{quantity(size.low, unit)} to {quantity(size.high, unit)}"
+            mark = "" if size.explained else "   not explained"
+            value = quantity(size.value, unit)
+            lines.append(f"  {size.recording:<{width}}  {size.date}  {value:>12}  ({span}){mark}")
+        lines.append("")
+    lines += [f"  {said}" for said in trend_basis(trend)]
+    return "\n".join([*lines, f"  files     {folder}/{PAGE_NAME}, {JSON_NAME}"])
