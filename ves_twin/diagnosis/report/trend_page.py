@@ -55,7 +55,8 @@ def _figure(trend: Trend, cause: FollowedCause, change: Change) -> Html:
     if change.onset is not None:
         axes.axvspan(change.onset.low, change.onset.high, color="#f3e3d3", linewidth=0, zorder=-1)
     axes.axhline(cause.nominal, color="#9aa3ab", linewidth=0.8, linestyle=":")
-    axes.set_ylabel(f"{cause.parameter}, {cause.unit.replace('*', ' ')}", fontsize=8)
+    unit = "" if cause.unit == "1" else f", {cause.unit.replace('*', ' ')}"
+    axes.set_ylabel(f"{cause.parameter}{unit}", fontsize=8)
     axes.set_xlabel("" if trend.calendar.first else "recording", fontsize=8)
     shown = np.unique(np.round(np.linspace(0, len(days) - 1, min(len(days), 7))).astype(int))
     axes.set_xticks(days[shown], [trend.calendar.words(days[i]) for i in shown], fontsize=7)
