@@ -141,7 +141,7 @@ def _fitted(day: Day, cause: Hypothesis, rounds: int, model_error: float) -> Day
     best = refine(evidence, (cause,), first.shift, first.local)
     plain = refine(evidence, (), shift, local)
     score = misfit(cells(own, best.residual), cells(own, plain.residual), model_error)
-    return _told(best, plain.chi2, score)
+    return _told(best, evidence, plain.chi2, score)
 
 
 def _start(day: Day, cause: Hypothesis) -> FloatArray:
@@ -152,19 +152,25 @@ def _start(day: Day, cause: Hypothesis) -> FloatArray:
     return np.zeros(1)
 
 
-def _told(fit: Fit, plain: float, score: float) -> DayFit:
+def _told(fit: Fit, evidence: Evidence, plain: float, score: float) -> DayFit:
     """What a fit tells of size and shared parameters, the prior of those taken off.
 
-    Where the size is held at a bound its gradient says where it would go: the point is moved
-    there, along the posterior covariance, so that no-effect days scatter about zero.
+    One Newton step is taken from where the search ended, whatever the bounds say: a search ends
+    when chi^2 hardly falls, which is tenths of a sd away, and a size that is held at a bound would
+    leave days without an effect above zero.
     """
     runs = fit.local.runs
+    sd = np.concatenate([[1.0], runs.sd[fit.active[1:]]])
+    kept = np.flatnonzero(~np.isin(runs.nuisances, fit.active[:1]))
+    columns = evidence.whitening.apply(fit.local.columns[kept]).T
+    here = fit.shift[fit.active] / sd
+    gradient = np.concatenate([fit.free.T, columns.T]) @ fit.residual
+    gradient[1:] -= here[1:]
+    whole = fit.posterior / np.outer(sd, sd)
     shared = [n for n, i in enumerate(fit.active) if n and runs.coordinates[int(i)].recording == -1]
     at = np.array([0, *shared])
-    sd = np.concatenate([[1.0], runs.sd[fit.active[shared]]])
-    posterior = fit.posterior[np.ix_(at, at)] / np.outer(sd, sd)
-    point = fit.shift[fit.active[at]] / sd
-    point = point + posterior[:, 0] * float(fit.free[:, 0] @ fit.residual)
+    point = (here + whole @ gradient)[at]
+    posterior = whole[np.ix_(at, at)]
     spread = np.sqrt(np.diag(posterior))
     scaled = posterior / np.outer(spread, spread) + RIDGE * np.eye(len(at))
     information = np.linalg.inv(scaled) / np.outer(spread, spread)
