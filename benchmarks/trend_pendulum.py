@@ -41,7 +41,7 @@ class Case:
     size: Callable[[float], float]
     right: tuple[Answer, ...]
     other: tuple[int, ...] = ()
-    share: float = 0.4
+    share: float = 0.2
 
 
 CASES = (
@@ -101,7 +101,7 @@ def measured(count: int, rate: float) -> list[str]:
     """The rows of the table."""
     calendar, lines = Calendar(None, DAYS), []
     with TemporaryDirectory() as folder:
-        settings = Settings(nulls=100, cache=Path(folder), candidates=4)
+        settings = Settings(nulls=100, cache=Path(folder), candidates=3)
         for case in CASES:
             number, begin = max(1, round(case.share * count)), time.process_time()
             said = [

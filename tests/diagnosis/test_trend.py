@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from dataclasses import replace
 from datetime import datetime
 
 import numpy as np
@@ -17,11 +18,13 @@ from ves_twin.diagnosis.settings import Settings
 from ves_twin.diagnosis.trend.calendar import Calendar
 from ves_twin.diagnosis.trend.change import Course, change_of
 from ves_twin.diagnosis.trend.day import Telling
-from ves_twin.diagnosis.trend.false_alarms import false_alarm_limits
+from ves_twin.diagnosis.trend.false_alarms import false_alarm_limits, scores
 from ves_twin.diagnosis.trend.joint import Joint
 from ves_twin.diagnosis.trend.one_rig import Sharing, one_rig
 from ves_twin.diagnosis.trend.result import Answer
+from ves_twin.diagnosis.trend.series import Series
 from ves_twin.diagnosis.trend.shapes import Shapes
+from ves_twin.diagnosis.trend.study import Study
 from ves_twin.diagnosis.trend.trend import trend
 from ves_twin.errors import InvalidInputError, UnknownNameError
 
@@ -262,6 +265,23 @@ def test_unchanged_machines_are_called_changed_as_often_as_stated(settings):
     for answer in (Answer.CONSTANT, Answer.MIXED, Answer.UNKNOWN):
         assert answers.count(answer) <= binom.isf(SURE, count, alpha), answer
     assert any(answer is not Answer.NOTHING for answer in answers)  # the bound is not an empty one
+
+
+@pytest.mark.slow
+def test_the_smallest_change_is_found_seven_times_of_ten(settings):
+    study = Study(Toy(), replace(settings, alpha=0.01, simulated_nulls=False), None)
+    recordings = series(3, [0.0] * 6)
+    days = [study.day(r, float(SERIES_DAYS[k]), k, 6) for k, r in enumerate(recordings)]
+    found = Series.of(days, study.causes, study.settings)
+    middle = found.shapes.columns[(len(found.shapes.steps) - 1) // 2]
+    drawn = found.joint.draws(np.random.default_rng(0), 1000)
+    for h, cause in enumerate(found.causes):
+        size = found.smallest()[cause.label].value
+        mean = np.einsum("cnm,m->cn", found.joint.gram[:, :, h, :], size * middle)
+        change = scores(found.joint, found.shapes, found.causes, drawn + mean).change.max(axis=1)
+        seen = np.mean(change > found.limits.change)
+        # a neighbouring date or another cause may pass instead, so that it is rather more
+        assert 0.65 < seen < 0.80, cause.label
 
 
 @pytest.mark.parametrize(

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 from ves_twin.diagnosis.assess import assess, pull_limit
 from ves_twin.diagnosis.bank import Bank, bank_key, build_bank, cached_bank
@@ -12,7 +12,7 @@ from ves_twin.diagnosis.forward import Forward, Hypothesis
 from ves_twin.diagnosis.likeness import check_likeness
 from ves_twin.diagnosis.null import Thresholds, cached_thresholds
 from ves_twin.diagnosis.observe import Observed, observe
-from ves_twin.diagnosis.runs import Progress
+from ves_twin.diagnosis.runs import Progress, silent
 from ves_twin.diagnosis.settings import Settings
 from ves_twin.diagnosis.trend.day import Day
 from ves_twin.errors import InvalidInputError
@@ -27,10 +27,10 @@ class Study:
     forward: Forward
     settings: Settings
     standstill: Recording | None
-    exclude: tuple[str, ...]
-    cause: str
-    workers: Workers
-    progress: Progress
+    exclude: tuple[str, ...] = ()
+    cause: str = ""
+    workers: Workers = field(default_factory=Workers)
+    progress: Progress = silent
 
     def __post_init__(self) -> None:
         self._banks: dict[str, tuple[Bank, Thresholds]] = {}
