@@ -194,6 +194,25 @@ def test_the_rerun_file_has_every_channel_of_the_three_models(friction, tmp_path
     assert not list(tmp_path.glob("*.partial"))
 
 
+def test_measured_nominal_and_extended_lie_over_each_other_in_one_view(friction, tmp_path):
+    reader = RrdReader(write_diagnosis_rrd(friction, tmp_path / "diagnosis.rrd"))
+    names = {}
+    for chunk in reader.stream():
+        if chunk.is_static and "SeriesLines:names" in chunk.to_record_batch().schema.names:
+            (names[chunk.entity_path],) = chunk.to_record_batch()["SeriesLines:names"].to_pylist()
+    (blueprint,) = reader.blueprints()
+    views = [
+        chunk.to_record_batch()["ViewContents:query"].to_pylist()[0]
+        for chunk in reader.stream(store=blueprint)
+        if "ViewContents:query" in chunk.to_record_batch().schema.names
+    ]
+    shown = {contents[0] for contents in views if len(contents) == 1}
+    for channel in friction.exhibit.channels:
+        entity = f"/r1/compared/{channel.name}"
+        assert [n.split(" ")[0] for n in names[entity]] == ["measured", "nominal", "extended"]
+        assert entity in shown  # one entity of three columns: one plot
+
+
 def test_a_verdict_from_a_file_has_no_traces_to_write(friction, tmp_path):
     bare = replace(friction, exhibit=None)
     with pytest.raises(InvalidInputError, match="no traces"):
@@ -215,6 +234,13 @@ def test_an_ambiguous_group_is_told_as_one_of_several_with_what_to_record_next(t
     assert "One of these 2, and the recording cannot tell which" in top
     assert top.count("one of 2, firm") == 2
     assert "look alike in these recordings" in page
+    # the same shape twice: even odds, and no size at which they part
+    assert "Cannot tell lag at plant from late at plant: odds 1" in top
+    assert "100 to 1 would settle it" in top
+    text = "Recordings like these cannot tell lag at plant from late at plant at any size up to 1."
+    assert text in page
+    pairs = {(pair.cause, pair.other, pair.beyond) for pair in twins.lookalikes}
+    assert pairs == {("lag@plant", "late@plant", None), ("late@plant", "lag@plant", None)}
     assert "To tell lag at plant from late at plant: toy." in page
 
 

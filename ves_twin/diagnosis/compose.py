@@ -17,6 +17,7 @@ from ves_twin.diagnosis.findable import findable_sizes, twins
 from ves_twin.diagnosis.forward import Hypothesis
 from ves_twin.diagnosis.gain import Gain
 from ves_twin.diagnosis.leftover import Leftover, describe
+from ves_twin.diagnosis.lookalikes import Lookalike, lookalikes
 from ves_twin.diagnosis.null import Thresholds
 from ves_twin.diagnosis.observe import Observed
 from ves_twin.diagnosis.refine import Fit
@@ -87,6 +88,7 @@ def compose(
         second_effect=found.second if found else None,
         naming_limit=findings.kappa,
         tolerance_scale=findings.scale,
+        naming_odds=findings.settings.odds,
     )
     return Verdict(
         verdict=kind,
@@ -103,6 +105,7 @@ def compose(
         rivals=rivals_of(first, found),
         smallest_findable={label: Findable(v, units[label]) for label, v in sizes.items()},
         twins=tuple(twins(first.screen)),
+        lookalikes=_lookalikes(findings, causes, sizes),
         next_experiment=findings.proposals,
         unseen=findings.seen.unseen,
         holes=findings.seen.holes,
@@ -110,6 +113,17 @@ def compose(
         alone=findings.apart,
         exhibit=exhibit,
     )
+
+
+def _lookalikes(
+    findings: Findings, causes: Sequence[Cause], sizes: dict[str, float | None]
+) -> tuple[Lookalike, ...]:
+    """What a named cause could be taken for in these recordings, and up to which size."""
+    if not causes:
+        return ()
+    settings, names = findings.settings, {f"{cause.effect}@{cause.target}" for cause in causes}
+    screen = findings.first.screen
+    return tuple(lookalikes(screen, sizes, settings.odds, settings.model_error, names))
 
 
 def _label(fit: Fit) -> str:

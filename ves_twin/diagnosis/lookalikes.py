@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Collection
 from dataclasses import dataclass
 
 import numpy as np
@@ -23,16 +24,22 @@ class Lookalike:
         other: effect@target of what it is taken for.
         beyond: size from which it is told from it; None if at no size in its range.
         unit: of that size.
+        largest: end of its range.
     """
 
     cause: str
     other: str
     beyond: float | None
     unit: str
+    largest: float
 
 
 def lookalikes(
-    screen: Screen, findable: dict[str, float | None], odds: float, model_error: float
+    screen: Screen,
+    findable: dict[str, float | None],
+    odds: float,
+    model_error: float,
+    among: Collection[str] | None = None,
 ) -> list[Lookalike]:
     """Which findable cause would be taken for which other one.
 
@@ -46,13 +53,15 @@ def lookalikes(
         findable: smallest findable size of each cause; what cannot be found is left out.
         odds: at which a rival is dropped.
         model_error: relative error of a simulated change.
+        among: causes, effect@target, whose look-alikes are asked for; all if None.
     """
     bank = screen.bank
     found = []
     for i, cause in enumerate(bank.hypotheses):
         least = findable.get(cause.label)
         rows = bank.entries(i)
-        if least is None or not len(rows) or len(cause.parameters) > 1:
+        asked = among is None or cause.label in among
+        if not asked or least is None or not len(rows) or len(cause.parameters) > 1:
             continue
         sizes = np.array([bank.sizes[k][0] for k in rows])
         power = screen.power[rows]
@@ -66,7 +75,7 @@ def lookalikes(
             apart = np.sqrt(np.maximum(_left(screen, rows, theirs), 0.0)) / goal
             beyond = _beyond(sizes, apart)
             if beyond is None or beyond > CLEAR * least:
-                found.append(Lookalike(cause.label, other.label, beyond, unit))
+                found.append(Lookalike(cause.label, other.label, beyond, unit, cause.largest[0]))
     return found
 
 

@@ -12,9 +12,13 @@ from ves_twin.diagnosis.disagreement import Alone
 from ves_twin.diagnosis.exhibit import Exhibit
 from ves_twin.diagnosis.gain import Gain
 from ves_twin.diagnosis.leftover import Leftover
+from ves_twin.diagnosis.lookalikes import Lookalike
 from ves_twin.diagnosis.rivals import Rival
 from ves_twin.quality.check import Check
 from ves_twin.whole_file import write_whole
+
+MANY = 6
+"""Parameters of a cause that are told one by one."""
 
 SCHEMA = 1
 """Version of verdict.json; fields are added without a new one, never changed."""
@@ -74,6 +78,14 @@ class Cause:
     firm: bool
     sigmas: float | None
 
+    @property
+    def largest(self) -> dict[str, Estimate]:
+        """Its parameters, or, of more than MANY, those that depart most."""
+        if len(self.parameters) <= MANY:
+            return dict(self.parameters)
+        ranked = sorted(self.parameters.items(), key=lambda p: -abs(p[1].value - p[1].nominal))
+        return dict(ranked[:MANY])
+
 
 @dataclass(frozen=True)
 class ChannelError:
@@ -118,7 +130,10 @@ class Proposal:
 
 @dataclass(frozen=True)
 class Statistics:
-    """The figures the verdict was taken on, each beside its threshold."""
+    """The figures the verdict was taken on, each beside its threshold.
+
+    `naming_odds` are those at which a rival is dropped.
+    """
 
     effect: float
     effect_threshold: float
@@ -128,6 +143,7 @@ class Statistics:
     second_effect: float | None = None
     naming_limit: float | None = None
     tolerance_scale: float | None = None
+    naming_odds: float | None = None
 
 
 @dataclass(frozen=True)
@@ -137,7 +153,8 @@ class Verdict:
     `alternatives` are numbers of `causes`: each alternative explains the record by itself, by one
     cause or by several together; one alternative unless ambiguous. `gain` is on held-out
     recordings; `forecast` is ahead in time, where a cause's sizes belong to the recorded stretch
-    of it. `tuned` are the plant's commissioning numbers at the fit. `quality`
+    of it. `tuned` are the plant's commissioning numbers at the fit. `lookalikes` say what a named
+    cause could be taken for, and up to which size; `twins` are cosines of all pairs. `quality`
     has the checks that a recording failed; `alone` what each recording says
     by itself, where all together have no explanation. `exhibit` has the traces of the
     report, and stays out of verdict.json.
@@ -157,6 +174,7 @@ class Verdict:
     rivals: tuple[Rival, ...] = ()
     smallest_findable: Mapping[str, Findable] = field(default_factory=dict)
     twins: tuple[tuple[str, str, float], ...] = ()
+    lookalikes: tuple[Lookalike, ...] = ()
     next_experiment: tuple[Proposal, ...] = ()
     unseen: tuple[str, ...] = ()
     holes: Mapping[str, float] = field(default_factory=dict)
@@ -221,8 +239,11 @@ class Verdict:
 
     def _name(self, number: int) -> str:
         cause = self.causes[number]
-        sizes = ", ".join(f"{name} = {p.words}" for name, p in cause.parameters.items())
-        text = f"{cause.effect} at {cause.target}: {sizes}"
+        shown = list(cause.largest.items())
+        many = len(cause.parameters)
+        told = f"{many} numbers, the largest " if many > MANY else ""
+        sizes = ", ".join(f"{name} = {p.words}" for name, p in (shown[:1] if told else shown))
+        text = f"{cause.effect} at {cause.target}: {told}{sizes}"
         if cause.firm:
             return text
         return f"{text}, {cause.sigmas:.1f} declared sigmas off: fault or commissioning error"

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
-from ves_twin.diagnosis.report.words import TOLD, ends_words, name_of, spoken
+from math import inf
+
+from ves_twin.diagnosis.report.words import TOLD, capital, ends_words, name_of, spoken
 from ves_twin.diagnosis.rivals import Rival, Standing
 from ves_twin.diagnosis.tolerances import FEWEST
 from ves_twin.diagnosis.verdict import Kind, Verdict
-from ves_twin.report.quantity import digits, percent
+from ves_twin.report.quantity import digits, percent, quantity
 
 STRAINED = 3.0
 """Declared sd beyond which a commissioning error is called strained."""
@@ -67,7 +69,25 @@ def limit_sentences(verdict: Verdict) -> tuple[str, ...]:
     if blind:
         more = f" and {len(blind) - TOLD} more" if len(blind) > TOLD else ""
         said.append(f"Nothing can be said about {', '.join(blind[:TOLD])}{more}.")
-    return (*said, *_twins(verdict))
+    return (*said, *_lookalikes(verdict), *_twins(verdict))
+
+
+def _lookalikes(verdict: Verdict) -> tuple[str, ...]:
+    """What each named cause could be taken for, and up to which size; the worst first."""
+    ranked = sorted(verdict.lookalikes, key=lambda pair: -(pair.beyond or inf))
+    said = []
+    for pair in ranked[:TOLD]:
+        cause, other = spoken(pair.cause), spoken(pair.other)
+        if pair.beyond is None:
+            most = quantity(pair.largest, pair.unit)
+            said.append(
+                f"Recordings like these cannot tell {cause} from {other} at any size up to {most}."
+            )
+        else:
+            size = quantity(pair.beyond, pair.unit)
+            said.append(f"{capital(cause)} of less than {size} would be taken for {other}.")
+    more = len(ranked) - len(said)
+    return (*said, f"So for {more} more pairs (verdict.json).") if more else tuple(said)
 
 
 def _twins(verdict: Verdict) -> tuple[str, ...]:

@@ -12,6 +12,7 @@ from ves_twin.diagnosis.report.pictures import (
 )
 from ves_twin.diagnosis.report.words import (
     alone_sentences,
+    ambiguity_sentences,
     basis_sentences,
     ends_words,
     fitted_word,
@@ -25,7 +26,7 @@ from ves_twin.diagnosis.report.words import (
     tone,
 )
 from ves_twin.diagnosis.rivals import Rival
-from ves_twin.diagnosis.verdict import Cause, Kind, Verdict
+from ves_twin.diagnosis.verdict import MANY, Cause, Kind, Verdict
 from ves_twin.report.html import Html, bullets, folded, joined, paragraph, section, table
 from ves_twin.report.page import html_page
 from ves_twin.report.quantity import UNSURE, digits, quantity
@@ -67,9 +68,19 @@ def _answer(verdict: Verdict, plant: str) -> Html:
     if verdict.causes:
         head = ("cause", "size", "90 % interval", "nominal", "probability", "standing")
         parts.append(table(head, [row for c in verdict.causes for row in _cause(c, verdict)]))
+        parts += [
+            paragraph(
+                f"The largest {len(c.largest)} of {len(c.parameters)} numbers of {name_of(c)};"
+                " verdict.json has all.",
+                "note",
+            )
+            for c in verdict.causes
+            if len(c.largest) < len(c.parameters)
+        ]
     for said in (nearest_sentence(verdict), gain_sentence(verdict)):
         if said:
             parts.append(paragraph(said))
+    parts.append(bullets(ambiguity_sentences(verdict)))
     parts.append(bullets(alone_sentences(verdict)))
     failed = [check.message for check in verdict.quality]
     if failed:
@@ -94,7 +105,7 @@ def _cause(cause: Cause, verdict: Verdict) -> list[tuple[str, ...]]:
             f"{100.0 * cause.probability:.0f} %",
             standing,
         )
-        for name, estimate in cause.parameters.items()
+        for name, estimate in cause.largest.items()
     ]
 
 
@@ -157,13 +168,20 @@ def _rivals(rivals: tuple[Rival, ...]) -> Html:
     rows = [
         (
             " with ".join(map(spoken, rival.causes)),
-            ", ".join(quantity(size, unit) for size, unit in rival.sizes) or UNSURE,
+            _sizes(rival),
             _chi2(rival.behind),
             rival_words(rival, best=n == 0),
         )
         for n, rival in enumerate(rivals)
     ]
     return table(head, rows)
+
+
+def _sizes(rival: Rival) -> str:
+    if len(rival.sizes) > MANY:
+        size, unit = max(rival.sizes, key=lambda one: abs(one[0]))
+        return f"{len(rival.sizes)} numbers, up to {quantity(size, unit)}"
+    return ", ".join(quantity(size, unit) for size, unit in rival.sizes) or UNSURE
 
 
 def _chi2(value: float | None) -> str:

@@ -7,7 +7,7 @@ from ves_twin.diagnosis.leftover import Loud
 from ves_twin.diagnosis.rivals import Place
 from ves_twin.diagnosis.tolerances import FEWEST
 from ves_twin.diagnosis.verdict import Cause, Estimate, Kind, Verdict
-from ves_twin.report.quantity import percent, quantity
+from ves_twin.report.quantity import digits, percent, quantity
 
 STRANGER = 0.5
 """Share of a channel's own spread that stays unexplained where the plant is hardly this one."""
@@ -96,7 +96,7 @@ def _doubt(verdict: Verdict) -> str:
     if loose:
         most = max(cause.sigmas or 0.0 for cause in loose)
         which = "It is" if len(verdict.causes) == 1 else f"{name_of(loose[0])} is"
-        which = "Each is" if len(loose) == len(verdict.causes) > 1 else _capital(which)
+        which = "Each is" if len(loose) == len(verdict.causes) > 1 else capital(which)
         upto = "up to " if len(loose) > 1 else ""
         return (
             f" {which} {upto}{most:.1f} declared tolerances off: a fault, or an error of"
@@ -130,6 +130,25 @@ def nearest_sentence(verdict: Verdict) -> str:
         top = left.loud[0]
         said += f"What is left is loudest in {top.channel} at {ends_words(top)}."
     return said
+
+
+def ambiguity_sentences(verdict: Verdict) -> tuple[str, ...]:
+    """What cannot be told from what, with the figures; none unless the verdict is ambiguous."""
+    if verdict.verdict is not Kind.AMBIGUOUS:
+        return ()
+    groups = [[verdict.causes[i] for i in numbers] for numbers in verdict.alternatives]
+    names = [" with ".join(map(name_of, group)) for group in groups]
+    kept = [rival.behind for rival in verdict.rivals[: len(groups)]]
+    first, asked = groups[0][0].probability, verdict.statistics.naming_odds
+    said = []
+    for name, group, behind in zip(names[1:], groups[1:], kept[1:], strict=False):
+        figures = [f"odds {first / max(group[0].probability, 1e-9):.2g} to 1"]
+        if asked:
+            figures.append(f"{asked:g} to 1 would settle it")
+        if behind:
+            figures.append(f"its best fit leaves {digits(behind, '.2g')} more of chi^2")
+        said.append(f"Cannot tell {names[0]} from {name}: {', '.join(figures)}.")
+    return tuple(said)
 
 
 def ends_words(place: Loud | Place) -> str:
@@ -236,5 +255,6 @@ def _share(value: float | None) -> str:
     return "-" if value is None else f"{100.0 * value:.0f} %"
 
 
-def _capital(text: str) -> str:
+def capital(text: str) -> str:
+    """With its first letter large."""
     return text[:1].upper() + text[1:]
