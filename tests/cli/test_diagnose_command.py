@@ -55,7 +55,8 @@ def found(monkeypatch, recording):
     verdict = diagnose(Pendulum(), [data], settings=Settings(nulls=20))
     setpoints = Programme.of(load_recording(Path(recording)), DRIVE, "next")
     plant = vt.Plant.load("ves2").extended(vt.effects.CoulombFriction("leg.3", level=60.0))
-    result = RigDiagnosis(verdict, plant, "there were no held-out recordings", setpoints)
+    scenario = vt.Scenario.load("identify_fast")
+    result = RigDiagnosis(verdict, plant, "there were no held-out recordings", setpoints, scenario)
     monkeypatch.setattr("ves_twin.benches.diagnose_rig.diagnose_rig", lambda *a, **k: result)
     return verdict
 
@@ -74,7 +75,7 @@ def test_a_diagnosis_writes_what_the_contract_names(capsys, tmp_path, recording,
     }
     assert {path.name for path in out.iterdir()} == {
         *("verdict.json", "report.html", "diagnosis.rrd", "plant.candidate.toml"),
-        "next_experiment.csv",
+        *("next_experiment.csv", "next_experiment.toml"),
     }
     page = (out / "report.html").read_text()
     assert "Coulomb friction at joint" in page

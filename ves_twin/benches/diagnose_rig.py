@@ -6,6 +6,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
+from ves_twin.benches.filter_place import EFFECT as FILTER_PLACE
+from ves_twin.benches.filter_place import WithFilterPlaces
 from ves_twin.benches.ves2 import RigForward
 from ves_twin.benches.ves2_input import prepare_inputs
 from ves_twin.benches.ves2_menu import offered_programmes
@@ -35,12 +37,14 @@ class RigDiagnosis:
         extended: the nominal plant with the causes; None where no causes are named.
         refused: why the extension is only a candidate; empty where it passed on held-out data.
         next_programme: set-points that should part the causes, where they cannot be told apart.
+        scenario: rates, leg gains and belief that the recordings were taken to be made with.
     """
 
     verdict: Verdict
     extended: Plant | None
     refused: str
     next_programme: Programme | None = None
+    scenario: Scenario | None = None
 
 
 def diagnose_rig(
@@ -86,7 +90,7 @@ def diagnose_rig(
     if scenario is None:
         every = (*measured.recordings, *others.recordings, *rigs.recordings, *usual.recordings)
         _check_settings(every, setting)
-    forward = RigForward(plant, setting)
+    forward = WithFilterPlaces(RigForward(plant, setting))
     offered: list[Programme] = []
 
     def menu() -> list[Programme]:
@@ -110,9 +114,11 @@ def diagnose_rig(
     if verdict.verdict not in NAMES_A_PLANT:
         best = verdict.next_experiment[0].programme if verdict.next_experiment else ""
         chosen = next((p for p in offered if p.name == best), None)
-        return RigDiagnosis(verdict, None, f"the verdict is {verdict.verdict.value}", chosen)
-    extended = plant.extended(*map(effect_of, verdict.causes))
-    return RigDiagnosis(verdict, extended, _refused(verdict))
+        why = f"the verdict is {verdict.verdict.value}"
+        return RigDiagnosis(verdict, None, why, chosen, setting)
+    effects = effects_of(verdict)
+    extended = plant.extended(*effects) if effects else None
+    return RigDiagnosis(verdict, extended, _refused(verdict), scenario=setting)
 
 
 def drawn_nulls(settings: Settings | None) -> Settings:
@@ -129,10 +135,13 @@ def verdict_on(recordings: Sequence[Recording], plant: Plant, **material: Any) -
 
 
 def effects_of(verdict: Verdict) -> tuple[Effect, ...]:
-    """The effects that a verdict names, at their estimated sizes; none where it names none."""
+    """The effects that a verdict names, at their estimated sizes; none where it names none.
+
+    A filter at another place is no part of a plant: that is the scenario's `legs.filter`.
+    """
     if verdict.verdict not in NAMES_A_PLANT:
         return ()
-    return tuple(map(effect_of, verdict.causes))
+    return tuple(effect_of(c) for c in verdict.causes if c.effect != FILTER_PLACE)
 
 
 def effect_of(cause: Cause) -> Effect:
@@ -148,6 +157,9 @@ def _shortened(cause: Cause) -> Cause:
 
 
 def _refused(verdict: Verdict) -> str:
+    places = [cause.target for cause in verdict.causes if cause.effect == FILTER_PLACE]
+    if places:
+        return f'no plant has the leg program: run scenarios with legs.filter = "{places[0]}"'
     gain = verdict.gain
     if gain is None:
         return "there were no held-out recordings to prove it on"

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from ves_twin.benches.diagnose_rig import one_step
+from ves_twin.benches.filter_place import WithFilterPlaces
 from ves_twin.benches.ves2 import DRIVE, RigForward
 from ves_twin.diagnosis.forward import Programme
 from ves_twin.errors import InvalidInputError
@@ -13,7 +14,7 @@ from ves_twin.simulator.replay import replay_scenario
 from ves_twin.simulator.simulate import simulate
 
 
-def planned_rig(scenario: Scenario, plant: Plant) -> tuple[RigForward, Programme]:
+def planned_rig(scenario: Scenario, plant: Plant) -> tuple[WithFilterPlaces, Programme]:
     """The forward of a rig and the programme of a scenario, as a diagnosis of its recording has.
 
     Under position control the set-points are those of every rig; where a controller makes them of
@@ -30,5 +31,5 @@ def planned_rig(scenario: Scenario, plant: Plant) -> tuple[RigForward, Programme
     if recording.info.outcome != Outcome.COMPLETED:
         what = f"scenario {scenario.name}"
         raise InvalidInputError(what, recording.info.outcome, "a run that is completed")
-    forward = RigForward(plant, one_step(replay_scenario(recording)))
+    forward = WithFilterPlaces(RigForward(plant, one_step(replay_scenario(recording))))
     return forward, Programme.of(recording, DRIVE, scenario.name)

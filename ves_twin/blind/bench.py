@@ -20,11 +20,13 @@ class BlindRig:
         values: parameter -> value, commissioning errors and hidden effects together.
         outside: kind of effect that the library lacks; empty if none.
         size: of that.
+        deployed: keys of the scenario that the rig's programs have otherwise than it says.
     """
 
     values: Mapping[str, float] = field(default_factory=dict)
     outside: str = ""
     size: float = 0.0
+    deployed: Mapping[str, object] = field(default_factory=dict)
 
 
 class BlindBench(ABC):

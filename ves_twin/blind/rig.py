@@ -90,22 +90,20 @@ class BlindVes2(BlindBench):
         plant = plant.with_values(
             {name: self.plant.parameters.array(name) * rng.uniform(*LEVELS) for name in NOISES}
         )
-        scenario = self._programme(programme)
-        fine = scenario.run.model_copy(update={"substeps": 2})
         sim = Simulator(
             plant,
-            scenario.model_copy(update={"run": fine}),
+            self._programme(programme, {"run.substeps": 2, **rig.deployed}),
             int(rng.integers(2**31)),
             MemorySink(),
         )
         sim.model.opt.integrator = mujoco.mjtIntegrator.mjINT_IMPLICIT
         _edit(sim, rig)
         _run(sim, rig, rng)
-        rows = _collected(sim)
+        rows = _collected(sim, self._programme(programme, {"run.substeps": 2}))
         rows.signals["sensor.wrench"][:] += offsets
         return _edited(rows, rig, rng, self.plant)
 
-    def _programme(self, name: str) -> Scenario:
+    def _programme(self, name: str, more: Mapping[str, object] | None = None) -> Scenario:
         changes: dict[str, object] = {"plant": self.plant.name, "run.duration": SECONDS}
         if name == "held_out":
             changes |= {
@@ -118,7 +116,7 @@ class BlindVes2(BlindBench):
                 "platform.motion.amplitude": [0.0] * 6,
                 "arm.moves": [],
             }
-        return Scenario.load("identify_fast", changes)
+        return Scenario.load("identify_fast", changes | dict(more or {}))
 
 
 def _edit(sim: Simulator, rig: BlindRig) -> None:
@@ -148,7 +146,8 @@ def _run(sim: Simulator, rig: BlindRig, rng: np.random.Generator) -> None:
         sim.advance(period)
 
 
-def _collected(sim: Simulator) -> Recording:
+def _collected(sim: Simulator, written: Scenario) -> Recording:
+    """What was measured, with the scenario as it is written, whatever is deployed."""
     sink = sim.recorder.sink
     time, signals = sink.collect() if isinstance(sink, MemorySink) else (np.zeros(0), {})
     measured = {
@@ -156,7 +155,8 @@ def _collected(sim: Simulator) -> Recording:
         for name, values in signals.items()
         if SIGNALS[name].role not in {Role.TRUTH, Role.REFERENCE}
     }
-    info = replace(recording_info(sim), scenario=sim.scenario.name)
+    settings = written.model_dump_json()
+    info = replace(recording_info(sim), scenario=written.name, settings=settings)
     return Recording(time, measured, info)
 
 

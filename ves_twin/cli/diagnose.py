@@ -21,8 +21,6 @@ from ves_twin.cli.rig_recordings import add_rig_arguments, means_rig
 
 SUMMARY = "name what the simulation gets wrong in recordings, extend the plant, measure the gain"
 
-SETPOINTS = "next_experiment.csv"
-
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Options of the command."""
@@ -73,7 +71,7 @@ def _ves2(
 ) -> tuple[RigDiagnosis, Callable[[Path, str], None]]:
     """VES II; the output folder is made once all input is read."""
     from ves_twin.benches.diagnose_rig import diagnose_rig
-    from ves_twin.benches.ves2_menu import write_setpoints
+    from ves_twin.benches.next_scenario import write_next_experiment
     from ves_twin.cli.progress import RunProgress
     from ves_twin.cli.rig_recordings import refuse_rig_options
     from ves_twin.plant.write_plant import write_plant
@@ -114,8 +112,8 @@ def _ves2(
     def save(path: Path, note: str) -> None:
         if found.extended is not None:
             write_plant(found.extended, path, note)
-        if found.next_programme is not None:
-            write_setpoints(found.next_programme, path.parent / SETPOINTS)
+        if found.next_programme is not None and found.scenario is not None:
+            write_next_experiment(found.next_programme, found.scenario, plant, path.parent)
 
     return found, save
 
@@ -190,11 +188,13 @@ def _write(
     names: str,
     save: Callable[[Path, str], None],
 ) -> None:
+    from ves_twin.benches.next_scenario import SCENARIO, SETPOINTS
     from ves_twin.diagnosis.report.page import diagnosis_page
     from ves_twin.report.page import write_page
     from ves_twin.rerun_log.diagnosis import write_diagnosis_rrd
 
-    for name in ("plant.toml", "plant.candidate.toml", SETPOINTS):  # of an earlier diagnosis
+    of_earlier = ("plant.toml", "plant.candidate.toml", SETPOINTS, SCENARIO)
+    for name in of_earlier:
         (folder / name).unlink(missing_ok=True)
     found.verdict.save(folder / "verdict.json")
     page = diagnosis_page(found.verdict, f"Diagnosis of {names}", _plant_sentence(found))
@@ -209,6 +209,8 @@ def _write(
 
 def _plant_sentence(found: RigDiagnosis | MjcfDiagnosis) -> str:
     """What became of the extended plant."""
+    if found.extended is None and found.verdict.causes:
+        return f"No extended plant was written: {found.refused}."
     if found.extended is None:
         return "No extended plant was written: no cause is named."
     if found.refused:
@@ -217,11 +219,14 @@ def _plant_sentence(found: RigDiagnosis | MjcfDiagnosis) -> str:
 
 
 def _text(found: RigDiagnosis | MjcfDiagnosis, folder: Path) -> str:
+    from ves_twin.diagnosis.report.words import ambiguity_sentences
+
     verdict = found.verdict
     basis = verdict.basis
     lines = [
         f"verdict   {verdict.verdict.value}",
         f"          {verdict.words}",
+        *(f"          {text}" for text in ambiguity_sentences(verdict)),
         f"basis     noise {basis.noise}, tolerances {basis.tolerances},"
         f" held-out recordings {basis.held_out}, baseline {basis.baseline}",
     ]

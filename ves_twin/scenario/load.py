@@ -36,6 +36,7 @@ def scenario_content(
     """
     path = find_resource("scenario", "scenarios", name_or_path)
     content, question = _read(path)
+    _find_beside(content, path)
     for key, value in changes.items():
         content = _with_key(content, key, value)
     name = re.sub(r"[^A-Za-z0-9_.-]", "_", path.stem)[:64]
@@ -84,6 +85,16 @@ def _read(path: Path) -> tuple[dict[str, Any], str]:
             f"scenario {path}", first, "a first line '# ...' with the question it answers"
         )
     return content, first.lstrip("# ").strip()
+
+
+def _find_beside(content: Mapping[str, Any], path: Path) -> None:
+    """Set-points that a scenario names lie beside its file, wherever it is run from."""
+    platform = content.get("platform")
+    motion = platform.get("motion") if isinstance(platform, dict) else None
+    if isinstance(motion, dict) and isinstance(file := motion.get("file"), str):
+        near = path.parent / file
+        if not Path(file).is_absolute() and near.is_file():
+            motion["file"] = str(near)
 
 
 def _with_key(content: Mapping[str, Any], key: str, value: object) -> dict[str, Any]:

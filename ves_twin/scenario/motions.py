@@ -1,4 +1,4 @@
-"""Motion: what position mode follows, as a scenario's table: sines, multisines, way points."""
+"""Motion: what position mode follows, as a table: sines, multisines, way points, set-points."""
 
 from __future__ import annotations
 
@@ -94,4 +94,16 @@ class WaypointMotion(Part):
         return Waypoints(start, moves)
 
 
-Motion = SineMotion | MultisineMotion | WaypointMotion
+class SetpointMotion(Part):
+    """Set-points of a file, as `ves-twin diagnose` proposes them: leg lengths, and the arm's.
+
+    `file` is a name of scenarios/data/, or a .csv or .parquet file, looked for beside the
+    scenario's own file first. Its columns are t [s], leg.command.1 ... 6 [m] and
+    arm.command.1 ... 3 [rad]; without the latter the arm does what [arm] says.
+    """
+
+    kind: Literal["setpoints"]
+    file: str
+
+
+Motion = SineMotion | MultisineMotion | WaypointMotion | SetpointMotion

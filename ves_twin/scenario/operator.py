@@ -2,16 +2,12 @@
 
 from __future__ import annotations
 
-from pathlib import Path
-
 import numpy as np
-import pyarrow as pa
-import pyarrow.csv
-import pyarrow.parquet
 
 from ves_twin.control.motion import RecordedJoints
-from ves_twin.errors import FileAccessError, InvalidInputError, one_line
+from ves_twin.errors import InvalidInputError
 from ves_twin.resources import find_resource
+from ves_twin.scenario.columns import read_columns
 from ves_twin.scenario.fields import TURNS
 from ves_twin.types import FloatArray
 
@@ -37,7 +33,7 @@ def operator_motion(name_or_path: str, start: FloatArray) -> RecordedJoints:
             that do not begin where the arm stands.
     """
     path = find_resource("operator file", "scenarios/data", name_or_path, ".csv")
-    rows = _rows(path)
+    rows, _ = read_columns("operator file", path, COLUMNS)
     time, angles = rows[:, 0], rows[:, 1:]
     if len(rows) < 2 or np.any(np.diff(time) <= 0.0):
         raise InvalidInputError(f"{path.name}: t", f"{len(rows)} rows", "two or more, increasing")
@@ -49,22 +45,3 @@ def operator_motion(name_or_path: str, start: FloatArray) -> RecordedJoints:
         first = [round(float(angle), 4) for angle in angles[0]]
         raise InvalidInputError(f"{path.name}: first row", first, f"arm.start, {start.tolist()}")
     return RecordedJoints.through(time, angles)
-
-
-def _rows(path: Path) -> FloatArray:
-    try:
-        read = pa.parquet.read_table if path.suffix == ".parquet" else pa.csv.read_csv
-        table = read(path)
-        missing = [name for name in COLUMNS if name not in table.column_names]
-        if missing:
-            raise InvalidInputError(path.name, f"columns {table.column_names}", ", ".join(COLUMNS))
-        columns = [table.column(name).to_numpy().astype(float) for name in COLUMNS]
-    except OSError as error:
-        raise FileAccessError(f"operator file {path}: {one_line(error)}") from None
-    except (pa.ArrowException, ValueError, TypeError) as error:
-        expected = f"numbers under {', '.join(COLUMNS)}"
-        raise InvalidInputError(path.name, one_line(error), expected) from None
-    rows = np.column_stack(columns)
-    if not np.all(np.isfinite(rows)):
-        raise InvalidInputError(path.name, "values that are not finite", "numbers")
-    return rows

@@ -6,17 +6,30 @@ import numpy as np
 
 from ves_twin.control.motion import ArmMotion, JointMotion, Move
 from ves_twin.control.path_motion import PathMotion
+from ves_twin.control.timed import TimedJoints
+from ves_twin.errors import InvalidInputError
+from ves_twin.scenario.motions import SetpointMotion
 from ves_twin.scenario.operator import operator_motion
-from ves_twin.scenario.schema import Scenario
+from ves_twin.scenario.schema import Arm, Scenario
+from ves_twin.scenario.setpoint_file import read_setpoints
+from ves_twin.types import FloatArray
+
+NEAR = 1e-3
+"""How far the first command may lie from the arm's start [rad]: ten counts of the encoders."""
 
 
 def arm_motion(scenario: Scenario) -> JointMotion:
-    """The arm's moves, its path, or the recorded commands of an operator.
+    """The arm's moves, its path, the recorded commands of an operator, or set-points of a file.
 
     Raises:
-        VesTwinError: an operator's file that is missing, unreadable or cannot be followed.
+        VesTwinError: a file that is missing, unreadable or cannot be followed, or one that commands
+            an arm that is commanded otherwise, too.
     """
-    arm = scenario.arm
+    arm, motion = scenario.arm, scenario.platform.motion
+    if isinstance(motion, SetpointMotion):
+        given = read_setpoints(motion.file)
+        if given.arm is not None:
+            return _setpoints(given.name, given.time, given.arm, arm)
     if arm.operator is not None:
         return operator_motion(arm.operator, np.array(arm.start))
     if arm.path is not None:
@@ -24,3 +37,13 @@ def arm_motion(scenario: Scenario) -> JointMotion:
         return PathMotion(places, arm.path.start, arm.path.duration)
     moves = tuple(Move(m.start, m.duration, np.array(m.to)) for m in arm.moves)
     return ArmMotion(np.array(arm.start), moves)
+
+
+def _setpoints(name: str, time: FloatArray, commands: FloatArray, arm: Arm) -> TimedJoints:
+    if arm.moves or arm.path is not None or arm.operator is not None:
+        expected = "no arm.moves, arm.path or arm.operator beside it"
+        raise InvalidInputError(name, "set-points of the arm", expected)
+    if np.max(np.abs(commands[0] - arm.start)) > NEAR:
+        first = [round(float(angle), 4) for angle in commands[0]]
+        raise InvalidInputError(f"{name}: first row", first, f"arm.start, {list(arm.start)}")
+    return TimedJoints.through(time, commands)

@@ -21,6 +21,7 @@ from ves_twin.operation.state import State
 from ves_twin.plant.plant import Plant
 from ves_twin.plant.statics import check_reach
 from ves_twin.recording.recording import Event
+from ves_twin.scenario.motions import SetpointMotion
 from ves_twin.scenario.schema import Platform, Scenario
 from ves_twin.simulator.arm_commands import arm_motion
 from ves_twin.simulator.computers import Computers
@@ -29,6 +30,7 @@ from ves_twin.simulator.planned import planned_experiment
 from ves_twin.simulator.recorder import IDEAL, LEG_LAG
 from ves_twin.simulator.reference import ZeroGravityReference
 from ves_twin.simulator.rig import Rig
+from ves_twin.simulator.setpoint_motion import setpoint_motion
 from ves_twin.simulator.truth_port import GravityTruth
 from ves_twin.types import Block, FloatArray
 
@@ -88,7 +90,7 @@ def build_computers(
         start=start,
         home=np.array(scenario.platform.home),
         emulated=emulated,
-        motion=script.poses if script else _motion(scenario.platform),
+        motion=script.poses if script else _motion(scenario.platform, belief),
         subtract_gravity=scenario.platform.mode != "admittance" and gravity.subtracts,
     )
     chosen = controller or PLATFORM_CONTROLLERS[scenario.platform.mode]
@@ -194,6 +196,9 @@ def agenda_of(scenario: Scenario) -> list[Event]:
         events.append(Event(busy.start, "busy", message))
     if scenario.arm.operator is not None:
         events.append(Event(0.0, "operator", f"an operator commands: {scenario.arm.operator}"))
+    if isinstance(scenario.platform.motion, SetpointMotion):
+        file = scenario.platform.motion.file
+        events.append(Event(0.0, "setpoints", f"set-points of {file} are played"))
     for number, move in enumerate(scenario.arm.moves, 1):
         angles = ", ".join(f"{angle:.4g}" for angle in move.to)
         events.append(Event(move.start, "arm_move", f"move {number} to {angles} rad begins"))
@@ -205,7 +210,12 @@ def agenda_of(scenario: Scenario) -> list[Event]:
     return sorted(events, key=lambda event: event.time)
 
 
-def _motion(platform: Platform) -> PlatformMotion | None:
-    if platform.motion is None:
-        return None
-    return platform.motion.build(np.array(platform.start))
+def _motion(platform: Platform, belief: Belief) -> PlatformMotion | None:
+    start = np.array(platform.start)
+    match platform.motion:
+        case None:
+            return None
+        case SetpointMotion(file=file):
+            return setpoint_motion(file, start, belief.geometry)
+        case motion:
+            return motion.build(start)

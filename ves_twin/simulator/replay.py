@@ -10,13 +10,14 @@ import numpy as np
 
 from ves_twin.control.played import PlayedJoints, PlayedPoses, PlayedWrench, Script, spline_points
 from ves_twin.errors import InvalidInputError, UnknownNameError, VesTwinError
-from ves_twin.kinematics.stewart import StewartGeometry, pose_jacobian, track_poses
+from ves_twin.kinematics.stewart import StewartGeometry
 from ves_twin.plant.plant import Plant
 from ves_twin.recording.recording import Recording
 from ves_twin.scenario.schema import Scenario
 from ves_twin.signals import SIGNALS, Role
 from ves_twin.simulator.build import belief_of
 from ves_twin.simulator.recorder import MemorySink
+from ves_twin.simulator.setpoint_motion import poses_of
 from ves_twin.simulator.simulate import recording_info
 from ves_twin.simulator.simulator import Simulator
 from ves_twin.types import FloatArray
@@ -132,7 +133,8 @@ class Rows:
             InvalidInputError: no set-points for the legs.
         """
         if "leg.command" in drive:
-            poses = self._poses(self.signal("leg.command"), np.array(scenario.platform.start))
+            lengths = np.ascontiguousarray(self.signal("leg.command"))
+            poses = poses_of(lengths, np.array(scenario.platform.start), self._geometry)
         elif "platform.command" in drive:
             poses = self.signal("platform.command")
         else:
@@ -148,12 +150,6 @@ class Rows:
             PlayedJoints(points, self.period),
             PlayedWrench(wrenches, self.period),
         )
-
-    def _poses(self, lengths: FloatArray, guess: FloatArray) -> FloatArray:
-        g = self._geometry
-        inverse = np.asarray(np.linalg.inv(pose_jacobian(guess, g.base, g.top, g.home)))
-        lengths = np.ascontiguousarray(lengths)
-        return np.asarray(track_poses(lengths, guess.copy(), inverse, g.base, g.top, g.home))
 
 
 def _starting_at(scenario: Scenario, script: Script) -> Scenario:
