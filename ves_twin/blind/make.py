@@ -56,7 +56,7 @@ def make_suite(
     key = _key(folder, key_file)
     root = np.random.default_rng([seed, 1])
     standstill = bench.record(BlindRig(bench.commissioned(root, spread)), "standstill", root)
-    _keep(standstill, folder / STANDSTILL)
+    save_bare(standstill, folder / STANDSTILL)
     truths = _truths(bench, counts, seed, spread, progress, workers)
     for n, truth in enumerate(truths):
         progress(n / len(truths), "recordings")
@@ -122,12 +122,16 @@ def _record(bench: BlindBench, truth: Truth, folder: Path, rng: np.random.Genera
         for name, departure in cause.departures.items():
             values[name] = values.get(name, nominal[name]) + departure
     rig = BlindRig(values, truth.outside, truth.outside_size)
-    _keep(bench.record(rig, "train", rng), folder / truth.case / RECORDING)
-    _keep(bench.record(rig, "held_out", rng), folder / truth.case / HELD_OUT)
+    save_bare(bench.record(rig, "train", rng), folder / truth.case / RECORDING)
+    save_bare(bench.record(rig, "held_out", rng), folder / truth.case / HELD_OUT)
 
 
-def _keep(recording: Recording, path: Path) -> None:
-    """Write a recording that tells nothing but what a laboratory would know of it."""
+def save_bare(recording: Recording, path: Path) -> None:
+    """Write a recording that tells nothing but what a laboratory would know of it.
+
+    Raises:
+        FileAccessError: not writable.
+    """
     info = RecordingInfo(
         "measured",
         scenario=recording.info.scenario,

@@ -21,6 +21,8 @@ from ves_twin.procedures.pped_release import PpedRelease
 from ves_twin.procedures.pped_release_emulated import PpedReleaseEmulated
 from ves_twin.procedures.procedure import Procedure
 from ves_twin.procedures.sensor_drift import SensorDrift
+from ves_twin.procedures.showcase import Showcase
+from ves_twin.procedures.showcase_droop import DroopShowcase
 from ves_twin.procedures.stability_map import StabilityMap
 from ves_twin.procedures.verify_gravity import VerifyGravity
 from ves_twin.scenario.load import refusal, scenario_content
@@ -38,6 +40,8 @@ PROCEDURES: dict[str, type[Procedure]] = {
     "learning_method": LearningMethod,
     "methods_agreement": MethodsAgreement,
     "sensor_drift": SensorDrift,
+    "showcase": Showcase,
+    "showcase_droop": DroopShowcase,
     "verify_gravity": VerifyGravity,
     "calibrate_plant": CalibratePlant,
     "stability_map": StabilityMap,
