@@ -52,7 +52,7 @@ def write_diagnosis_rrd(verdict: Verdict, path: Path) -> Path:
 def _write(verdict: Verdict, exhibit: Exhibit, path: Path) -> None:
     stream = rr.RecordingStream("ves_twin diagnosis")
     content = stream.binary_stream()  # see write.py
-    stream.send_blueprint(diagnosis_blueprint(exhibit), make_active=False, make_default=True)
+    stream.send_blueprint(diagnosis_blueprint(exhibit), make_active=True, make_default=True)
     stream.send_recording_name(f"diagnosis: {verdict.verdict.value}")
     page = rr.TextDocument(_account(verdict), media_type=rr.MediaType.MARKDOWN)
     stream.log("verdict", page, static=True)

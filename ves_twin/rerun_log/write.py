@@ -67,7 +67,8 @@ def _write(recording: Recording, path: Path) -> None:
     blueprint = blueprint_of(frozenset(s.entity for s in series))
     # the library's own file writer can wait for ever on a full disk; a .rrd is as large as its rows
     content = stream.binary_stream()
-    stream.send_blueprint(blueprint, make_active=False, make_default=True)
+    # a default alone is not taken up where the file comes over the network: `view --web`
+    stream.send_blueprint(blueprint, make_active=True, make_default=True)
     stream.send_recording_name(f"{name}, seed {recording.info.seed}")
     stream.log("/", rr.ViewCoordinates.RIGHT_HAND_Z_UP, static=True)
     page = rr.TextDocument(account(recording, rig.note), media_type=rr.MediaType.MARKDOWN)
