@@ -9,7 +9,8 @@ from ves_twin.benches.ves2 import DRIVE
 from ves_twin.cli.main import main
 from ves_twin.diagnosis.forward import Programme
 from ves_twin.errors import FileAccessError, VesTwinError
-from ves_twin.recording.files import load_recording
+from ves_twin.recording.files import load_recording, save_recording
+from ves_twin.scenario.setpoint_file import read_setpoints
 from ves_twin.simulator.replay import replay_scenario
 
 CHANGES = {
@@ -75,6 +76,13 @@ def test_another_rate_is_followed_straight_between_the_rows(folder, first):
     slow = vt.simulate(vt.Scenario.load(str(folder / SCENARIO), changes))
     there = np.interp(slow.time, first.time, first["leg.command"][:, 0])
     assert np.abs(slow["leg.command"][:, 0] - there).max() < 1e-5
+
+
+def test_a_recording_is_a_file_of_set_points_itself(first, tmp_path):
+    save_recording(first, tmp_path / "r.parquet")
+    given = read_setpoints(str(tmp_path / "r.parquet"))
+    np.testing.assert_array_equal(given.legs, first["leg.command"])
+    np.testing.assert_array_equal(given.arm, first["arm.command"])
 
 
 def test_a_folder_that_cannot_be_written_gives_one_line(first, plant, tmp_path):

@@ -4,11 +4,13 @@ import json
 
 import numpy as np
 import pytest
+from scipy.optimize import brentq
 from toy import CAUSES, Toy, programme, record
 
 from ves_twin.cli.plan_text import plan_text
 from ves_twin.diagnosis.diagnose import diagnose
-from ves_twin.diagnosis.forward import Programme
+from ves_twin.diagnosis.forward import Hypothesis, Programme
+from ves_twin.diagnosis.lookalikes import _end
 from ves_twin.diagnosis.plan import plan_recording
 from ves_twin.diagnosis.settings import Settings
 from ves_twin.diagnosis.verdict import Kind
@@ -98,6 +100,35 @@ def test_same_shapes_are_told_apart_at_no_size(settings):
         ("late@plant", "lag@plant", None),
     }
     assert "lag at plant for late at plant, at any size" in plan_text(plan)
+
+
+def test_below_the_banks_smallest_size_the_models_doubt_falls_too():
+    """Left and doubt are both squares of the size: the size where left overtakes the rest, by bisection."""
+    rest, doubt, odds = 1e6, 4e2, 9.2  # of a size of one
+
+    def clear(size):
+        return np.sqrt(rest) * size - 0.5 - np.sqrt(0.25 + odds + doubt * size**2)
+
+    found = _end(
+        np.array([1.0, 1.5]), rest * np.array([1.0, 2.25]), doubt * np.array([1.0, 2.25]), odds
+    )
+    assert found == pytest.approx(brentq(clear, 1e-4, 1.0), rel=1e-6)
+
+
+class Loud(Toy):
+    """Friction comes in sizes of hundreds of sigma alone."""
+
+    identity = "loud"
+
+    @property
+    def hypotheses(self):
+        rest = [h for h in super().hypotheses if h.effect != "friction"]
+        return (*rest, Hypothesis("friction", "plant", ("friction.size",), (0.4,), (1.0,)))
+
+
+def test_a_cause_that_is_always_loud_looks_like_no_other(settings):
+    plan = plan_recording(Loud(), programme(), quick=True, settings=settings)
+    assert not [pair for pair in plan.lookalikes if pair.cause == "friction@plant"]
 
 
 def test_standing_still_says_nothing_about_what_moves(settings):

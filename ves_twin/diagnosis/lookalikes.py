@@ -65,15 +65,14 @@ def lookalikes(
             continue
         sizes = np.array([bank.sizes[k][0] for k in rows])
         power = screen.power[rows]
-        needed = 2.0 * np.log(odds) + model_error**2 * power
-        goal = MARGIN + np.sqrt(MARGIN**2 + needed)
+        least_odds = 2.0 * float(np.log(odds))
         unit = _unit(screen, i)
         for j, other in enumerate(bank.hypotheses):
             theirs = bank.entries(j)
             if j == i or not len(theirs):
                 continue
-            apart = np.sqrt(np.maximum(_left(screen, rows, theirs), 0.0)) / goal
-            beyond = _beyond(sizes, apart)
+            left = np.maximum(_left(screen, rows, theirs), 0.0)
+            beyond = _beyond(sizes, left, model_error**2 * power, least_odds)
             if beyond is None or beyond > CLEAR * least:
                 found.append(Lookalike(cause.label, other.label, beyond, unit, cause.largest[0]))
     return found
@@ -86,15 +85,32 @@ def _left(screen: Screen, rows: IntArray, theirs: IntArray) -> FloatArray:
     return np.asarray(screen.power[rows] - np.max(2.0 * a * match - a**2 * power, axis=1))
 
 
-def _beyond(sizes: FloatArray, apart: FloatArray) -> float | None:
-    """Size from which it is told in every direction; None if one is never told."""
+def _beyond(sizes: FloatArray, left: FloatArray, doubt: FloatArray, odds: float) -> float | None:
+    """Size from which it is told in every direction; None if one is never told.
+
+    Args:
+        sizes: of the bank's entries (k,).
+        left: what the other cause leaves of each, d^2 (k,).
+        doubt: chi^2 that the model of each may be wrong by (k,).
+        odds: chi^2 that a rival must be behind.
+    """
     ends = [
-        crossing(np.abs(sizes[sizes * sign > 0]), apart[sizes * sign > 0], 1.0)
+        _end(np.abs(sizes[sizes * sign > 0]), left[sizes * sign > 0], doubt[sizes * sign > 0], odds)
         for sign in (-1, 1)
         if np.any(sizes * sign > 0)
     ]
     known = [end for end in ends if end is not None]
     return max(known) if len(known) == len(ends) else None
+
+
+def _end(sizes: FloatArray, left: FloatArray, doubt: FloatArray, odds: float) -> float | None:
+    goal = MARGIN + np.sqrt(MARGIN**2 + odds + doubt)
+    first = int(np.argmin(sizes))
+    if np.sqrt(left[first]) < goal[first]:
+        return crossing(sizes, np.sqrt(left) / goal, 1.0)
+    # below the smallest entry both fall with the square of the size: the doubt as well as the rest
+    rest, root = float(left[first] - doubt[first]), MARGIN * float(np.sqrt(left[first]))
+    return float(sizes[first] * (root + np.sqrt(root**2 + rest * odds)) / rest)
 
 
 def _unit(screen: Screen, hypothesis: int) -> str:

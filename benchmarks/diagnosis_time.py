@@ -1,0 +1,155 @@
+"""Time of `compare` and of diagnoses of 20 s of data, in processor and in wall seconds.
+
+    python benchmarks/diagnosis_time.py            # run by `make bench`: compare, pendulum
+    python benchmarks/diagnosis_time.py --ves2     # VES II in `fast`, too: half an hour and more
+
+Cold has no bank of the programme and no thresholds; warm has both. Recordings are those of the
+blind generators, so that model and data differ by more than what is hidden. "asked" is this
+project's own aim.
+"""
+
+from __future__ import annotations
+
+import argparse
+import os
+import resource
+import sys
+import tempfile
+import time
+from collections.abc import Callable
+from functools import partial
+from pathlib import Path
+
+import numpy as np
+
+import ves_twin as vt
+from ves_twin.benches.diagnose_rig import diagnose_rig
+from ves_twin.benches.pendulum import Pendulum
+from ves_twin.blind import pendulum as generator
+from ves_twin.blind import rig as rig_generator
+from ves_twin.blind.bench import BlindRig
+from ves_twin.blind.pendulum import BlindPendulum
+from ves_twin.blind.rig import BlindVes2
+from ves_twin.comparison.compare import Named, compare
+from ves_twin.comparison.report import comparison_page
+from ves_twin.diagnosis.diagnose import diagnose
+from ves_twin.diagnosis.settings import Settings
+from ves_twin.diagnosis.verdict import Verdict
+from ves_twin.plant.plant import Plant
+
+SECONDS = 20.0
+
+PENDULUM = {
+    "nothing": BlindRig(),
+    "one cause": BlindRig({"joint.friction": 0.008}),
+    "two causes": BlindRig({"joint.friction": 0.008, "encoder.bias": 0.02}),
+    "outside the library": BlindRig({}, "quadratic_drag", 0.016),
+}
+VES2 = {
+    "nothing": BlindRig(),
+    "one cause": BlindRig({"valve_null@leg.3:null": 0.02}),
+}
+ASKED = {
+    "compare": "15",
+    "nothing, warm": "5",
+    "one cause, warm": "120",
+    "one cause, cold": "900",
+    "nothing, cold": "900",
+    "two causes, warm": "600",
+    "outside the library, warm": "600",
+}
+
+
+def used() -> float:
+    """Processor seconds of this process and of those that it has waited for."""
+    who = (resource.RUSAGE_SELF, resource.RUSAGE_CHILDREN)
+    return sum(r.ru_utime + r.ru_stime for r in map(resource.getrusage, who))
+
+
+def timed(what: str, case: str, work: Callable[[], str]) -> None:
+    """One row of the table."""
+    begin, before = time.perf_counter(), used()
+    said = work()
+    wall, cpu = time.perf_counter() - begin, used() - before
+    asked = f"< {ASKED[case]}" if case in ASKED else ""
+    print(f"{what:<12}{case:<28}{cpu:9.1f}{wall:9.1f}{asked:>9}   {said}", flush=True)
+
+
+def drawn(bench: BlindPendulum | BlindVes2, rig: BlindRig) -> BlindRig:
+    """A rig within its tolerances with what is hidden."""
+    values = bench.commissioned(np.random.default_rng(3))
+    nominal = {p.name: p.nominal for p in bench.forward.parameters}
+    for name, size in rig.values.items():
+        values[name] = values.get(name, nominal[name]) + size
+    return BlindRig(values, rig.outside, rig.size)
+
+
+def said(verdict: Verdict) -> str:
+    names = " + ".join(f"{c.effect}@{c.target}" for c in verdict.causes)
+    return f"{verdict.verdict.value} {names}".strip()
+
+
+def compare_rows() -> None:
+    sticky = {"run.duration": SECONDS, "effects.coulomb_friction.leg.3.level": 100.0}
+    recording = vt.simulate(vt.Scenario.load("identify_slow", sticky), seed=7)
+
+    def work() -> str:
+        page = comparison_page(compare([Named("sticky", recording)]))
+        return f"page of {len(page) / 1e6:.1f} MB"
+
+    timed("VES II", "compare", work)
+
+
+def pendulum_rows(folder: Path) -> None:
+    generator.SECONDS = SECONDS
+    # over 20 s the generator's disturbance is found as what it is: something that no model has
+    generator.DISTURBANCE = 0.0
+    generator.asked_torque = partial(generator.asked_torque, amplitude=0.15)  # not over the top
+    bench, plant = BlindPendulum(), Pendulum.with_command_delay()
+    settings = Settings(cache=folder / "pendulum", workers=os.cpu_count() or 1)
+    records = {
+        name: bench.record(drawn(bench, rig), "train", np.random.default_rng(5))
+        for name, rig in PENDULUM.items()
+    }
+    rows = [("nothing, cold", "nothing"), *((f"{name}, warm", name) for name in records)]
+    for case, name in rows:
+        timed(
+            "pendulum", case, lambda r=records[name]: said(diagnose(plant, [r], settings=settings))
+        )
+
+
+def ves2_rows(folder: Path) -> None:
+    rig_generator.SECONDS = SECONDS
+    bench, plant = BlindVes2("ves2_pressure_fast"), Plant.load("ves2_pressure_fast")
+    settings = Settings(cache=folder / "ves2", workers=os.cpu_count() or 1)
+    records = {
+        name: bench.record(drawn(bench, rig), "train", np.random.default_rng(5))
+        for name, rig in VES2.items()
+    }
+    rows = [("nothing, cold", "nothing"), *((f"{name}, warm", name) for name in records)]
+    for case, name in rows:
+        timed(
+            "ves2_fast",
+            case,
+            lambda r=records[name]: said(diagnose_rig([r], plant, settings=settings).verdict),
+        )
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser()
+    parser.add_argument("--ves2", action="store_true", help="VES II in `fast`, too")
+    options = parser.parse_args()
+    vt.simulate(vt.Scenario.load("identify_slow", {"run.duration": 0.1}))  # compiles
+    load = os.getloadavg()[0]
+    print(f"{SECONDS:g} s of data, {os.cpu_count()} cores, load {load:.1f} before it began")
+    print(f"{'plant':<12}{'case':<28}{'cpu [s]':>9}{'wall [s]':>9}{'asked':>9}   said")
+    with tempfile.TemporaryDirectory() as name:
+        folder = Path(name)
+        compare_rows()
+        pendulum_rows(folder)
+        if options.ves2:
+            ves2_rows(folder)
+
+
+if __name__ == "__main__":
+    sys.exit(main())
