@@ -12,7 +12,6 @@ from ves_twin.control.belief import Belief
 from ves_twin.control.readings import Readings
 from ves_twin.gravity_model.learned import LearnedGravity
 from ves_twin.gravity_model.quick_gravity import QuickGravity
-from ves_twin.kinematics.wrenches import top_to_sensor
 from ves_twin.types import FloatArray
 
 
@@ -107,8 +106,7 @@ class ModelCompensation(GravityCompensation):
     def wrench(self, time: float, readings: Readings) -> FloatArray:
         """Predicted gravity wrench at the measured joints and platform pose."""
         self._pose = self._geometry.pose(readings.leg_length, self._pose)
-        in_top = self._model.wrench_in_top(readings.arm_q, self._pose[3:])
-        return np.asarray(top_to_sensor(in_top, self._position))
+        return self._model.wrench_in_sensor(readings.arm_q, self._pose[3:], self._position)
 
     def snapshot(self) -> object:
         """The pose from which the next solution starts (6,)."""

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ves_twin.compiled import compiled
 from ves_twin.control.emulated import EmulatedSystem
 from ves_twin.envs.channels import Channel, Channels
 from ves_twin.envs.commanded_arm import CommandedArm
@@ -93,27 +94,28 @@ class ArmEnv(RigEnv[CommandedArm], abc.ABC):
     def start(self, goal: Any) -> None:
         """Forget the commands of the episode before."""
         emulated = self.sim.scenario.platform.emulated
-        self._base = EmulatedSystem.load(str(emulated))
+        self._stiffness = EmulatedSystem.load(str(emulated)).stiffness
         self._home = np.array(self.sim.scenario.platform.home)
         self._integral, self._peak, self._energy = 0.0, 0.0, 0.0
         self.hand.hold()
-        self._energy = self._strain(true_state(self.sim.rig)[0])
+        self._energy = self._energies(true_state(self.sim.rig)[0][None])[0]
 
     def command(self, action: FloatArray, span: float) -> None:
         """Joint rates [rad/s] (3,) to reach at the end of the step."""
         cycle = span / CYCLES
         self.hand.command(action, self.sim.time + cycle, span)
 
-    def strain(self, pose: FloatArray) -> float:
-        """Strain energy in the emulated base at a true pose [J], and its account."""
-        self._energy = self._strain(pose)
-        self._integral += self._energy * self._cycle
-        self._peak = max(self._peak, self._energy)
-        return self._energy
+    def strain(self, poses: FloatArray) -> float:
+        """Sum of the strain energies [J] in the emulated base at true poses (k, 6), accounted."""
+        energies = self._energies(poses)
+        total = sum(energies)
+        self._energy = energies[-1]
+        self._integral += total * self._cycle
+        self._peak = max(self._peak, *energies)
+        return total
 
-    def _strain(self, pose: FloatArray) -> float:
-        y = pose - self._home
-        return float(0.5 * (y @ self._base.stiffness @ y))
+    def _energies(self, poses: FloatArray) -> list[float]:
+        return list(map(float, strain_energies(poses, self._home, self._stiffness)))
 
     def readings(self, board: Board) -> dict[str, FloatArray]:
         """Measurements and set-points."""
@@ -139,6 +141,18 @@ class ArmEnv(RigEnv[CommandedArm], abc.ABC):
     def prior(self) -> StateSpace:
         """Base behind the legs' lag and arm behind its servo, linear about the start."""
         return arm_prior(self._scenario, RATE)
+
+
+@compiled
+def strain_energies(poses: FloatArray, home: FloatArray, stiffness: FloatArray) -> FloatArray:
+    """1/2 Y' K Y [J] (k,) of a base at poses (k, 6) that has no strain at home (6,)."""
+    energies = np.zeros(len(poses))
+    for k in range(len(poses)):
+        y = poses[k] - home
+        for i in range(6):
+            for j in range(6):
+                energies[k] += 0.5 * y[i] * stiffness[i, j] * y[j]
+    return energies
 
 
 def time_left(scenario: Scenario) -> Channel:

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ves_twin.compiled import compiled
 from ves_twin.types import FloatArray
 
 
@@ -81,11 +82,8 @@ class Channels:
 
     def vector(self, values: Mapping[str, FloatArray]) -> FloatArray:
         """The columns (n,) of values by name, each held within its bounds."""
-        row = np.empty(self.width)
-        for name, columns in self.slices.items():
-            row[columns] = values[name]
-        np.maximum(row, self.low, out=row)
-        np.minimum(row, self.high, out=row)
+        row = np.concatenate([values[name] for name in self.slices])
+        _hold(row, self.low, self.high)
         return row
 
     def split(self, vector: FloatArray) -> dict[str, FloatArray]:
@@ -103,3 +101,13 @@ class Channels:
             low, high = ends
             rows.append(f"| {where} | `{c.name}` | {unit} | {low} | {high} | {c.meaning} |")
         return "\n".join(rows)
+
+
+@compiled
+def _hold(row: FloatArray, low: FloatArray, high: FloatArray) -> None:
+    """Hold a row within its bounds; what is no number stays none."""
+    for i in range(len(row)):
+        if row[i] < low[i]:
+            row[i] = low[i]
+        elif row[i] > high[i]:
+            row[i] = high[i]

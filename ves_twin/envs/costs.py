@@ -74,8 +74,10 @@ class Costs:
 
     def costs(self) -> dict[str, float]:
         """Cost by name: 0 up to FREE_SHARE of a limit, 1 at the limit."""
-        beyond = np.maximum(self.used - FREE_SHARE, 0.0) / (1.0 - FREE_SHARE)
-        return {name: float(cost) for name, cost in zip(self.NAMES, beyond, strict=True)}
+        return {
+            name: max(used - FREE_SHARE, 0.0) / (1.0 - FREE_SHARE)
+            for name, used in zip(self.NAMES, self.used.tolist(), strict=True)
+        }
 
 
 @compiled

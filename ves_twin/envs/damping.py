@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import ClassVar, final
 
 import numpy as np
@@ -49,6 +50,6 @@ class VibrationDamping(ArmEnv):
         platform = scenario.platform.model_copy(update={"start": pose})
         return scenario.model_copy(update={"platform": platform}), None
 
-    def loss(self, pose: FloatArray, arm_q: FloatArray, time: float) -> float:
-        """Strain energy [J]."""
-        return self.strain(pose)
+    def loss(self, poses: FloatArray, arm_q: FloatArray, times: Sequence[float]) -> float:
+        """Strain energies [J]."""
+        return self.strain(poses)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+from collections.abc import Sequence
 from typing import ClassVar, final
 
 import numpy as np
@@ -62,10 +64,11 @@ class VibrationFreeReach(ArmEnv):
         super().start(goal)
         self._goal, self._away = goal, 0.0
 
-    def loss(self, pose: FloatArray, arm_q: FloatArray, time: float) -> float:
-        """Energy and distance."""
-        self._away = float(np.linalg.norm(arm_q - self._goal))
-        return self.strain(pose) / ENERGY + self._away
+    def loss(self, poses: FloatArray, arm_q: FloatArray, times: Sequence[float]) -> float:
+        """Energies and distances."""
+        away = [math.dist(angles, self._goal) for angles in arm_q.tolist()]
+        self._away = away[-1]
+        return self.strain(poses) / ENERGY + sum(away)
 
     def readings(self, board: Board) -> dict[str, FloatArray]:
         """Measurements, set-points, goal."""

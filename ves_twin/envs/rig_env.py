@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import abc
-from collections.abc import Mapping
+import math
+from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any, ClassVar, Generic
 
 import gymnasium as gym
@@ -15,7 +16,7 @@ from ves_twin.envs.costs import Costs, Limits
 from ves_twin.envs.picture import Picture
 from ves_twin.envs.policy import Briefing
 from ves_twin.envs.settled_rigs import Hand, SettledRig, SettledRigs
-from ves_twin.envs.true_state import true_state
+from ves_twin.envs.true_state import Place, read_state, state_place, true_state
 from ves_twin.errors import InvalidInputError, UnknownNameError
 from ves_twin.plant.plant import Plant
 from ves_twin.scenario.schema import Scenario
@@ -67,6 +68,9 @@ class RigEnv(gym.Env[FloatArray, FloatArray], abc.ABC, Generic[Hand]):
 
     observations: Channels
     actions: Channels
+    _costs: Costs
+    _place: Place
+    _readings: tuple[FloatArray, FloatArray]
 
     def __init__(
         self,
@@ -117,8 +121,14 @@ class RigEnv(gym.Env[FloatArray, FloatArray], abc.ABC, Generic[Hand]):
         """Give an action, in the units of `actions`, for the step that begins now."""
 
     @abc.abstractmethod
-    def loss(self, pose: FloatArray, arm_q: FloatArray, time: float) -> float:
-        """Loss per second at a true pose, true joint angles and a time [s]."""
+    def loss(self, poses: FloatArray, arm_q: FloatArray, times: Sequence[float]) -> float:
+        """Sum of the losses per second at the ends of a step's cycles.
+
+        Args:
+            poses: true poses [m, rad] (k, 6).
+            arm_q: true joint angles [rad] (k, 3).
+            times: when [s] (k,).
+        """
 
     @abc.abstractmethod
     def readings(self, board: Board) -> dict[str, FloatArray]:
@@ -217,19 +227,14 @@ class RigEnv(gym.Env[FloatArray, FloatArray], abc.ABC, Generic[Hand]):
         if self._over or self._rig is None:
             raise InvalidInputError("step", "an episode that is over", "reset before it")
         given = np.asarray(action, float)
-        if given.shape != self.action_space.shape or not np.all(np.isfinite(given)):
+        shares = given.tolist()
+        if given.shape != self.action_space.shape or not all(map(math.isfinite, shares)):
             what = f"{self.actions.width} finite numbers from -1 to 1"
             raise InvalidInputError("action", np.asarray(action).tolist(), what)
-        inside = np.minimum(np.maximum(given, -1.0), 1.0)
+        inside = [min(max(share, -1.0), 1.0) for share in shares]
         sim = self._rig.sim
-        self.command(inside * self.actions.high, self._cycle * CYCLES)
-        lost = 0.0
-        for _ in range(CYCLES):
-            sim.run_to(sim.rig.tick + sim.rig.clock.admittance)
-            lost += self.loss(*true_state(sim.rig), sim.time) * self._cycle
-            self._costs.update(sim.rig.board["leg.length"], sim.rig.board["sensor.wrench"])
-            if sim.outcome is not None:
-                break
+        self.command(np.array(inside) * self.actions.high, self._cycle * CYCLES)
+        lost = self._run_cycles(sim) * self._cycle
         self._steps += 1
         terminated = sim.outcome is not None
         if terminated:
@@ -241,10 +246,25 @@ class RigEnv(gym.Env[FloatArray, FloatArray], abc.ABC, Generic[Hand]):
         self._return -= lost
         if self.render_mode == "human":
             self.render()
-        info = self._info(clipped=not np.array_equal(inside, given))
+        info = self._info(clipped=inside != shares)
         if self._over:
             info["metrics"] = {"return": self._return, **self.metrics()}
         return self._observe(), -lost, terminated, truncated, info
+
+    def _run_cycles(self, sim: Simulator) -> float:
+        """Run the cycles of a step; gives their losses, and keeps the state of the last one."""
+        poses, arm_q, times = np.empty((CYCLES, 6)), np.empty((CYCLES, 3)), []
+        lengths, wrench = self._readings
+        for k in range(CYCLES):
+            sim.run_to(sim.rig.tick + sim.rig.clock.admittance)
+            read_state(*self._place, poses[k], arm_q[k])
+            times.append(sim.time)
+            self._costs.update(lengths, wrench)
+            if sim.outcome is not None:
+                break
+        count = len(times)
+        self._state = poses[count - 1], arm_q[count - 1]
+        return self.loss(poses[:count], arm_q[:count], times)
 
     def render(self) -> Any:
         """A picture (480, 640, 3), or the window, as the render mode asks.
@@ -281,9 +301,11 @@ class RigEnv(gym.Env[FloatArray, FloatArray], abc.ABC, Generic[Hand]):
             travel=number("leg.stroke") / 2.0 - number("leg.margin"),
             wrench=belief.parameters.array("sensor.range"),
         )
+        self._place, self._state = state_place(sim.rig), true_state(sim.rig)
+        self._readings = sim.rig.board["leg.length"], sim.rig.board["sensor.wrench"]
         self._geometry = belief.geometry
         self._costs = Costs(limits, self._cycle)
-        self._costs.begin(sim.rig.board["sensor.wrench"][:3])
+        self._costs.begin(self._readings[1][:3])
 
     @property
     def left(self) -> float:
@@ -304,7 +326,7 @@ class RigEnv(gym.Env[FloatArray, FloatArray], abc.ABC, Generic[Hand]):
     def _info(self, clipped: bool) -> dict[str, Any]:
         sim = self.sim
         costs = self._costs.costs()
-        pose, arm_q = true_state(sim.rig)
+        pose, arm_q = self._state
         info: dict[str, Any] = {
             "time": sim.time,
             "cost": sum(costs.values()),

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import TYPE_CHECKING, ClassVar, final
 
 import numpy as np
@@ -129,13 +130,14 @@ class PlatformTracking(RigEnv[CommandedLegs]):
         """Offsets [m] (6,) to reach at the end of the step."""
         self.hand.command(action, self.sim.time, span)
 
-    def loss(self, pose: FloatArray, arm_q: FloatArray, time: float) -> float:
-        """Distance to the reference [mm]."""
-        self._away = self._distance(pose, time)
-        self._square += self._away**2
-        self._peak = max(self._peak, self._away)
-        self._cycles += 1
-        return self._away
+    def loss(self, poses: FloatArray, arm_q: FloatArray, times: Sequence[float]) -> float:
+        """Distances to the reference [mm]."""
+        away = [self._distance(pose, time) for pose, time in zip(poses, times, strict=True)]
+        self._away = away[-1]
+        self._square += sum(distance**2 for distance in away)
+        self._peak = max(self._peak, *away)
+        self._cycles += len(away)
+        return sum(away)
 
     def _distance(self, pose: FloatArray, time: float) -> float:
         error = pose - self._motion.pose(time)

@@ -8,6 +8,7 @@ import numpy as np
 
 from ves_twin.compiled import compiled
 from ves_twin.gravity_model.gravity_model import GravityModel
+from ves_twin.kinematics.wrenches import top_to_sensor
 from ves_twin.types import FloatArray
 
 
@@ -53,11 +54,26 @@ class QuickGravity:
 
         Source: thesis eqs 3.3 to 3.9, errata E-9.
         """
-        return _wrench(self.rows, self.base, self.links, self.total_mass, self.gravity, q, angles)
+        return _in_top(self.rows, self.base, self.links, self.total_mass, self.gravity, q, angles)
+
+    def wrench_in_sensor(
+        self, q: FloatArray, angles: FloatArray, position: FloatArray
+    ) -> FloatArray:
+        """The same in s about its origin, which lies at a position in t [m] (3,)."""
+        numbers = self.rows, self.base, self.links, self.total_mass, self.gravity
+        return _in_sensor(*numbers, q, angles, position)
 
 
 @compiled
-def _wrench(
+def _in_sensor(
+    rows: FloatArray, base: FloatArray, links: FloatArray, total_mass: float, gravity: float,
+    q: FloatArray, angles: FloatArray, position: FloatArray,
+) -> FloatArray:  # fmt: skip
+    return top_to_sensor(_in_top(rows, base, links, total_mass, gravity, q, angles), position)
+
+
+@compiled
+def _in_top(
     rows: FloatArray,
     base: FloatArray,
     links: FloatArray,

@@ -10,6 +10,10 @@ from ves_twin.errors import UnreachableError
 from ves_twin.types import FloatArray
 
 
+ROUND_OFF = 1e-12
+"""By how much squares of lengths [m^2] and cosines of an arm at its limits may be beyond them."""
+
+
 @dataclass(frozen=True)
 class Puma560:
     """PUMA 560 to the end of the forearm, base in the platform top frame t.
@@ -104,15 +108,15 @@ class Puma560:
         offset = self.d2 + self.d3
         height = z - self.d0 - self.d1
         plane = x * x + y * y - offset * offset
-        if not plane >= 0:
+        if not plane >= -ROUND_OFF:  # an arm that stands upright has its tip at the offset
             raise UnreachableError(
                 f"arm tip {[x, y, z]} m is {np.hypot(x, y):.3f} m from the joint-1 axis,"
                 f" nearer than the arm offset {abs(offset):.3f} m"
             )
-        r = shoulder * np.sqrt(plane)
+        r = shoulder * np.sqrt(max(plane, 0.0))
         reach = r * r + height * height
         cosine = (reach - self.a2**2 - self.a3**2) / (2 * self.a2 * self.a3)
-        if not abs(cosine) <= 1 + 1e-12:  # round-off of a stretched arm
+        if not abs(cosine) <= 1 + ROUND_OFF:  # of a stretched arm
             raise UnreachableError(
                 f"arm tip {[x, y, z]} m is {np.sqrt(reach):.3f} m from the shoulder, reach is"
                 f" {abs(self.a2 - self.a3):.3f} to {self.a2 + self.a3:.3f} m"

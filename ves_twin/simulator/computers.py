@@ -35,6 +35,12 @@ class Computers:
 
     Read forces, take the gravity estimate from shared memory, controller, inverse kinematics,
     safety, set-points to legs and arm (thesis 2.4.2).
+
+    Attributes:
+        controller: decides the platform's pose.
+        gravity: estimates the gravity wrench.
+        points: the arm's commands about this cycle, live [rad] (4, 3).
+        readings: what controller and compensation see.
     """
 
     def __init__(
@@ -58,7 +64,7 @@ class Computers:
         self._reach = (g.base, g.top, g.home, g.lengths(np.zeros(6)), belief.leg_travel)
         self._shared: deque[FloatArray] = deque(maxlen=gravity_age + 1)
         self._state, self._board = state, board.block
-        self._points = state["servo"]["points"][0]
+        self.points: FloatArray = state["servo"]["points"][0]
         self._held_torque = state["servo"]["feedforward"][0]
         self._estimate = board["gravity.estimate"]
         self.readings = Readings(
@@ -116,7 +122,7 @@ class Computers:
     def start_arm(self, time: float) -> None:
         """Fill the spline's buffer for the cycle that ended at a time."""
         for i in range(4):
-            self._points[i] = self._arm.q(time + (i - 2) * self._period)
+            self.points[i] = self._arm.q(time + (i - 2) * self._period)
 
     def snapshot(self) -> ComputersSnapshot:
         """A copy of everything that the next cycle depends on."""

@@ -204,8 +204,8 @@ def run_ticks(
         state: STATE (1,).
         board: signals of this instant (1,).
         row: the same as plain numbers.
-        fast_normal: standard normal numbers of these ticks (FAST_CHANNELS, count).
-        slow_normal: a number per SLOW ticks, from that of `start` on (SLOW_CHANNELS, n).
+        fast_normal: standard normal numbers of these ticks (count, FAST_CHANNELS).
+        slow_normal: a number per SLOW ticks, from that of `start` on (n, SLOW_CHANNELS).
         log: buffer of rows (capacity, width).
         logged: rows in the buffer already.
 
@@ -216,7 +216,7 @@ def run_ticks(
     for n in range(count):
         tick = start + n
         time = tick * p.clock.tick
-        fast, slow = fast_normal[:, n], slow_normal[:, (start % SLOW + n) // SLOW]
+        fast, slow = fast_normal[n], slow_normal[(start % SLOW + n) // SLOW]
         if tick % SLOW == 0:
             wander_on(p.sensor, s.sensor, slow[WANDER:])
         _read_and_command(p, s, b, tick, qpos, qvel, slides, ctrl, fast, slow)

@@ -32,8 +32,8 @@ class NoiseStreams:
         self._seed = seed
         self._enabled = enabled
         self._block = -1
-        self._fast = np.zeros((FAST_CHANNELS, 2 * BLOCK), np.float32)
-        self._slow = np.zeros((SLOW_CHANNELS, 2 * BLOCK // SLOW), np.float32)
+        self._fast = np.zeros((2 * BLOCK, FAST_CHANNELS), np.float32)
+        self._slow = np.zeros((2 * BLOCK // SLOW, SLOW_CHANNELS), np.float32)
         self._thread = ThreadPoolExecutor(max_workers=1)
         self._ahead: Future[_Drawn] | None = None
 
@@ -45,47 +45,45 @@ class NoiseStreams:
             count: how many.
 
         Returns:
-            Standard normal numbers of the fast channels (FAST_CHANNELS, count), and of the slow
-            ones from the number that holds at the first tick on (SLOW_CHANNELS, n); zeros if
-            noise is off.
+            Standard normal numbers of the fast channels (count, FAST_CHANNELS), and of the slow
+            ones from the number that holds at the first tick on (n, SLOW_CHANNELS); zeros if
+            noise is off. A tick's numbers lie side by side.
         """
         if not self._enabled:
-            return self._fast[:, :count], self._slow
+            return self._fast[:count], self._slow
         block, offset = divmod(tick + ORIGIN, BLOCK)
         if block != self._block:
             self._fill(block)
-        return self._fast[:, offset : offset + count], self._slow[:, offset // SLOW :]
+        return self._fast[offset : offset + count], self._slow[offset // SLOW :]
 
     def _fill(self, block: int) -> None:
         """Have this block and the next one in the arrays, and the one after them under way."""
         half = BLOCK // SLOW
         if block == self._block + 1 and self._ahead is not None:
-            self._fast[:, :BLOCK] = self._fast[:, BLOCK:]
-            self._slow[:, :half] = self._slow[:, half:]
+            self._fast[:BLOCK] = self._fast[BLOCK:]
+            self._slow[:half] = self._slow[half:]
             following = self._ahead.result()
         else:
             first = _draw(self._seed, block)
-            self._fast[:, :BLOCK], self._slow[:, :half] = first.fast, first.slow
+            self._fast[:BLOCK], self._slow[:half] = first.fast, first.slow
             following = _draw(self._seed, block + 1)
-        self._fast[:, BLOCK:], self._slow[:, half:] = following.fast, following.slow
+        self._fast[BLOCK:], self._slow[half:] = following.fast, following.slow
         self._ahead = self._thread.submit(_draw, self._seed, block + 2)
         self._block = block
 
 
 @dataclass(frozen=True)
 class _Drawn:
-    """One block of all channels."""
+    """One block of all channels, a row a number of each."""
 
     fast: SingleArray
     slow: SingleArray
 
 
 def _draw(seed: int, block: int) -> _Drawn:
-    drawn = _Drawn(
-        np.empty((FAST_CHANNELS, BLOCK), np.float32),
-        np.empty((SLOW_CHANNELS, BLOCK // SLOW), np.float32),
-    )
-    for channel, row in enumerate([*drawn.fast, *drawn.slow]):
+    fast = np.empty((FAST_CHANNELS, BLOCK), np.float32)
+    slow = np.empty((SLOW_CHANNELS, BLOCK // SLOW), np.float32)
+    for channel, row in enumerate([*fast, *slow]):
         bits = np.random.Philox(key=[seed, channel], counter=[0, block, 0, 0])
         np.random.Generator(bits).standard_normal(dtype=np.float32, out=row)
-    return drawn
+    return _Drawn(fast.T, slow.T)

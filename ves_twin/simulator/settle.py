@@ -138,7 +138,7 @@ def _start_states(rig: Rig, pose: FloatArray, q: FloatArray, computers: Computer
     wrench = GravityTruth(rig.model, rig.data, layout).gravity_in_sensor()
     _, slow = rig.noise.window(rig.tick - SLOW, 1)
     _start_lines(s["late"], slide, wrench, s["current"], q)
-    start_at(p[0]["sensor"], s[0]["sensor"], wrench, slow[WANDER:, 0])
+    start_at(p[0]["sensor"], s[0]["sensor"], wrench, slow[0, WANDER:])
 
 
 def _start_lines(

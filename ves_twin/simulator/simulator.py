@@ -218,7 +218,7 @@ class Simulator:
         if why:
             self.end(*why)
             return False
-        self.recorder.begin_cycle(rig.tick, rig.state["servo"]["points"][0])
+        self.recorder.begin_cycle(rig.tick, self.computers.points)
         return True
 
     def _cycle(self, late: str | None) -> tuple[Outcome, str] | None:
