@@ -20,3 +20,10 @@ def test_an_error_survives_pickling(error):
     again = pickle.loads(pickle.dumps(error))
     assert type(again) is type(error)
     assert str(again) == str(error)
+
+
+def test_a_message_lists_no_more_names_than_fit_a_terminal():
+    few = str(UnknownNameError("signal", "zzz", ["a", "b"]))
+    many = str(UnknownNameError("signal", "zzz", [f"column.{k:03d}" for k in range(400)]))
+    assert few.endswith("known: a, b")
+    assert many.endswith("column.049, and 350 more")

@@ -5,6 +5,9 @@ from __future__ import annotations
 import difflib
 from collections.abc import Iterable
 
+MOST_NAMES = 50
+"""Names that a message lists; more would fill the terminal."""
+
 
 class VesTwinError(Exception):
     """Base of every error that a user can cause; its text is one clear line."""
@@ -33,7 +36,9 @@ class UnknownNameError(VesTwinError):
         names = sorted(known)
         name = name if len(name) < 80 else f"{name[:77]}..."
         near = difflib.get_close_matches(name, names, n=1, cutoff=0.5)
-        hint = f"did you mean '{near[0]}'?" if near else f"known: {', '.join(names) or 'none'}"
+        told = [*names[:MOST_NAMES], f"and {len(names) - MOST_NAMES} more"]
+        listed = ", ".join(told if len(names) > MOST_NAMES else names) or "none"
+        hint = f"did you mean '{near[0]}'?" if near else f"known: {listed}"
         super().__init__(f"unknown {kind} '{name}'; {hint}")
 
 

@@ -7,6 +7,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
+from tempfile import TemporaryDirectory, mkdtemp
 
 import numpy as np
 import pyarrow as pa
@@ -17,6 +18,9 @@ from ves_twin.comparison.tolerance import Tolerance
 from ves_twin.control.emulated import EmulatedSystem
 from ves_twin.gravity_model.calibration import GravityCalibration
 from ves_twin.gravity_model.learned import LearnedGravity
+from ves_twin.measured.import_log import import_log
+from ves_twin.measured.import_map import ImportMap
+from ves_twin.measured.open_log import open_log
 from ves_twin.procedures.registry import load_procedure
 from ves_twin.recording.files import load_recording, save_recording
 from ves_twin.recording.stream import RecordingStream
@@ -126,8 +130,6 @@ def _with_settings(path: Path) -> object:
 
 
 def _written(write: Callable[[Path], None], name: str) -> bytes:
-    from tempfile import TemporaryDirectory
-
     with TemporaryDirectory() as folder:
         write(Path(folder))
         return (Path(folder) / name).read_bytes()
@@ -162,6 +164,96 @@ TOLERANCE = b"""schema = 1
 [peak]
 "leg.length.3" = "2 mm"
 """
+
+MAP = b"""schema = 1
+rate = "50 Hz"
+gaps = "hold"
+
+[clock]
+column = "t [s]"
+repeats = "last"
+backward = "drop"
+
+[clocks.plc]
+column = "plc"
+unit = "ms"
+offset = "estimate"
+own = "seen [mm]"
+main = "L1 [mm]"
+search = 1.0
+keep = "hypothesis"
+
+[[channel]]
+from = "L1 [mm]"
+to = "leg.length.1"
+scale = 0.5
+offset = 500.0
+sign = -1
+way = "filter"
+
+[[channel]]
+from = "seen [mm]"
+to = "leg.length.2"
+clock = "plc"
+way = "linear"
+
+[[channel]]
+from = "i [mA]"
+to = "motor.current.2"
+
+[[channel]]
+from = "v1"
+to = "tool.speed.1"
+unit = "mm/s"
+frame = "tool"
+
+[[channel]]
+from = "v2"
+to = "tool.speed.2"
+unit = "mm/s"
+frame = "tool"
+
+[[channel]]
+from = "v3"
+to = "tool.speed.3"
+unit = "mm/s"
+frame = "tool"
+
+[signals."motor.current"]
+unit = "A"
+role = "measurement"
+axes = ["a", "b"]
+meaning = "drive"
+
+[signals."tool.speed"]
+unit = ["m/s", "m/s", "m/s"]
+frame = "tool"
+
+[frames.tool]
+axes = ["-y", "x", "z"]
+
+[window]
+start = 0.1
+stop = "2 s"
+"""
+
+
+@cache
+def _lab() -> Path:
+    """A lab file that the map fits; two recorders, the second with a clock in ms."""
+    t = np.arange(300) * 0.01
+    seen = np.sin(3.0 * t) + 0.3 * np.sin(7.0 * t)
+    columns = {"t [s]": t, "plc": 1e3 * t + 250.0, "L1 [mm]": 1e3 + seen, "seen [mm]": seen}
+    columns |= {"i [mA]": 100.0 * t, "v1": t, "v2": -t, "v3": 0.0 * t}
+    path = Path(mkdtemp()) / "lab.csv"
+    rows = (",".join(f"{v:.9g}" for v in row) for row in np.column_stack(list(columns.values())))
+    path.write_text("\n".join([",".join(columns), *rows]) + "\n")
+    return path
+
+
+def _read_map(path: Path) -> object:
+    return import_log(open_log(_lab()), ImportMap.load(path)).account.to_text()
+
 
 VARIES = b"""legs.gain=8,12.5
 legs.gain=8..20:5
@@ -215,11 +307,12 @@ def _read_ledger(path: Path) -> object:
 
 
 TARGETS = (
-    Target("scenario.toml", 0.26, lambda: _shipped("scenarios"), _read_scenario, run=_run_scenario),
-    Target("plant.toml", 0.20, _plants, _read_plant, run=_run_plant),
+    Target("scenario.toml", 0.22, lambda: _shipped("scenarios"), _read_scenario, run=_run_scenario),
+    Target("plant.toml", 0.16, _plants, _read_plant, run=_run_plant),
     Target("emulated.toml", 0.08, lambda: _shipped("models/emulated"), lambda p: EmulatedSystem.load(str(p))),
     Target("calibration.toml", 0.05, lambda: _shipped("models/gravity"), lambda p: GravityCalibration.load(str(p))),
     Target("experiment.toml", 0.05, lambda: [EXPERIMENT], Experiment.load),
+    Target("map.toml", 0.08, lambda: [MAP], _read_map),
     Target("tolerance.toml", 0.04, lambda: [TOLERANCE], Tolerance.load),
     Target("operator.csv", 0.03, _operator, lambda p: operator_motion(str(p), np.zeros(3))),
     Target("set.txt", 0.06, lambda: [SETS], _set),

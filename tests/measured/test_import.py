@@ -214,6 +214,17 @@ def test_a_rate_stands_in_for_a_clock_that_is_not_there(lab):
             "one of the rig's",
         ),
         (
+            CLOCK + channel("p [bar]", "supply.pressure") + '[signals."a, b"]\nunit = "m"\n',
+            "words with points",
+        ),
+        (
+            CLOCK
+            + channel("p [bar]", "lab.force.10000000000")
+            + '[signals."lab.force"]\nunit = "Pa"\n',
+            "unknown signal column",
+        ),
+        ('rate = "1 THz"\n' + CLOCK + channel("p [bar]", "supply.pressure"), "at most"),
+        (
             CLOCK + channel("p [bar]", "supply.pressure") + '[frames.a]\naxes = ["x", "y", "-z"]\n',
             "right-handed",
         ),

@@ -9,7 +9,6 @@ import numpy as np
 from ves_twin.errors import UnreachableError
 from ves_twin.types import FloatArray
 
-
 ROUND_OFF = 1e-12
 """By how much squares of lengths [m^2] and cosines of an arm at its limits may be beyond them."""
 

@@ -28,8 +28,8 @@ from ves_twin.units import to_unit
 JITTER = 0.02
 """Jitter of the steps [periods] from which on an import says what can be done about it."""
 
-FEWEST = 2
-"""Rows of a recording."""
+FEWEST, MOST = 2, 100_000_000
+"""Rows of a recording; more than the most are 0.8 GB a column."""
 
 
 @dataclass(frozen=True)
@@ -121,7 +121,11 @@ def _rows(aligned: Aligned, told: ImportMap, window: Window) -> tuple[FloatArray
         rows, step = line.time, line.period
     else:
         step = 1.0 / told.rate
-        count = int(np.floor((line.time[-1] - line.time[0]) / step + 1e-6)) + 1
+        asked = (line.time[-1] - line.time[0]) / step
+        if not asked < MOST:
+            came = f"{told.rate:g} Hz, {asked:.3g} rows"
+            raise InvalidInputError("rate", came, f"at most {MOST:,} rows")
+        count = int(np.floor(asked + 1e-6)) + 1
         rows = np.asarray(line.time[0] + np.arange(count) * step, np.float64)
     inside = rows[(rows >= window.start - 1e-9) & (rows < window.stop - 1e-9)]
     if len(inside) < FEWEST:

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+import re
 from enum import StrEnum
 from pathlib import Path
 from typing import Annotated, Self
 
 from pydantic import Field, ValidationError, field_validator, model_validator
 
-from ves_twin.errors import InvalidInputError
+from ves_twin.errors import InvalidInputError, shown
 from ves_twin.measured.unit_names import TIME, spelled
 from ves_twin.scenario.fields import Hertz, Part, Seconds, named
 from ves_twin.scenario.load import refusal
@@ -19,6 +20,10 @@ from ves_twin.units import check_known
 SCHEMA = 1
 MAIN = "main"
 """Name of the clock that the rows of the recording come from."""
+
+
+NAME = re.compile(r"[^\W\d_]\w*(\.[^\W\d]\w*)*")
+"""Of a signal of one's own: it becomes a column of CSV and a variable of MATLAB."""
 
 
 class Repeats(StrEnum):
@@ -205,6 +210,9 @@ class ImportMap(Part):
         taken = sorted(set(self.signals) & set(SIGNALS))
         if taken:
             raise ValueError(f"signals: {taken[0]} is one of the rig's table, which has its unit")
+        for name in self.signals:
+            if not NAME.fullmatch(name):
+                raise ValueError(f"signals: got {shown(name)}, expected words with points between")
         goals = [channel.to for channel in self.channel]
         twice = sorted({goal for goal in goals if goals.count(goal) > 1})
         if twice:

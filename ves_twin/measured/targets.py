@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+import re
 from dataclasses import dataclass
 
 from ves_twin.errors import InvalidInputError, UnknownNameError
@@ -10,6 +11,9 @@ from ves_twin.measured.import_map import MAIN, Channel, ImportMap
 from ves_twin.measured.log import Kind, Log
 from ves_twin.signals import SIGNALS, Signal
 from ves_twin.units import to_unit
+
+COLUMN = re.compile("[1-9][0-9]{0,2}")
+"""Number of a column of a signal of one's own; a larger one is taken for a slip of the pen."""
 
 
 @dataclass(frozen=True)
@@ -106,7 +110,7 @@ def _own_signals(told: ImportMap) -> list[Signal]:
         places = [
             c.to.removeprefix(f"{name}.") for c in told.channel if c.to.startswith(f"{name}.")
         ]
-        width = max([1, *(int(p) for p in places if p.isdigit())])
+        width = max([1, *(int(p) for p in places if COLUMN.fullmatch(p))])
         found.append(own.signal(name, width))
     return found
 
