@@ -32,7 +32,7 @@ def _section(parser: argparse.ArgumentParser) -> list[str]:
     shown = [a for a in shown if not isinstance(a, argparse._HelpAction)]
     rows = [_row(a) for a in shown if not isinstance(a, argparse._SubParsersAction)]
     if rows:
-        lines += ["| argument | meaning | default |", "|---|---|---|", *rows, ""]
+        lines += ["| argument | meaning |", "|---|---|", *rows, ""]
     return lines
 
 
@@ -48,8 +48,9 @@ def _row(action: argparse.Action) -> str:
         name = str(value or action.dest)
     meaning = (action.help or "") + (" **required**" if _required(action) else "")
     plain = action.default in (None, False, [], argparse.SUPPRESS)
-    default = "" if plain else f"`{action.default}`"
-    return f"| `{_cell(name)}` | {_cell(meaning)} | {_cell(default)} |"
+    if not plain and "default" not in meaning and f"({action.default})" not in meaning:
+        meaning += f" (default: {action.default})"
+    return f"| `{_cell(name)}` | {_cell(meaning)} |"
 
 
 def _required(action: argparse.Action) -> bool:

@@ -26,14 +26,20 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Options of the command."""
     parser.add_argument("measured", metavar="MEASURED", nargs="+", help="recordings of one rig")
     for name, words in (
-        ("--held-out", "recordings that an extension must prove itself on"),
-        ("--baseline", "recordings of the same programmes while the rig was in order"),
-        ("--commissioning", "recordings of healthy rigs, five or more"),
+        ("--held-out", "a recording that an extension must prove itself on"),
+        ("--baseline", "a recording of the same programme while the rig was in order"),
+        ("--commissioning", "a recording of a healthy rig; five or more"),
     ):
-        parser.add_argument(name, metavar="REC", action="append", default=[], help=words)
+        parser.add_argument(
+            name, metavar="REC", action="append", default=[], help=f"{words}; may be repeated"
+        )
     parser.add_argument("--standstill", metavar="REC", help="the rig standing still: its noise")
     parser.add_argument(
-        "--exclude", metavar="EFFECT", action="append", default=[], help="a cause not considered"
+        "--exclude",
+        metavar="EFFECT",
+        action="append",
+        default=[],
+        help="a cause left out; may be repeated",
     )
     parser.add_argument("--experiment", metavar="FILE", help="how they were made (TOML)")
     parser.add_argument(

@@ -19,16 +19,23 @@ MOST_SEEDS = 100_000
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Options of the command."""
-    parser.add_argument("environment", metavar="ENV", help="for instance VibrationDamping-v0")
+    parser.add_argument(
+        "environment",
+        metavar="ENV",
+        help="VibrationFreeReach-v0, VibrationDamping-v0 or PlatformTracking-v0",
+    )
     parser.add_argument(
         "--policy",
         required=True,
         metavar="FILE:Class",
-        help="a class of a Python file, which is run, or the name of a baseline",
+        help="a class of a Python file, which is run, or a baseline's name, such as still",
     )
     parser.add_argument("--seeds", type=int, default=20, metavar="N", help="seeds 0 to N - 1 (20)")
     parser.add_argument(
-        "--rigs", default="test-v0", metavar="SET", help="test-v0, train-v0, none, or a TOML file"
+        "--rigs",
+        default="test-v0",
+        metavar="SET",
+        help="test-v0 (default), train-v0, none, or a TOML file",
     )
     parser.add_argument(
         "--against", metavar="FILE:Class", help="another policy; differences are seed by seed"

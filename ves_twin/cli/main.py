@@ -7,6 +7,7 @@ import os
 import re
 import sys
 from collections.abc import Sequence
+from functools import partial
 from typing import NoReturn
 
 from ves_twin import __version__
@@ -48,6 +49,16 @@ COMMANDS = {
 }
 """Name -> module with SUMMARY, add_arguments(parser) and execute(arguments) -> exit code."""
 
+BEGIN = """\
+begin with:
+  ves-twin run beam_horizontal_truth          writes runs/beam_horizontal_truth/
+  ves-twin view runs/beam_horizontal_truth    shows it in 3-D; --web for a browser
+  ves-twin COMMAND --help                     what a command takes
+
+exit codes: 0 done, 2 bad input, 3 the run ended early, 4 out of tolerance, 130 interrupted
+"""
+"""What stands below the commands."""
+
 DONE, BAD_INPUT, ENDED_EARLY, INTERRUPTED = 0, 2, 3, 130
 """Exit codes."""
 
@@ -65,6 +76,8 @@ def build_parser() -> Parser:
     parser = Parser(
         prog="ves-twin",
         description="Digital twin of the VES II micro-gravity emulator.",
+        epilog=BEGIN,
+        formatter_class=partial(argparse.RawDescriptionHelpFormatter, max_help_position=14),
     )
     parser.add_argument("--version", action="version", version=f"ves-twin {__version__}")
     commands = parser.add_subparsers(dest="command", metavar="COMMAND", parser_class=Parser)

@@ -32,7 +32,7 @@ def add_run_options(parser: argparse.ArgumentParser) -> None:
         metavar="KEY=VALUE",
         action="append",
         default=[],
-        help="override a key of the scenario, for instance legs.gain=16",
+        help="override a key of the scenario, for instance legs.gain=16; may be repeated",
     )
     parser.add_argument("--plant", metavar="FILE", help="another plant: a name or a TOML file")
     parser.add_argument("--seed", type=int, metavar="N", help="seed of the noise")

@@ -38,7 +38,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         metavar="KEY=VALUE",
         action="append",
         default=[],
-        help="override a key in every point, for instance run.duration=10",
+        help="override a key in every point, for instance run.duration=10; may be repeated",
     )
     parser.add_argument("--plant", metavar="FILE", help="another plant: a name or a TOML file")
     parser.add_argument("--seed", type=int, metavar="N", help="seed of the noise and of the draws")

@@ -9,6 +9,7 @@ from ves_twin.envs.baselines.planned_path import PlannedPath
 from ves_twin.envs.baselines.pped import Pped
 from ves_twin.envs.baselines.still import Still
 from ves_twin.envs.baselines.straight_path import StraightPath
+from ves_twin.envs.baselines.trained import TrainedDamping
 from ves_twin.envs.policy import Policy
 
 BASELINES: dict[str, type[Policy]] = {
@@ -18,6 +19,7 @@ BASELINES: dict[str, type[Policy]] = {
     "planned_path": PlannedPath,
     "pped": Pped,
     "lqg": Lqg,
+    "trained": TrainedDamping,
     "lag_feedforward": LagFeedforward,
 }
 """Name on the command line -> policy."""
