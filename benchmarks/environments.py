@@ -81,7 +81,7 @@ def side_by_side(name: str, plant: str, steps: int) -> float:
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--rounds", type=int, default=12)
-    parser.add_argument("--steps", type=int, default=200)
+    parser.add_argument("--steps", type=int, default=200, help="of eight in processes; 0 for none")
     given = parser.parse_args()
     print(
         "environment                       plant       ratio   5 %    95 %  steps/s  8 in processes"
@@ -90,10 +90,11 @@ def main() -> None:
         for plant in ("ves2", "ves2_fast"):
             found, speed = ratios(name, plant, given.rounds)
             cuts = statistics.quantiles(found, n=20)
-            together = side_by_side(name, plant, given.steps)
+            together = side_by_side(name, plant, given.steps) if given.steps else np.nan
             print(
                 f"{name:<34}{plant:<10}{statistics.median(found):7.3f}{cuts[0]:7.3f}{cuts[-1]:8.3f}"
-                f"{speed:9.0f}{together / speed:10.2f} x"
+                f"{speed:9.0f}{together / speed:10.2f} x",
+                flush=True,
             )
 
 

@@ -69,6 +69,8 @@ def execute(arguments: argparse.Namespace) -> int:
         from ves_twin.cli.summary_text import summary_text
 
         print(summary_text(summary, folder))
+        if video is not None:
+            print(f"  video     {video}")
     return exit_code(summary.outcome)
 
 
