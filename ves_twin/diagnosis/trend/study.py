@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 
+import numpy as np
+
 from ves_twin.diagnosis.assess import assess, pull_limit
 from ves_twin.diagnosis.bank import Bank, bank_key, build_bank, cached_bank
 from ves_twin.diagnosis.conclude import whitening_of
@@ -18,6 +20,10 @@ from ves_twin.diagnosis.trend.day import Day
 from ves_twin.errors import InvalidInputError
 from ves_twin.recording.recording import Recording
 from ves_twin.workers import Workers
+
+FITTED = (-1.0, -np.inf, -1.0)
+"""Limits that every record passes, so that its commissioning errors are always fitted by the full
+forward: days are held against each other, and what a linearisation leaves would part them."""
 
 
 @dataclass
@@ -57,9 +63,7 @@ class Study:
         each = replace(self.settings, alpha=self.settings.alpha / count)
         bank, limits = self._known(seen, lambda b: cached_thresholds(b, whitening, each))
         pull = pull_limit(bank, each.alpha)
-        look = assess(
-            seen.measured, bank, whitening, limits.effect, limits.misfit, pull, limits.bends
-        )
+        look = assess(seen.measured, bank, whitening, *FITTED, limits.bends)
         off = look.exceeds(limits.effect, limits.misfit, pull)
         name = recording.info.scenario or f"recording {number + 1}"
         return Day(name, time, look, limits, off)
