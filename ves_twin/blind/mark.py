@@ -105,6 +105,8 @@ def mark(truths: Sequence[Truth], answers: Mapping[str, Answer]) -> Marks:
             rows[f"single, d {low:g} to {high:g}: exact"] = _rate(some, _exact)
     named = [pair for pair in single if pair[1].verdict in NAMES]
     rows["single: right if named"] = _rate(named, _exact)
+    heard = [pair for pair in single if pair[1].verdict in {*NAMES, "ambiguous"}]
+    rows["single and detected: truth among the causes"] = _rate(heard, _holds)
     outside = [(t, a) for t, a in both if t.hidden is Hidden.OUTSIDE and a.verdict != "nothing"]
     rows["outside and detected: abstains"] = _rate(outside, lambda p: p[1].verdict not in NAMES)
     pairs = [(t, a) for t, a in both if t.hidden is Hidden.PAIR and t.d >= 10.0]
