@@ -65,7 +65,7 @@ def draw_truths(
     rng: np.random.Generator,
     spread: float = 1.0,
 ) -> list[Truth]:
-    """What each case hides, in random order.
+    """What each case hides, in random order; causes with a twin only as confusable ones.
 
     Args:
         bench: the plant.
@@ -80,6 +80,7 @@ def draw_truths(
     sorts = [sort for sort, count in counts.items() for _ in range(count)]
     rng.shuffle(sorts)
     library = bench.forward.hypotheses
+    clear = [h for h in library if h.label not in bench.confusable]
     truths = []
     for n, sort in enumerate(sorts):
         case = f"case-{n + 1:04d}"
@@ -87,13 +88,13 @@ def draw_truths(
         kind, size = "", 0.0
         match Hidden(sort):
             case Hidden.SINGLE:
-                causes = (_cause(library, loudness, LOUDNESS, rng),)
+                causes = (_cause(clear, loudness, LOUDNESS, rng),)
             case Hidden.CONFUSABLE:
                 group = [h for h in library if h.label in bench.confusable]
                 causes = (_cause(group, loudness, LOUDNESS, rng),)
             case Hidden.PAIR:
-                first = _cause(library, loudness, PAIR_LOUDNESS, rng)
-                rest = [h for h in library if h.effect != first.effect]
+                first = _cause(clear, loudness, PAIR_LOUDNESS, rng)
+                rest = [h for h in clear if h.effect != first.effect]
                 causes = (first, _cause(rest, loudness, PAIR_LOUDNESS, rng))
             case Hidden.OUTSIDE if rng.random() < 0.25:  # leave one out
                 causes = (_cause(library, loudness, PAIR_LOUDNESS, rng),)
