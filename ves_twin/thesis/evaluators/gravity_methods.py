@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from ves_twin.gravity_model.gravity_model import gravity_in_top
+from ves_twin.plant.plant import Plant
 from ves_twin.procedures.procedure import Account, Conduct
 from ves_twin.procedures.registry import load_procedure
 from ves_twin.simulator.outcome import Outcome
@@ -18,6 +19,7 @@ from ves_twin.thesis.context import Context
 from ves_twin.thesis.evaluation import Answer, Evaluation, Evaluator, NotRun
 
 CALIBRATION, VERIFICATION = "calibrate_47_poses", "verify_gravity_model"
+NOISE = ("sensor.noise", "sensor.wander")
 LEARNING, DROOP = "beam_learning_method", "frozen_platform_droop"
 
 FAST = {"plant": "ves2_crosstalk_fast"}
@@ -30,12 +32,19 @@ def _carried_out(context: Context, name: str, changes: Mapping[str, Any]) -> tup
     def make() -> Account:
         procedure = load_procedure(name, changes)
         assert procedure is not None  # noqa: S101  (the shipped file names one)
+        plant = _retuned(context, changes.get("plant", procedure.plant))
         with TemporaryDirectory() as folder:
-            return procedure.carry_out(Conduct(Path(folder)))
+            return procedure.carry_out(Conduct(Path(folder), plant=plant))
 
     command = " ".join([f"ves-twin run {name}", *(f"--set {k}={v}" for k, v in changes.items())])
     account: Account = context.once(command, make)
     return account, command
+
+
+def _retuned(context: Context, name: str) -> Plant | None:
+    """A procedure's rig with the sensor's noise of one tuned without a claim; None as it stands."""
+    told = {n: v for n, v in context.plant.changes().items() if n in NOISE}
+    return Plant.load(name).with_values(told) if told else None
 
 
 def _values(context: Context, name: str, changes: Mapping[str, Any]) -> tuple[Any, str]:
@@ -122,7 +131,8 @@ def _calibrated(context: Context) -> tuple[Any, str]:
 
 
 def _verified(context: Context) -> tuple[Any, str]:
-    return _values(context, VERIFICATION, {**FAST, "budget": "false"} if context.quick else {})
+    short = {"budget": "false"} if context.quick or context.plant.changes() else {}
+    return _values(context, VERIFICATION, {**FAST, **short} if context.quick else short)
 
 
 def _droop(context: Context, claim: Claim) -> Evaluation:
