@@ -12,7 +12,7 @@ from pathlib import Path
 
 SUITES = {
     "pendulum": "--none 100 --single 60 --outside 16 --pair 12 --confusable 12 --seed 20261121",
-    "ves2_fast": "--none 4 --single 4 --outside 1 --pair 1 --seed 20261121",
+    "ves2_fast": "--none 4 --single 3 --outside 0 --pair 0 --seed 20261121",
 }
 """Cases of each plant. One of VES II takes minutes, so they are few."""
 
