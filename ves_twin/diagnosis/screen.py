@@ -44,7 +44,6 @@ class Screen:
         extra: whitened directions that are free besides the nuisances (samples, k): the
             parameters of a cause that is fitted already.
         shaped: the bank before this record's colour and level; made here if None.
-        shaped: the bank under the whitening that this record's comes from; made here if None.
     """
 
     bank: Bank
