@@ -97,4 +97,6 @@ def test_every_documented_argument_exists(path):
             if line.startswith("    ") and not line.startswith("     ")
         }
         arguments = {a.arg for a in [*node.args.args, *node.args.kwonlyargs]}
+        if node.args.vararg is not None:
+            arguments.add(f"*{node.args.vararg.arg}")
         assert named <= arguments, f"{node.name}: {named - arguments}"

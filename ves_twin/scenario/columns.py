@@ -23,7 +23,7 @@ def read_columns(
         kind: word for messages, for instance "operator file".
         path: .csv with a header, or .parquet.
         names: columns that have to be there.
-        optional: groups of columns that may be there; of none a part.
+        *optional: groups of columns that may be there; of none a part.
 
     Returns:
         Finite numbers (n, columns) under `names`, and of each other group; None where it is absent.
