@@ -133,7 +133,7 @@ def unfiltered(covariance):
 @pytest.mark.slow
 def test_without_refinement_nobody_is_named(monkeypatch, settings):
     """The bank's nearest size beside nominal commissioning errors leaves more than noise."""
-    monkeypatch.setattr("ves_twin.diagnosis.refine.ITERATIONS", 0)
+    monkeypatch.setattr("ves_twin.diagnosis.search.ITERATIONS", 0)
     assert score(SINGLE, settings)[EXACT] == (0, 3)
 
 

@@ -278,7 +278,7 @@ class TestMutations:
         faulty = {"friction.size": 0.03}
         refined = list(self.rigs(Toy(), settings, 4, values=faulty))
         assert all(v.verdict is Kind.NAMED for v in refined)
-        monkeypatch.setattr("ves_twin.diagnosis.refine.ITERATIONS", 0)
+        monkeypatch.setattr("ves_twin.diagnosis.search.ITERATIONS", 0)
         assert all(
             v.verdict is not Kind.NAMED for v in self.rigs(Toy(), settings, 4, values=faulty)
         )

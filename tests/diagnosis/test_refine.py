@@ -8,10 +8,11 @@ import numpy as np
 import pytest
 from toy import NUISANCES, SD, Toy, programme, shape
 
+from ves_twin.diagnosis.evidence import Evidence
 from ves_twin.diagnosis.linearise import linearise
 from ves_twin.diagnosis.metric import Metric
 from ves_twin.diagnosis.probability import probabilities
-from ves_twin.diagnosis.refine import Evidence, refine
+from ves_twin.diagnosis.refine import refine
 from ves_twin.diagnosis.runs import Runs
 from ves_twin.diagnosis.whitening import ORDER, whitening_declared
 

@@ -126,7 +126,7 @@ def offset_parameters(plant: Plant) -> tuple[Parameter, ...]:
     sds = plant.parameters.array("sensor.wander")
     units = ("N", "N", "N", "N*m", "N*m", "N*m")
     return tuple(
-        Parameter(f"{OFFSET}{axis}", unit, 0.0, -50.0, 50.0, 1.5 * float(sd), True)
+        Parameter(f"{OFFSET}{axis}", unit, 0.0, -50.0, 50.0, 1.5 * float(sd), True, True)
         for axis, unit, sd in zip(AXES, units, sds, strict=True)
     )
 
@@ -134,7 +134,7 @@ def offset_parameters(plant: Plant) -> tuple[Parameter, ...]:
 def wander_parameters() -> tuple[Parameter, ...]:
     """Modes of the sensor's slow noise, anew for each recording: too slow for the whitening."""
     return tuple(
-        Parameter(f"{WANDER}{axis}.{mode + 1}", "1", 0.0, -10.0, 10.0, 1.0, True)
+        Parameter(f"{WANDER}{axis}.{mode + 1}", "1", 0.0, -10.0, 10.0, 1.0, True, True)
         for axis in AXES
         for mode in range(MODES)
     )

@@ -9,8 +9,9 @@ from scipy.stats import norm
 
 from ves_twin.diagnosis.adequacy import cells, misfit
 from ves_twin.diagnosis.bank import Bank
+from ves_twin.diagnosis.evidence import Evidence
 from ves_twin.diagnosis.prewhitened import Prewhitened
-from ves_twin.diagnosis.refine import Evidence, Fit, bare_residual, refine, residual_about
+from ves_twin.diagnosis.refine import Fit, bare_residual, refine, residual_about
 from ves_twin.diagnosis.screen import Screen, Suspect
 from ves_twin.diagnosis.whitening import Whitening
 from ves_twin.types import FloatArray, SingleArray
@@ -18,8 +19,12 @@ from ves_twin.types import FloatArray, SingleArray
 ROUNDS = 3
 """Linearisations at most for the commissioning errors of one record."""
 
-BEYOND = 4.0
-"""Times its limit above which a score after a fit is a cause's: new columns lower it by a third."""
+BEYOND = 1.5
+"""Times its limit above which a score after a fit is a cause's: new columns move it by a tenth."""
+
+
+STRANGE = 1.5
+"""chi^2 for each sample beside the best hypothesis above which it is not taken for the cause."""
 
 
 @dataclass(frozen=True)
@@ -56,6 +61,15 @@ class Assessment:
         """Largest most probable commissioning error, in declared sd (the step's share is none)."""
         errors = self.screen.metric.nuisances(self.z)[: len(self.evidence.runs.nuisances)]
         return float(np.max(np.abs(errors), initial=0.0))
+
+    @property
+    def told(self) -> bool:
+        """Whether noise is most of what the best hypothesis would leave.
+
+        Else commissioning errors are still far from their values, and the screen sees those.
+        """
+        fit = self.commissioning
+        return fit is not None and fit.chi2 - self.score < STRANGE * len(fit.residual)
 
     @property
     def allowance(self) -> float:
@@ -102,7 +116,7 @@ def assess(
         look = replace(look, bends=bends)
         if not look.exceeds(effect, level, pull):
             break
-        if look.score > BEYOND * (effect + look.allowance):
+        if look.score > BEYOND * (effect + look.allowance) and look.told:
             break
     return look
 

@@ -8,10 +8,11 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from ves_twin.diagnosis.evidence import Evidence
 from ves_twin.diagnosis.forward import Channel, Forward, Hypothesis, Parameter, Programme
 from ves_twin.diagnosis.linearise import linearise
 from ves_twin.diagnosis.observe import Observed, observe
-from ves_twin.diagnosis.refine import Evidence, refine
+from ves_twin.diagnosis.refine import refine
 from ves_twin.diagnosis.runs import Runs
 from ves_twin.diagnosis.whitening import Whitening
 from ves_twin.errors import InvalidInputError

@@ -9,11 +9,12 @@ import numpy as np
 from ves_twin.diagnosis.adequacy import Cell, cells, misfit
 from ves_twin.diagnosis.assess import Assessment, pull_limit
 from ves_twin.diagnosis.bank import build_bank
+from ves_twin.diagnosis.evidence import Evidence
 from ves_twin.diagnosis.forward import Hypothesis
 from ves_twin.diagnosis.linearise import Linearisation
 from ves_twin.diagnosis.null import Thresholds
 from ves_twin.diagnosis.probability import probabilities
-from ves_twin.diagnosis.refine import Evidence, Fit, bare_residual, refine, residual_about
+from ves_twin.diagnosis.refine import Fit, bare_residual, refine, residual_about
 from ves_twin.diagnosis.runs import Progress, silent
 from ves_twin.diagnosis.screen import Screen, Suspect
 from ves_twin.diagnosis.settings import Settings

@@ -6,11 +6,12 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from ves_twin.diagnosis.evidence import Evidence
 from ves_twin.diagnosis.forward import Forward
 from ves_twin.diagnosis.gain import Gain, held_out_gain
 from ves_twin.diagnosis.linearise import linearise
 from ves_twin.diagnosis.observe import FEWEST_POSES, FEWEST_ROWS, observe
-from ves_twin.diagnosis.refine import Evidence, Fit, refine
+from ves_twin.diagnosis.refine import Fit, refine
 from ves_twin.diagnosis.settings import Settings
 from ves_twin.diagnosis.whitening import whitening_declared
 from ves_twin.recording.recording import POSES, Recording

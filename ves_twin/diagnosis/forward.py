@@ -32,6 +32,8 @@ class Channel:
         unit: its unit.
         sd: declared sd of one sample's noise [unit].
         corner: of the second-order low-pass that the noise went through [Hz]; white if None.
+        settling: rows this early [s] tell nothing: how dry friction holds a rig that stands is
+            chance, in the rig and in its simulation.
     """
 
     name: str
@@ -40,6 +42,7 @@ class Channel:
     unit: str
     sd: float
     corner: float | None = None
+    settling: float = 0.0
 
 
 @dataclass(frozen=True)
@@ -53,6 +56,7 @@ class Parameter:
         low, high: bounds.
         sd: how well commissioning knows it; 0 where it is known, or absent by declaration.
         per_recording: drawn anew for each recording, for instance an initial angle.
+        additive: adds the same to the channels for each unit of it, whatever all else is.
     """
 
     name: str
@@ -62,6 +66,7 @@ class Parameter:
     high: float
     sd: float = 0.0
     per_recording: bool = False
+    additive: bool = False
 
     def __post_init__(self) -> None:
         if not (self.low <= self.nominal <= self.high and self.low < self.high and self.sd >= 0):

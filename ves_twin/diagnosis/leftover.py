@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ves_twin.diagnosis.adequacy import Cell
-from ves_twin.diagnosis.refine import Evidence
+from ves_twin.diagnosis.evidence import Evidence
 from ves_twin.types import FloatArray
 
 LOUDEST = 6

@@ -12,7 +12,7 @@ from ves_twin.diagnosis.grid import RATE
 from ves_twin.diagnosis.runs import Runs
 from ves_twin.errors import InvalidInputError, UnknownNameError
 from ves_twin.recording.recording import Recording
-from ves_twin.types import FloatArray, SingleArray
+from ves_twin.types import BoolArray, FloatArray, SingleArray
 from ves_twin.workers import Workers
 
 MOST_EMPTY = 0.5
@@ -20,6 +20,9 @@ MOST_EMPTY = 0.5
 
 FEWEST_ROWS = 100
 """Rows of the grid below which bands and stretches of time mean nothing."""
+
+MOST_SETTLING = 0.2
+"""Share of a recording that may count as settling."""
 
 FEWEST_POSES = 12
 """Poses at rest below which their scatter means nothing."""
@@ -81,7 +84,10 @@ def observe(
         rows.append(np.stack([recording[c.signal][:, c.column] for c in channels], axis=1))
     runs = Runs(forward, tuple(programmes), columns, workers or Workers())
     empty = [~np.isfinite(piece) for piece in rows]
-    marked = [grid.touched(bad) for grid, bad in zip(runs.grids, empty, strict=True)]
+    marked = [
+        grid.touched(bad) | _settling(runs, k, channels)
+        for k, (grid, bad) in enumerate(zip(runs.grids, empty, strict=True))
+    ]
     if any(bad.any() for bad in marked):
         runs = replace(runs, holes=tuple(marked))
     for programme, time in zip(programmes, runs.times, strict=True):
@@ -95,6 +101,15 @@ def observe(
     holes = {c.name: float(share) for c, share in zip(channels, lost, strict=True) if share > 0.0}
     unseen = [channel.name for c, channel in enumerate(forward.channels) if c not in columns]
     return Observed(runs, np.concatenate(stacks), tuple(unseen), holes)
+
+
+def _settling(runs: Runs, recording: int, channels: Sequence[Channel]) -> BoolArray:
+    """Rows of the grid (m, c) too early to tell anything."""
+    programme, time = runs.programmes[recording], runs.times[recording]
+    since = np.full(len(time), np.inf) if programme.poses else time - programme.time[0]
+    longest = MOST_SETTLING * (programme.time[-1] - programme.time[0])
+    first = np.minimum([c.settling for c in channels], longest)
+    return np.asarray(since[:, None] < first)
 
 
 def _holds(recording: Recording, channel: Channel) -> bool:

@@ -6,23 +6,12 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from ves_twin.diagnosis.evidence import Evidence
 from ves_twin.diagnosis.forward import Hypothesis
-from ves_twin.diagnosis.linearise import Linearisation, linearise
+from ves_twin.diagnosis.linearise import STEP_SD, Linearisation, linearise
 from ves_twin.diagnosis.runs import Runs
-from ves_twin.diagnosis.whitening import Whitening
+from ves_twin.diagnosis.search import Point, Search
 from ves_twin.types import FloatArray, IntArray, SingleArray
-
-ITERATIONS = 40
-"""Steps at most from one linearisation."""
-
-FARTHEST = 30.0
-"""Nuisances are held within this many commissioning sd: a search that leaves them is lost."""
-
-CONVERGED = 0.02
-"""Fall of chi^2 that is not worth another run; names turn on differences of 9 and more."""
-
-WORTHLESS = 1e-4
-"""The same, of all of chi^2: what is lost and won by chance where parts stick and slip."""
 
 NEAR = 0.3
 """Commissioning sd within which nuisance columns are taken to hold; absent parameters: 6 %."""
@@ -32,30 +21,6 @@ FORWARD_STEP = 1.0
 
 WORTH = 3e-4
 """Fall of chi^2, of all of it, below which another linearisation is not worth its runs."""
-
-BENT = 0.01
-"""Squared error [sigma^2] of a predicted change above which the Jacobian is turned: single
-precision makes 1e-6 of it, and a smaller error moves no estimate."""
-
-LEAST_MOVE = 1.0
-"""Move [sd] below which the columns learn less from it: a rig that sticks and slips answers some
-7 sigma off by chance, whatever the move."""
-
-DAMPING = 10.0
-"""First weight, and growth of the weight, that a step which did not help adds to the priors: a
-strong commissioning error that is a little off its column leaks into weak ones, many sd of them."""
-
-ATTEMPTS = 4
-"""Dampings that are tried before a search ends."""
-
-
-@dataclass(frozen=True)
-class Evidence:
-    """What was measured, on the analysis grid (rows, c), and how its noise is whitened."""
-
-    runs: Runs
-    measured: SingleArray
-    whitening: Whitening
 
 
 @dataclass(frozen=True)
@@ -100,134 +65,6 @@ class Fit:
         return float(np.max(np.abs(self.shift[errors]) / runs.sd[errors], initial=0.0))
 
 
-@dataclass(frozen=True)
-class _Point:
-    shift: FloatArray
-    delta: float
-    prediction: SingleArray
-    residual: FloatArray
-    chi2: float
-
-
-class _Search:
-    """Gauss-Newton in whitened space; the Jacobian follows the runs it makes anyway (Broyden).
-
-    J has a column for each free parameter, for one sd of each nuisance, and for delta. After a
-    move m that changed the prediction by c instead of J m it becomes J + (c - J m) m' / m'm, so
-    columns that no longer hold turn right without a run of their own. They are turned before
-    whitening too, for whoever goes on from the fit, with another noise or another cause.
-
-    Source: Broyden 1965, the good update.
-    """
-
-    def __init__(self, evidence: Evidence, free: IntArray, local: Linearisation) -> None:
-        runs = evidence.runs
-        self.evidence, self.runs, self.free, self.local = evidence, runs, free, local
-        self.kept = np.flatnonzero(~np.isin(runs.nuisances, free))
-        self.nuisances = runs.nuisances[self.kept]
-        self.turned = local.columns.copy()
-        picked = local.columns[[*self.kept, len(runs.nuisances)]]
-        self.columns = evidence.whitening.apply(picked).T
-        self.low = runs.low.copy()
-        self.high = runs.high.copy()
-        reach = FARTHEST * runs.sd[self.nuisances]
-        self.low[self.nuisances] = np.maximum(self.low[self.nuisances], -reach)
-        self.high[self.nuisances] = np.minimum(self.high[self.nuisances], reach)
-        self.damping = 0.0
-        self.unit = np.ones(len(free) + len(self.nuisances) + 1)
-        self.unit[len(free) : -1] = runs.sd[self.nuisances]
-
-    def at(self, shift: FloatArray, delta: float) -> _Point:
-        prediction = self.runs.one(shift)
-        if not np.all(np.isfinite(prediction)):
-            return _Point(shift, delta, prediction, np.zeros(0), np.inf)
-        difference = self.evidence.measured - prediction
-        residual = self.evidence.whitening.apply(
-            difference - np.float32(delta) * self.local.columns[-1]
-        )
-        pull = shift[self.nuisances] / self.runs.sd[self.nuisances]
-        chi2 = float(residual @ residual + pull @ pull + delta**2)
-        return _Point(shift, delta, prediction, residual, chi2)
-
-    def jacobian(self, point: _Point) -> FloatArray:
-        """Columns at a point: free parameters by a step of 4 %, nuisances as they were given."""
-        columns, raw = [], []
-        for n, i in enumerate(self.free):
-            step = 0.04 * abs(point.shift[i]) + 1e-3 * self.runs.sd[i]
-            step = max(step, 1e-5 * (self.high[i] - self.low[i]))
-            if point.shift[i] + step > self.high[i]:
-                step = -step
-            moved = point.shift.copy()
-            moved[i] += step
-            change = self.runs.one(moved) - point.prediction
-            self.unit[n] = abs(step)
-            raw.append(change * np.float32(np.sign(step)))
-            columns.append(self.evidence.whitening.apply(raw[-1]))
-        self.raw = np.array(raw, np.float32).reshape(-1, *point.prediction.shape)
-        free = np.array(columns).reshape(-1, len(point.residual)).T
-        return np.concatenate([free, self.columns], axis=1)
-
-    def hessian(self, jacobian: FloatArray, damping: float = 0.0) -> FloatArray:
-        prior = np.full(len(self.unit), 1.0 + damping)
-        prior[: len(self.free)] = 0.0
-        return np.asarray(jacobian.T @ jacobian + np.diag(prior))
-
-    def run(self, point: _Point) -> tuple[_Point, FloatArray]:
-        if not np.isfinite(point.chi2):
-            return point, np.zeros((0, len(self.unit)))
-        jacobian = self.jacobian(point)
-        for _ in range(ITERATIONS):
-            found = self._step(point, jacobian)
-            fall = point.chi2 - found.chi2
-            point = found
-            if fall < CONVERGED + WORTHLESS * point.chi2:
-                break
-        return point, jacobian
-
-    def _turn(self, change: SingleArray, move: FloatArray) -> None:
-        """The same before whitening; only what belongs to the nuisances is kept."""
-        here = move.astype(np.float32)
-        count = len(self.free)
-        change = change - np.tensordot(here[:count], self.raw, axes=1)
-        change -= np.tensordot(here[count:-1], self.turned[self.kept], axes=1)
-        share = here / np.float32(move @ move + LEAST_MOVE**2)
-        self.raw += share[:count, None, None] * change
-        self.turned[self.kept] += share[count:-1, None, None] * change
-
-    def _step(self, point: _Point, jacobian: FloatArray) -> _Point:
-        """The next point, or the same one if none is better; updates the Jacobian in place.
-
-        Source: Marquardt 1963, with the priors' own unit as the scale of the damping.
-        """
-        axes = np.concatenate([self.free, self.nuisances])
-        here = np.append(point.shift[axes], point.delta) / self.unit
-        prior = np.where(np.arange(len(here)) < len(self.free), 0.0, here)
-        for _ in range(ATTEMPTS):
-            hessian = self.hessian(jacobian, self.damping)
-            scale = 1.0 / np.sqrt(np.maximum(np.diag(hessian), 1e-30))
-            scaled = hessian * np.outer(scale, scale) + 1e-10 * np.eye(len(scale))
-            gradient = jacobian.T @ point.residual - prior
-            there = here + scale * np.linalg.solve(scaled, scale * gradient)
-            shift = point.shift.copy()
-            shift[axes] = (there * self.unit)[:-1]
-            trial = self.at(np.clip(shift, self.low, self.high), float(there[-1]))
-            if np.isfinite(trial.chi2):
-                self._learn(point, trial, jacobian, np.append(trial.shift[axes], trial.delta))
-            if trial.chi2 < point.chi2:
-                self.damping = self.damping / DAMPING if self.damping > DAMPING else 0.0
-                return trial
-            self.damping = DAMPING * max(self.damping, 1.0)
-        return point
-
-    def _learn(self, point: _Point, trial: _Point, jacobian: FloatArray, there: FloatArray) -> None:
-        axes = np.concatenate([self.free, self.nuisances])
-        move = (there - np.append(point.shift[axes], point.delta)) / self.unit
-        surprise = point.residual - trial.residual - jacobian @ move
-        if surprise @ surprise > BENT:
-            jacobian += np.outer(surprise, move / (move @ move + LEAST_MOVE**2))
-            self._turn(trial.prediction - point.prediction, move)
-
-
 def refine(
     evidence: Evidence,
     causes: tuple[Hypothesis, ...],
@@ -253,15 +90,18 @@ def refine(
         if causes
         else np.zeros(0, int)
     )
-    search = _Search(evidence, free, local)
+    search = Search(evidence, free, local)
     start = np.clip(shift, search.low, search.high)
     point, jacobian = search.run(search.at(start, step_share))
+    if np.isfinite(point.chi2) and not _near(runs, search, point.shift):
+        search = Search(evidence, free, _stepped(search, point))
+        point, jacobian = search.run(search.at(point.shift, point.delta))
     for _ in range(rounds):
         if _near(runs, search, point.shift):
             break
         before = point.chi2
         local = linearise(runs, point.shift, forward_step=FORWARD_STEP)
-        search = _Search(evidence, free, local)
+        search = Search(evidence, free, local)
         point, jacobian = search.run(search.at(point.shift, point.delta))
         if before - point.chi2 < WORTH * point.chi2:
             break
@@ -287,7 +127,15 @@ def refine(
     )
 
 
-def _near(runs: Runs, search: _Search, shift: FloatArray) -> bool:
+def _stepped(search: Search, point: Point) -> Linearisation:
+    """The columns as they are, but for what the step is worth: one run tells that at a point."""
+    columns = search.turned.copy()
+    finer = search.runs.one(point.shift, refined=True)
+    columns[-1] = np.float32(STEP_SD) * (finer - point.prediction)
+    return replace(search.local, columns=columns)
+
+
+def _near(runs: Runs, search: Search, shift: FloatArray) -> bool:
     """Whether a point is where the nuisance columns were computed, as far as they can tell."""
     moved = np.abs(shift - search.local.point)
     scale = np.where(runs.sd > 0.0, runs.sd, 0.2 * np.abs(shift) + 1e-12)
@@ -303,9 +151,10 @@ def bare_residual(evidence: Evidence, fit: Fit) -> SingleArray:
 def residual_about(evidence: Evidence, fit: Fit, base: Linearisation) -> FloatArray:
     """Whitened residual as a linear model about a base would have it, for a screen.
 
-    W (y - f(x)) + N nu: what the full forward says at the fitted nuisances, carried back along the
-    base's columns to where their prior has its mean. Second-order terms of strong nuisances, which
-    the projection cannot see, are then gone.
+    W (y - f(x) - delta c) + N (nu, delta): what the full forward says at the fitted nuisances,
+    carried back along the base's columns to where their prior has its mean. Second-order terms of
+    strong nuisances, which the projection cannot see, are then gone; so is what the step is worth
+    at the fit, where that is another trace than at the base.
 
     Source: the correction y' = y - (f(nu) - f(0) - J nu).
     """
@@ -313,5 +162,6 @@ def residual_about(evidence: Evidence, fit: Fit, base: Linearisation) -> FloatAr
     pull = fit.shift[runs.nuisances] / runs.sd[runs.nuisances]
     for cause in fit.causes:
         pull[np.isin(runs.nuisances, runs.indices(cause))] = 0.0
-    back = np.tensordot(pull.astype(np.float32), base.columns[:-1], axes=1)
-    return evidence.whitening.apply(evidence.measured - fit.prediction + back)
+    share = np.append(pull, fit.step_share).astype(np.float32)
+    back = np.tensordot(share, base.columns, axes=1)
+    return evidence.whitening.apply(bare_residual(evidence, fit) + back)

@@ -9,8 +9,9 @@ from scipy.optimize import brentq
 from scipy.stats import chi2, norm
 
 from ves_twin.diagnosis.bank import Bank
+from ves_twin.diagnosis.evidence import Evidence
 from ves_twin.diagnosis.linearise import linearise
-from ves_twin.diagnosis.refine import Evidence, bare_residual, refine, residual_about
+from ves_twin.diagnosis.refine import bare_residual, refine, residual_about
 from ves_twin.diagnosis.runs import Runs
 from ves_twin.diagnosis.whitening import whitening_declared
 from ves_twin.types import FloatArray, SingleArray

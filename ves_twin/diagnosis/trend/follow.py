@@ -8,8 +8,9 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ves_twin.diagnosis.adequacy import cells, misfit
+from ves_twin.diagnosis.evidence import Evidence
 from ves_twin.diagnosis.forward import Hypothesis
-from ves_twin.diagnosis.refine import Evidence, Fit, bare_residual, refine
+from ves_twin.diagnosis.refine import Fit, bare_residual, refine
 from ves_twin.diagnosis.trend.day import Day
 from ves_twin.diagnosis.trend.one_rig import Sharing
 from ves_twin.types import FloatArray

@@ -1,0 +1,258 @@
+"""Search: down to the most probable point, by a Jacobian that learns from its own runs."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ves_twin.diagnosis.evidence import Evidence
+from ves_twin.diagnosis.linearise import Linearisation
+from ves_twin.types import FloatArray, IntArray, SingleArray
+
+ITERATIONS = 40
+"""Steps at most from one linearisation."""
+
+FARTHEST = 30.0
+"""Nuisances are held within this many commissioning sd: a search that leaves them is lost."""
+
+CONVERGED = 0.02
+"""Fall of chi^2 that is not worth another run; names turn on differences of 9 and more."""
+
+WORTHLESS = 1e-4
+"""The same, of all of chi^2: what is lost and won by chance where parts stick and slip."""
+
+HOT = 1.0
+"""Squared residual per sample, above one, from which a search that stalls is gone on with at the
+priors' own weight."""
+
+COOLER = 10.0
+"""Times that weight, which is tried beside it: a long step may end where the legs hunt, and no
+column points back from there."""
+
+SECANT = 0.25
+"""Step of a cause's own column, of its size, to either side. A rig that sticks and slips answers 1
+to 5 sigma off by chance: over 4 % of a cause of 20 sigma its column would be that alone."""
+
+BENT = 0.01
+"""Squared error [sigma^2] of a predicted change above which the Jacobian is turned: single
+precision makes 1e-6 of it, and a smaller error moves no estimate."""
+
+LEAST_MOVE = 1.0
+"""Move [sd] below which the columns learn less from it: a rig that sticks and slips answers some
+7 sigma off by chance, whatever the move."""
+
+DAMPING = 10.0
+"""First weight, and growth of the weight, that a step which did not help adds to the priors: a
+strong commissioning error that is a little off its column leaks into weak ones, many sd of them."""
+
+GOOD = 0.25
+"""Share of the foretold fall from which a step counts as foretold."""
+
+ATTEMPTS = 4
+"""Dampings that are tried before a search ends."""
+
+
+@dataclass(frozen=True)
+class Point:
+    """Where a search is.
+
+    Attributes:
+        shift: departures (coordinates,).
+        delta: share of the discretisation column.
+        prediction: channels there (rows, c), without that share.
+        residual: whitened (samples,).
+        chi2: with the priors' part.
+    """
+
+    shift: FloatArray
+    delta: float
+    prediction: SingleArray
+    residual: FloatArray
+    chi2: float
+
+
+@dataclass(frozen=True)
+class _Step:
+    """Where to, and chi^2 there by the linear model."""
+
+    shift: FloatArray
+    delta: float
+    foretold: float
+
+
+class Search:
+    """Gauss-Newton in whitened space; the Jacobian follows the runs it makes anyway (Broyden).
+
+    J has a column for each free parameter, for one sd of each nuisance, and for delta. After a
+    move m that changed the prediction by c instead of J m it becomes J + (c - J m) m' / m'm, so
+    columns that no longer hold turn right without a run of their own. They are turned before
+    whitening too, for whoever goes on from the fit, with another noise or another cause.
+
+    Source: Broyden 1965, the good update.
+    """
+
+    def __init__(self, evidence: Evidence, free: IntArray, local: Linearisation) -> None:
+        runs = evidence.runs
+        self.evidence, self.runs, self.free, self.local = evidence, runs, free, local
+        self.kept = np.flatnonzero(~np.isin(runs.nuisances, free))
+        self.nuisances = runs.nuisances[self.kept]
+        self.turned = local.columns.copy()
+        picked = local.columns[[*self.kept, len(runs.nuisances)]]
+        self.columns = evidence.whitening.apply(picked).T
+        adds = [runs.coordinates[i].parameter.additive for i in self.nuisances]
+        self.known = np.append(np.flatnonzero(adds), len(adds))
+        basis = self.columns[:, self.known]
+        self.solved = np.linalg.inv(basis.T @ basis + np.eye(len(self.known)))
+        self.low = runs.low.copy()
+        self.high = runs.high.copy()
+        reach = FARTHEST * runs.sd[self.nuisances]
+        self.low[self.nuisances] = np.maximum(self.low[self.nuisances], -reach)
+        self.high[self.nuisances] = np.minimum(self.high[self.nuisances], reach)
+        self.damping = 0.0
+        self.unit = np.ones(len(free) + len(self.nuisances) + 1)
+        self.unit[len(free) : -1] = runs.sd[self.nuisances]
+
+    def at(self, shift: FloatArray, delta: float) -> Point:
+        """The best point that differs from a given one by what only adds to the channels.
+
+        Of that the answer is known without a run, and what zeroing leaves, for one, is another
+        wherever friction happens to hold differently.
+        """
+        prediction = self.runs.one(shift)
+        if not np.all(np.isfinite(prediction)):
+            return Point(shift, delta, prediction, np.zeros(0), np.inf)
+        columns = self.local.columns
+        difference = self.evidence.measured - prediction - np.float32(delta) * columns[-1]
+        residual = self.evidence.whitening.apply(difference)
+        sds, axes = self.runs.sd[self.nuisances], self.known[:-1]
+        here = np.append(shift[self.nuisances] / sds, delta)
+        basis = self.columns[:, self.known]
+        there = here.copy()
+        there[self.known] += self.solved @ (basis.T @ residual - here[self.known])
+        moved = shift.copy()
+        moved[self.nuisances] = there[:-1] * sds
+        moved = np.clip(moved, self.low, self.high)
+        there[:-1] = moved[self.nuisances] / sds
+        change = (there - here)[self.known]
+        added = np.tensordot(change[:-1].astype(np.float32), columns[self.kept[axes]], axes=1)
+        residual = residual - basis @ change
+        chi2 = float(residual @ residual + there @ there)
+        return Point(moved, float(there[-1]), prediction + added, residual, chi2)
+
+    def jacobian(self, point: Point) -> FloatArray:
+        """Columns at a point: free parameters over a quarter of their size, nuisances as given."""
+        columns, raw = [], []
+        for n, i in enumerate(self.free):
+            ends = self._ends(point.shift, int(i))
+            stacks = [self.runs.one(end) for end in ends]
+            self.unit[n] = 0.5 * (ends[1][i] - ends[0][i])
+            raw.append(np.float32(0.5) * (stacks[1] - stacks[0]))
+            columns.append(self.evidence.whitening.apply(raw[-1]))
+        self.raw = np.array(raw, np.float32).reshape(-1, *point.prediction.shape)
+        free = np.array(columns).reshape(-1, len(point.residual)).T
+        return np.concatenate([free, self.columns], axis=1)
+
+    def _ends(self, shift: FloatArray, axis: int) -> tuple[FloatArray, FloatArray]:
+        """To either side, as far as bounds let: a short step would see chance, not slope."""
+        reach = max(SECANT * abs(shift[axis]), 0.3 * self.runs.sd[axis])
+        reach = max(reach, 1e-5 * (self.high[axis] - self.low[axis]))
+        below, above = shift.copy(), shift.copy()
+        below[axis] = max(shift[axis] - reach, self.low[axis])
+        above[axis] = min(shift[axis] + reach, self.high[axis])
+        return below, above
+
+    def hessian(self, jacobian: FloatArray, weight: float = 1.0) -> FloatArray:
+        """J'J and the priors, which causes have none of."""
+        prior = np.full(len(self.unit), weight)
+        prior[: len(self.free)] = 0.0
+        return np.asarray(jacobian.T @ jacobian + np.diag(prior))
+
+    def run(self, point: Point) -> tuple[Point, FloatArray]:
+        """The best point, and the Jacobian there."""
+        if not np.isfinite(point.chi2):
+            return point, np.zeros((0, len(self.unit)))
+        jacobian = self.jacobian(point)
+        self.tempered = True
+        for _ in range(ITERATIONS):
+            found = self._step(point, jacobian)
+            fall = point.chi2 - found.chi2
+            point = found
+            if fall < CONVERGED + WORTHLESS * point.chi2:
+                if not self.tempered or self._heat(point) < 1.0 + HOT:
+                    break
+                self.tempered = False
+        return point, jacobian
+
+    def _heat(self, point: Point) -> float:
+        """Squared residual per sample: while it is far above one the model is not yet linear."""
+        if not self.tempered:
+            return 1.0
+        return max(1.0, float(point.residual @ point.residual) / len(point.residual))
+
+    def _turn(self, change: SingleArray, move: FloatArray, share: FloatArray) -> None:
+        """The same before whitening; only what belongs to the nuisances is kept."""
+        here, share = move.astype(np.float32), share.astype(np.float32)
+        count = len(self.free)
+        change = change - np.tensordot(here[:count], self.raw, axes=1)
+        change -= np.tensordot(here[count:-1], self.turned[self.kept], axes=1)
+        self.raw += share[:count, None, None] * change
+        self.turned[self.kept] += share[count:-1, None, None] * change
+
+    def _step(self, point: Point, jacobian: FloatArray) -> Point:
+        """The next point, or the same one if none is better; updates the Jacobian in place.
+
+        While the residual is n times noise, the priors weigh n^2: what strong commissioning errors
+        bend would else drive weak ones tens of sd away, from where few searches come back.
+
+        Source: Marquardt 1963, with the priors' own unit as the scale of the damping; Bakushinskii
+        1992, the iteratively regularised Gauss-Newton method, for the weight of the priors.
+        """
+        heat = self._heat(point)
+        for attempt in range(ATTEMPTS):
+            weights = (heat, COOLER * heat) if attempt == 0 and heat > 1.0 + HOT else (heat,)
+            steps = [self._proposed(point, jacobian, weight) for weight in weights]
+            trials = [self.at(step.shift, step.delta) for step in steps]
+            for trial in trials:
+                self._learn(point, trial, jacobian)
+            best = int(np.argmin([trial.chi2 for trial in trials]))
+            if trials[best].chi2 < point.chi2:
+                self._trust(point.chi2 - trials[best].chi2, point.chi2 - steps[best].foretold)
+                return trials[best]
+            self.damping = DAMPING * max(self.damping, 1.0)
+        return point
+
+    def _proposed(self, point: Point, jacobian: FloatArray, weight: float) -> _Step:
+        """Where the linear model has its best, the priors weighing so much."""
+        axes = np.concatenate([self.free, self.nuisances])
+        here = np.append(point.shift[axes], point.delta) / self.unit
+        prior = np.where(np.arange(len(here)) < len(self.free), 0.0, here)
+        hessian = self.hessian(jacobian, weight + self.damping)
+        scale = 1.0 / np.sqrt(np.maximum(np.diag(hessian), 1e-30))
+        scaled = hessian * np.outer(scale, scale) + 1e-10 * np.eye(len(scale))
+        gradient = jacobian.T @ point.residual - weight * prior
+        there = here + scale * np.linalg.solve(scaled, scale * gradient)
+        left, nu = point.residual - jacobian @ (there - here), there[len(self.free) :]
+        shift = point.shift.copy()
+        shift[axes] = (there * self.unit)[:-1]
+        foretold = float(left @ left + nu @ nu)
+        return _Step(np.clip(shift, self.low, self.high), float(there[-1]), foretold)
+
+    def _trust(self, fall: float, hoped: float) -> None:
+        """Less damping where the linear model foretold the fall; the same where it did not."""
+        if fall > GOOD * hoped:
+            self.damping = self.damping / DAMPING if self.damping > DAMPING else 0.0
+
+    def _learn(self, point: Point, trial: Point, jacobian: FloatArray) -> None:
+        if not np.isfinite(trial.chi2):
+            return
+        axes = np.concatenate([self.free, self.nuisances])
+        there = np.append(trial.shift[axes], trial.delta)
+        move = (there - np.append(point.shift[axes], point.delta)) / self.unit
+        surprise = point.residual - trial.residual - jacobian @ move
+        if surprise @ surprise > BENT:
+            turning = move.copy()
+            turning[len(self.free) + self.known] = 0.0  # those columns are right
+            share = turning / (turning @ turning + LEAST_MOVE**2)
+            jacobian += np.outer(surprise, share)
+            self._turn(trial.prediction - point.prediction, move, share)
