@@ -239,11 +239,11 @@ def test_an_ambiguous_group_is_told_as_one_of_several_with_what_to_record_next(t
     either = ("lag at plant from late at plant", "late at plant from lag at plant")
     assert any(f"Cannot tell {pair}: odds 1" in top for pair in either)  # a tie has no order
     assert "100 to 1 would settle it" in top
-    text = "Recordings like these cannot tell lag at plant from late at plant at any size up to 1."
-    assert text in page
+    told = "Recordings like these cannot tell {} at any size up to 1."
+    assert any(told.format(pair) in page for pair in either)
     pairs = {(pair.cause, pair.other, pair.beyond) for pair in twins.lookalikes}
     assert pairs == {("lag@plant", "late@plant", None), ("late@plant", "lag@plant", None)}
-    assert "To tell lag at plant from late at plant: toy." in page
+    assert any(f"To tell {pair}: toy." in page for pair in either)
 
 
 def test_the_menu_is_ranked_by_few_commissioning_errors_where_there_are_many(monkeypatch, settings):

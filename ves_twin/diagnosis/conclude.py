@@ -5,13 +5,14 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+from ves_twin.diagnosis.assess import pull_limit
 from ves_twin.diagnosis.build_up import build_up
 from ves_twin.diagnosis.explain import Desk, Explanation, explain
 from ves_twin.diagnosis.forecast import forecast
 from ves_twin.diagnosis.forward import Forward
 from ves_twin.diagnosis.gain import Gain, held_out_gain
 from ves_twin.diagnosis.observe import Observed, observe
-from ves_twin.diagnosis.refine import Fit
+from ves_twin.diagnosis.refine import Fit, refine
 from ves_twin.diagnosis.runs import Runs
 from ves_twin.diagnosis.settings import Settings
 from ves_twin.diagnosis.verdict import Kind
@@ -72,10 +73,21 @@ class HeldOut:
             self.settings.seed,
         )
 
-    def gains(self, found: Explanation) -> list[Gain]:
-        """Of the best explanation; of its rivals too, where it leaves something unexplained."""
+    def gains(self, found: Explanation, limit: float) -> list[Gain]:
+        """Of the best explanation; of its rivals too, where it leaves something unexplained.
+
+        Args:
+            found: the explanation.
+            limit: commissioning sd that a rig in order does not pass. The model before is tuned
+                within it: a cause that commissioning knows too would else be in that model,
+                tens of sd of it, and naming it be worth nothing.
+        """
+        before = found.commissioning
+        if before.pull > limit:
+            at = (before.shift, before.local, 0, before.step_share)
+            before = refine(found.evidence, (), *at, farthest=limit)
         rivals = [] if found.adequate else [fit for fit in found.fits if fit is not found.best]
-        return [self.gain(found.commissioning, fit) for fit in [found.best, *rivals]]
+        return [self.gain(before, fit) for fit in [found.best, *rivals]]
 
 
 def whitening_of(runs: Runs, standstill: Recording | None) -> Whitening:
@@ -100,7 +112,8 @@ def conclude(
     grown = held is not None and not found.adequate and desk.settings.causes > 2
     if grown and held is not None:
         found = build_up(desk, found, held.gain)
-    gains = held.gains(found) if held else []
+    limit = pull_limit(desk.first.screen.bank, desk.settings.alpha)
+    gains = held.gains(found, limit) if held else []
     kind = _kind(found, gains, grown)
     ahead = _forecast(forward, recordings, found, desk.settings) if _names(kind) else None
     return Conclusion(found, kind, gains[0] if gains else None, ahead)

@@ -38,8 +38,9 @@ class Gain:
     """Share of the excess error that an extension takes away on held-out recordings.
 
     Attributes:
-        share: (before - after) / (before - floor), the floor of mean z^2 being 1; None where the
-            nominal model has no excess to take away.
+        share: (before - after) / (before - floor), the floor of mean z^2 being 1, or less where
+            channels are quieter than declared by more than their level may follow; None where
+            the nominal model has no excess to take away.
         low, high: interval over stretches of time.
         before, after: mean z^2 of the nominal and of the extended model, each with its
             commissioning errors tuned on the first recordings.
@@ -95,6 +96,7 @@ def held_out_gain(
     """
     better, plain = _Carried.of(runs, extended), _Carried.of(runs, nominal)
     own = whitening.adapted(better.left(measured, whitening))
+    floor = own.floor(better.left(measured, own))
     after, before = better.energies(measured, own), plain.energies(measured, own)
     error_after, error_before = better.errors(measured), plain.errors(measured)
     names = [runs.forward.channels[c].name for c in runs.columns]
@@ -105,11 +107,11 @@ def held_out_gain(
     drawn = rng.integers(0, len(lengths), (DRAWS, len(lengths)))
     a, b, n = after[drawn].sum(1), before[drawn].sum(1), lengths[drawn].sum(1)
     mean_before, mean_after = before.sum() / lengths.sum(), after.sum() / lengths.sum()
-    excess = mean_before - 1.0
+    excess = mean_before - floor
     if excess < INVISIBLE:
         return Gain(None, None, None, float(mean_before), float(mean_after), errors)
     # each resample by its own excess: where stretches differ in size, before and after go together
-    shares = (b - a) / n / np.maximum(b / n - 1.0, LEAST_EXCESS * excess)
+    shares = (b - a) / n / np.maximum(b / n - floor, LEAST_EXCESS * excess)
     tail = 0.5 * (1.0 - confidence)
     low, high = np.quantile(shares, [tail, 1.0 - tail])
     share = (mean_before - mean_after) / excess

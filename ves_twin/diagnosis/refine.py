@@ -10,7 +10,7 @@ from ves_twin.diagnosis.evidence import Evidence
 from ves_twin.diagnosis.forward import Hypothesis
 from ves_twin.diagnosis.linearise import STEP_SD, Linearisation, linearise
 from ves_twin.diagnosis.runs import Runs
-from ves_twin.diagnosis.search import Point, Search
+from ves_twin.diagnosis.search import FARTHEST, Point, Search
 from ves_twin.types import FloatArray, IntArray, SingleArray
 
 NEAR = 0.3
@@ -72,6 +72,7 @@ def refine(
     local: Linearisation,
     rounds: int = 0,
     step_share: float = 0.0,
+    farthest: float = FARTHEST,
 ) -> Fit:
     """Fit causes and nuisances with the full forward.
 
@@ -83,6 +84,7 @@ def refine(
         rounds: how often at most the nuisance columns are computed anew at the fit; ends when
             it has stayed within NEAR of where they were computed, or gains no more by it.
         step_share: of the discretisation column, to start from.
+        farthest: commissioning sd within which nuisances are held.
     """
     runs = evidence.runs
     free = (
@@ -90,18 +92,18 @@ def refine(
         if causes
         else np.zeros(0, int)
     )
-    search = Search(evidence, free, local)
+    search = Search(evidence, free, local, farthest)
     start = np.clip(shift, search.low, search.high)
     point, jacobian = search.run(search.at(start, step_share))
     if np.isfinite(point.chi2) and not _near(runs, search, point.shift):
-        search = Search(evidence, free, _stepped(search, point))
+        search = Search(evidence, free, _stepped(search, point), farthest)
         point, jacobian = search.run(search.at(point.shift, point.delta))
     for _ in range(rounds):
         if _near(runs, search, point.shift):
             break
         before = point.chi2
         local = linearise(runs, point.shift, forward_step=FORWARD_STEP)
-        search = Search(evidence, free, local)
+        search = Search(evidence, free, local, farthest)
         point, jacobian = search.run(search.at(point.shift, point.delta))
         if before - point.chi2 < WORTH * point.chi2:
             break

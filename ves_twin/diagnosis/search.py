@@ -92,7 +92,13 @@ class Search:
     Source: Broyden 1965, the good update.
     """
 
-    def __init__(self, evidence: Evidence, free: IntArray, local: Linearisation) -> None:
+    def __init__(
+        self,
+        evidence: Evidence,
+        free: IntArray,
+        local: Linearisation,
+        farthest: float = FARTHEST,
+    ) -> None:
         runs = evidence.runs
         self.evidence, self.runs, self.free, self.local = evidence, runs, free, local
         self.kept = np.flatnonzero(~np.isin(runs.nuisances, free))
@@ -106,7 +112,7 @@ class Search:
         self.solved = np.linalg.inv(basis.T @ basis + np.eye(len(self.known)))
         self.low = runs.low.copy()
         self.high = runs.high.copy()
-        reach = FARTHEST * runs.sd[self.nuisances]
+        reach = farthest * runs.sd[self.nuisances]
         self.low[self.nuisances] = np.maximum(self.low[self.nuisances], -reach)
         self.high[self.nuisances] = np.minimum(self.high[self.nuisances], reach)
         self.damping = 0.0

@@ -140,6 +140,24 @@ class Whitening:
             level[k] = np.clip(found, low, high)
         return replace(self, colour=colour, level=level)
 
+    def floor(self, z: FloatArray) -> float:
+        """Mean z^2 that noise alone leaves: 1, but less where a channel is quieter than it may say.
+
+        Args:
+            z: whitened residual of this record (samples,), where it is noise: above FLOOR_FROM.
+        """
+        energy, count = 0.0, 0.0
+        lowest = np.sqrt(LEVEL_RANGE[0])
+        for k, (block, kept) in enumerate(
+            zip(self.blocks(z), self.blocks(self.freedom), strict=True)
+        ):
+            share = np.mean(kept, axis=0)
+            power = np.mean(_periodogram(block)[0], axis=0) / share
+            held = (self.level[k] <= lowest) & (power < 1.0)
+            energy += len(block) * float(np.sum(share * np.where(held, power, 1.0)))
+            count += len(block) * float(np.sum(share))
+        return energy / count
+
     def draw(self, rng: np.random.Generator, level: float, colour: float) -> SingleArray:
         """Noise (rows, c) that this whitening takes as unit white, but for a level and a colour."""
         parts = []
