@@ -11,7 +11,7 @@ import sys
 from pathlib import Path
 
 SUITES = {
-    "pendulum": "--none 100 --single 60 --outside 16 --pair 12 --confusable 12 --seed 20261121",
+    "pendulum": "--none 200 --single 120 --outside 32 --pair 24 --confusable 24 --seed 20261121",
     "ves2_fast": "--none 4 --single 3 --outside 0 --pair 0 --seed 20261121",
 }
 """Cases of each plant. One of VES II takes minutes, so they are few."""

@@ -29,6 +29,12 @@ LEAST = 0.7
 CLEAR = 3.0
 """Times the threshold that a cause must take off chi^2 to make a better fit without it idle."""
 
+FAR = 0.5
+"""Share of the likeliest suspect's score that another must have to be fitted at once."""
+
+CLOSE = 40.0
+"""Or so near to it [chi^2]: four times the odds that settle a name."""
+
 SHORTLIST = 16
 """Further causes that are simulated anew at a fit: all of a small library, a tenth of VES II's,
 where what the nominal bank puts behind sixteen others does not come first at the fit."""
@@ -111,24 +117,39 @@ def explain(
 
 
 def _singles(desk: Desk) -> Explanation | None:
-    first, settings = desk.first, desk.settings
+    """Suspects near the likeliest, two at least; all, where none of those leaves noise.
+
+    Two, so that the page has a rival to show.
+    """
+    suspects = desk.first.suspects[: desk.settings.candidates]
+    if not suspects:
+        return None
+    reach = suspects[0].score - max(FAR * suspects[0].score, CLOSE)
+    near = [suspect for n, suspect in enumerate(suspects) if n < 2 or suspect.score >= reach]
+    found, fits = _tried(desk, near, [])
+    if not found.adequate and len(near) < len(suspects):
+        found, fits = _tried(desk, suspects[len(near) :], fits)
+    judged = {fit.causes for fit in found.fits}
+    return replace(found, hopeless=tuple(fit for fit in fits if fit.causes not in judged))
+
+
+def _tried(desk: Desk, suspects: list[Suspect], others: list[Fit]) -> tuple[Explanation, list[Fit]]:
+    """Suspects fitted and judged beside what was fitted before; every fit that was made."""
+    first = desk.first
     start = _start(first)
     jobs, owner = [], []
-    for n, suspect in enumerate(first.suspects[: settings.candidates]):
+    for n, suspect in enumerate(suspects):
         hypothesis = first.screen.bank.hypotheses[suspect.hypothesis]
         for sizes in _starts(first, suspect):
             jobs.append(_job(first.evidence, (hypothesis,), [sizes], start))
             owner.append(n)
-    if not jobs:
-        return None
     tried = _refined(jobs, desk, "fitting single causes")
     fits = [
         min((f for f, o in zip(tried, owner, strict=True) if o == n), key=lambda fit: fit.chi2)
         for n in sorted(set(owner))
     ]
-    found = judge(desk, _settled(first.evidence, fits, desk))
-    judged = {fit.causes for fit in found.fits}
-    return replace(found, hopeless=tuple(fit for fit in fits if fit.causes not in judged))
+    settled = _settled(first.evidence, [*others, *fits], desk)
+    return judge(desk, settled), settled
 
 
 @dataclass(frozen=True)
