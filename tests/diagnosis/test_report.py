@@ -78,6 +78,9 @@ def test_a_gain_that_is_not_clear_takes_the_word_found_away(proven):
     doubtful = replace(proven, gain=Gain(0.5, -0.1, 1.1, 2.0, 1.5))
     assert "do not confirm it" in headline(doubtful)
     assert tone(doubtful) == "open"
+    blind = replace(proven, gain=Gain(None, None, None, 1.01, 1.0))
+    assert "neither confirm nor refute it" in headline(blind)
+    assert tone(blind) == "open"
     loose = replace(proven, causes=(replace(proven.causes[0], firm=False, sigmas=4.2),))
     assert "4.2 declared tolerances off" in headline(loose)
     assert "Found" not in headline(loose)

@@ -105,7 +105,9 @@ def _doubt(verdict: Verdict) -> str:
     if verdict.basis.held_out == "none":
         it = "Each" if verdict.verdict is Kind.AMBIGUOUS else "It"
         return f" {it} fits these recordings; no other recording has tested it."
-    if verdict.gain is None or not verdict.gain.passed:
+    if verdict.gain is None or verdict.gain.share is None:
+        return " The held-out recordings can neither confirm nor refute it."
+    if not verdict.gain.passed:
         return " The held-out recordings do not confirm it."
     return " Held-out recordings confirm it."
 
