@@ -11,10 +11,19 @@ import sys
 from pathlib import Path
 
 SUITES = {
-    "pendulum": "--none 200 --single 120 --outside 32 --pair 24 --confusable 24 --seed 20261121",
-    "ves2_fast": "--none 4 --single 3 --outside 0 --pair 0 --seed 20261121",
+    "pendulum": "--bench pendulum --none 200 --single 120 --outside 32 --pair 24 --confusable 24",
+    "pendulum_loose": "--bench pendulum --none 80 --single 40 --outside 0 --pair 0 --spread 2.5",
+    "ves2_fast": "--bench ves2_fast --none 4 --single 3 --outside 0 --pair 0",
 }
-"""Cases of each plant. One of VES II takes minutes, so they are few."""
+"""Cases of each suite. One of VES II takes minutes, so they are few."""
+
+SEED = 20261121
+
+TITLES = {
+    "pendulum": "pendulum",
+    "pendulum_loose": "pendulum, commissioned 2.5 times worse than declared",
+    "ves2_fast": "VES II, `fast`",
+}
 
 HEAD = """# Scorecard of the diagnosis
 
@@ -37,15 +46,15 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("page", type=Path)
     parser.add_argument("--folder", type=Path, default=Path("runs/blind"))
-    parser.add_argument("--bench", action="append", choices=list(SUITES), default=[])
+    parser.add_argument("--suite", action="append", choices=list(SUITES), default=[])
     arguments = parser.parse_args()
     parts = [HEAD]
-    for bench in arguments.bench or list(SUITES):
-        suite = str(arguments.folder / bench)
-        made = ["--bench", bench, *SUITES[bench].split(), "--out", suite]
+    for name in arguments.suite or list(SUITES):
+        suite = str(arguments.folder / name)
+        made = [*SUITES[name].split(), "--seed", str(SEED), "--out", suite]
         ves_twin("blind", "make", *made)
         ves_twin("blind", "answer", "--out", suite)
-        parts.append(f"## {bench}\n\n    ves-twin blind make {' '.join(made)}\n")
+        parts.append(f"## {TITLES[name]}\n\n    ves-twin blind make {' '.join(made)}\n")
         parts.append(ves_twin("blind", "score", "--out", suite))
     arguments.page.write_text("\n".join(parts), encoding="utf-8")
 

@@ -154,16 +154,23 @@ class _Carried:
         return self._metric(whitening).project(whitening.apply(measured - self.local.prediction))
 
     def energies(self, measured: SingleArray, whitening: Whitening) -> FloatArray:
-        """Predictive chi^2 of each stretch of time."""
+        """Predictive chi^2 of each stretch of time: what is left there, and its share of the pull.
+
+        z' (I + N N')^-1 z = |z - N b|^2 + |b|^2; z times what is left would be a sum too, but of
+        parts that cancel where the model is far off.
+        """
         z = whitening.apply(measured - self.local.prediction)
-        products = whitening.blocks(z * self._metric(whitening).project(z))
-        runs = self.local.runs
-        return np.concatenate(
+        metric, runs = self._metric(whitening), self.local.runs
+        pull = metric.nuisances(z)
+        squares = whitening.blocks(np.square(metric.project(z)))
+        left = np.concatenate(
             [
                 np.add.reduceat(np.sum(block, axis=1), _starts(runs, k, len(block)))
-                for k, block in enumerate(products)
+                for k, block in enumerate(squares)
             ]
         )
+        lengths = _stretches(runs, whitening)
+        return np.asarray(left + float(pull @ pull) * lengths / lengths.sum())
 
     def errors(self, measured: SingleArray) -> FloatArray:
         """Rms of each channel."""
