@@ -12,7 +12,6 @@ import numpy as np
 import pytest
 
 from ves_twin.cli.main import main
-from ves_twin.diagnosis.settings import Settings
 from ves_twin.measured.import_map import ImportMap
 from ves_twin.rigs.read import read_recording
 from ves_twin.rigs.rig import Rig
@@ -49,9 +48,8 @@ def test_the_page_names_the_hidden_friction_of_a_rig_that_is_not_ours(tmp_path, 
         "rail",
     )
     level = cause["parameters"]["level"]
-    # its machine integrates otherwise than the model: 0.25 % off where the fit has converged, which
-    # no interval of noise holds (docs/limits.md); a quarter of what the model may be wrong by
-    assert abs(level["value"] - 1.2) < 0.25 * Settings().model_error * 1.2
+    # the interval is of 90 %; twice its half-width is 3.3 sigma
+    assert abs(level["value"] - 1.2) < level["high"] - level["low"]
     assert verdict["gain"]["low"] > 0.0
     # what was written is a rig again, and has the friction
     again = Rig.load("diagnosed/plant.toml")
@@ -81,7 +79,7 @@ def test_a_log_of_another_shape_goes_through_map_and_experiment_to_the_same_fric
     (cause,) = verdict["causes"]
     assert (cause["effect"], cause["target"]) == ("coulomb_friction", "rail")
     level = cause["parameters"]["level"]
-    assert abs(level["value"] - 1.2) < 0.25 * Settings().model_error * 1.2  # as above
+    assert abs(level["value"] - 1.2) < level["high"] - level["low"]  # as above: 3.3 sigma
     # the other road is the same recording to the last bit, so that its verdict is the same
     assert main(shlex.split(imported)[1:]) == 0
     assert again.replace("bench.parquet", "bench.csv --map bench.map.toml").endswith("--out again")
