@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from ves_twin.diagnosis.assess import pull_limit
 from ves_twin.diagnosis.build_up import build_up
@@ -112,11 +112,24 @@ def conclude(
     grown = held is not None and not found.adequate and desk.settings.causes > 2
     if grown and held is not None:
         found = build_up(desk, found, held.gain)
+    found = _probed(found)
     limit = pull_limit(desk.first.screen.bank, desk.settings.alpha)
     gains = held.gains(found, limit) if held else []
     kind = _kind(found, gains, grown)
     ahead = _forecast(forward, recordings, found, desk.settings) if _names(kind) else None
     return Conclusion(found, kind, gains[0] if gains else None, ahead)
+
+
+def _probed(found: Explanation) -> Explanation:
+    """The chosen fits once more, with runs along what they know least of their causes."""
+    evidence = found.evidence
+    chosen = tuple(
+        refine(evidence, fit.causes, fit.shift, fit.local, 0, fit.step_share, probed=True)
+        for fit in found.chosen
+    )
+    better = {fit.causes: fit for fit in chosen}
+    fits = tuple(better.get(fit.causes, fit) for fit in found.fits)
+    return replace(found, chosen=chosen, fits=fits)
 
 
 def _names(kind: Kind) -> bool:

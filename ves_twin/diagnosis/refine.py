@@ -9,6 +9,7 @@ import numpy as np
 from ves_twin.diagnosis.evidence import Evidence
 from ves_twin.diagnosis.forward import Hypothesis
 from ves_twin.diagnosis.linearise import STEP_SD, Linearisation, linearise
+from ves_twin.diagnosis.probe import probe
 from ves_twin.diagnosis.runs import Runs
 from ves_twin.diagnosis.search import FARTHEST, Point, Search
 from ves_twin.types import FloatArray, IntArray, SingleArray
@@ -73,6 +74,7 @@ def refine(
     rounds: int = 0,
     step_share: float = 0.0,
     farthest: float = FARTHEST,
+    probed: bool = False,
 ) -> Fit:
     """Fit causes and nuisances with the full forward.
 
@@ -85,6 +87,8 @@ def refine(
             it has stayed within NEAR of where they were computed, or gains no more by it.
         step_share: of the discretisation column, to start from.
         farthest: commissioning sd within which nuisances are held.
+        probed: whether the Jacobian is put right along what is known least at the end: for fits
+            whose intervals somebody reads.
     """
     runs = evidence.runs
     free = (
@@ -107,6 +111,8 @@ def refine(
         point, jacobian = search.run(search.at(point.shift, point.delta))
         if before - point.chi2 < WORTH * point.chi2:
             break
+    if probed and np.isfinite(point.chi2):
+        point, jacobian = search.descend(point, probe(search, point, jacobian))
     hessian = search.hessian(jacobian)
     spread = np.diag(1.0 / np.sqrt(np.maximum(np.diag(hessian), 1e-30)))
     scaled = spread @ hessian @ spread + 1e-12 * np.eye(len(hessian))  # what nothing shows: wide

@@ -178,8 +178,11 @@ class Search:
         """The best point, and the Jacobian there."""
         if not np.isfinite(point.chi2):
             return point, np.zeros((0, len(self.unit)))
-        jacobian = self.jacobian(point)
         self.tempered = True
+        return self.descend(point, self.jacobian(point))
+
+    def descend(self, point: Point, jacobian: FloatArray) -> tuple[Point, FloatArray]:
+        """From a point with its Jacobian down to the best one."""
         for _ in range(ITERATIONS):
             found = self._step(point, jacobian)
             fall = point.chi2 - found.chi2

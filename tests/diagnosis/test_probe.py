@@ -1,0 +1,71 @@
+"""Intervals where several parameters together leave the record as it is."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from toy import SD, Toy, programme, shape
+
+from ves_twin.diagnosis.evidence import Evidence
+from ves_twin.diagnosis.forward import Parameter
+from ves_twin.diagnosis.linearise import linearise
+from ves_twin.diagnosis.refine import refine
+from ves_twin.diagnosis.runs import Runs
+from ves_twin.diagnosis.whitening import whitening_declared
+
+GAIN, MASS, LEVEL = 1.003, 0.996, 0.4
+PRIOR = {"plant.gain": 0.002, "plant.mass": 0.005}
+
+
+class Driven(Toy):
+    """(gain u - friction sign u) / mass: all three scaled together, it moves the same."""
+
+    def simulate(self, programme, values, refined=False):
+        u, time = programme.drive["drive.u"][:, 0], programme.time
+        value = {p.name: p.nominal for p in self.parameters} | dict(values)
+        force = 100.0 * value["plant.gain"] * u[:, None] * [0.3, 1.0]
+        force = force - 100.0 * value["friction.size"] * shape("friction", u, time)
+        return force / value["plant.mass"]
+
+
+@pytest.fixture(scope="module")
+def fits():
+    """Of a record, by columns that are one per cent off: as they are, and probed."""
+    fed = programme()
+    nuisances = tuple(Parameter(n, "1", 1.0, 0.0, 2.0, sd=sd) for n, sd in PRIOR.items())
+    plant = Driven(causes=("friction",), with_gain=False, nuisances=nuisances)
+    runs = Runs(plant, (fed,), (0, 1))
+    rng = np.random.default_rng(3)
+    true = {"plant.gain": GAIN, "plant.mass": MASS, "friction.size": LEVEL}
+    rows = plant.simulate(fed, true)
+    rows = rows + rng.standard_normal(rows.shape) * SD
+    evidence = Evidence(runs, rows.astype(np.float32), whitening_declared(runs))
+    (cause,) = plant.hypotheses
+    shift = runs.depart(runs.origin, runs.indices(cause), np.array([LEVEL]))
+    local = linearise(runs, shift)
+    sizes = np.linalg.norm(local.columns[:-1], axis=(1, 2)) / np.sqrt(local.columns[0].size)
+    off = rng.standard_normal(local.columns[:-1].shape) * 0.01 * sizes[:, None, None]
+    wrong = replace(local, columns=np.concatenate([local.columns[:-1] + off, local.columns[-1:]]))
+    return [refine(evidence, (cause,), shift, wrong, probed=probed) for probed in (False, True)]
+
+
+def test_errors_of_the_columns_do_not_pass_for_information(fits):
+    """Scaling moves nothing, so what is known of the scale is what both priors tell, divided."""
+    plain, probed = (float(np.sqrt(fit.covariance[0, 0])) / LEVEL for fit in fits)
+    relative = np.array(list(PRIOR.values()))
+    scale = 1.0 / np.sqrt(np.sum(relative**-2))
+    # two per cent: what the record itself tells of friction, and a curvature right to a tenth
+    assert probed == pytest.approx(scale, rel=0.06)
+    assert plain < 0.5 * scale
+
+
+def test_the_other_numbers_of_the_direction_are_put_right_too(fits):
+    gain = float(np.sqrt(fits[1].posterior[1, 1]))
+    assert gain == pytest.approx(1.0 / np.sqrt(sum(sd**-2 for sd in PRIOR.values())), rel=0.06)
+
+
+def test_the_true_size_lies_within_the_interval(fits):
+    off = (fits[1].sizes[0] - LEVEL) / np.sqrt(fits[1].covariance[0, 0])
+    assert abs(off) < 3.3
