@@ -32,7 +32,7 @@ class Driven(Toy):
 
 @pytest.fixture(scope="module")
 def fits():
-    """Of a record, by columns that are one per cent off: as they are, and probed."""
+    """Of a record, by columns that are three per cent off: as they are, and probed."""
     fed = programme()
     nuisances = tuple(Parameter(n, "1", 1.0, 0.0, 2.0, sd=sd) for n, sd in PRIOR.items())
     plant = Driven(causes=("friction",), with_gain=False, nuisances=nuisances)
@@ -46,7 +46,7 @@ def fits():
     shift = runs.depart(runs.origin, runs.indices(cause), np.array([LEVEL]))
     local = linearise(runs, shift)
     sizes = np.linalg.norm(local.columns[:-1], axis=(1, 2)) / np.sqrt(local.columns[0].size)
-    off = rng.standard_normal(local.columns[:-1].shape) * 0.01 * sizes[:, None, None]
+    off = rng.standard_normal(local.columns[:-1].shape) * 0.03 * sizes[:, None, None]
     wrong = replace(local, columns=np.concatenate([local.columns[:-1] + off, local.columns[-1:]]))
     return [refine(evidence, (cause,), shift, wrong, probed=probed) for probed in (False, True)]
 
@@ -58,7 +58,7 @@ def test_errors_of_the_columns_do_not_pass_for_information(fits):
     scale = 1.0 / np.sqrt(np.sum(relative**-2))
     # two per cent: what the record itself tells of friction, and a curvature right to a tenth
     assert probed == pytest.approx(scale, rel=0.06)
-    assert plain < 0.5 * scale
+    assert plain < 0.8 * scale
 
 
 def test_the_other_numbers_of_the_direction_are_put_right_too(fits):

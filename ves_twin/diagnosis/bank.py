@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 
 from ves_twin.diagnosis.forward import Hypothesis
-from ves_twin.diagnosis.linearise import Linearisation, linearise
+from ves_twin.diagnosis.linearise import Linearisation, linearise, with_bends
 from ves_twin.diagnosis.runs import Progress, Runs, silent
 from ves_twin.errors import FileAccessError
 from ves_twin.types import FloatArray, IntArray, SingleArray
@@ -26,7 +26,7 @@ LADDER = 6.0
 SAME = 1e-2
 """Sd of one sample by which a kept prediction may be off: rounding of another processor."""
 
-SCHEMA = 2
+SCHEMA = 3
 """Version of the cached file; another one is built anew."""
 
 
@@ -90,6 +90,7 @@ def build_bank(
     point: FloatArray | None = None,
     hypotheses: tuple[Hypothesis, ...] | None = None,
     progress: Progress = silent,
+    base: Linearisation | None = None,
 ) -> Bank:
     """Simulate every hypothesis at its finite sizes.
 
@@ -99,13 +100,15 @@ def build_bank(
             bank that looks for a second one.
         hypotheses: the library; that of the forward if None.
         progress: told how far it is.
+        base: linearisation there, if it is known.
 
     Returns:
         The bank, without entries that bounds leave near the starting point or that diverge.
     """
     start = runs.origin if point is None else point
     library = runs.forward.hypotheses if hypotheses is None else hypotheses
-    base = linearise(runs, start, progress)
+    if base is None:
+        base = with_bends(linearise(runs, start, progress), progress)
     shifts, owner, sizes = [], [], []
     for h, hypothesis in enumerate(library):
         if hypothesis.linear and _column(runs, hypothesis) is not None:
@@ -196,6 +199,7 @@ def cached_bank(runs: Runs, folder: Path | None, build: Callable[[], Bank]) -> B
         path,
         prediction=bank.base.prediction,
         columns=bank.base.columns,
+        bends=bank.base.bends,
         owner=bank.owner,
         sizes=np.concatenate(bank.sizes),
         shape=bank.shape,
@@ -243,6 +247,7 @@ def _read(path: Path, runs: Runs) -> Bank:
         owner = content["owner"]
         widths = [len(runs.forward.hypotheses[i].parameters) for i in owner]
         sizes = tuple(np.split(content["sizes"], np.cumsum(widths)[:-1]))
-        base = Linearisation(runs, runs.origin, content["prediction"], content["columns"])
+        parts = (content[name] for name in ("prediction", "columns", "bends"))
+        base = Linearisation(runs, runs.origin, *parts)
         shape, factor, bent = (content[name] for name in ("shape", "factor", "bent"))
         return Bank(base, runs.forward.hypotheses, owner, sizes, shape, factor, bent)

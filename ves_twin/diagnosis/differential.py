@@ -10,7 +10,7 @@ import numpy as np
 
 from ves_twin.diagnosis.evidence import Evidence
 from ves_twin.diagnosis.forward import Channel, Forward, Hypothesis, Parameter, Programme
-from ves_twin.diagnosis.linearise import linearise
+from ves_twin.diagnosis.linearise import linearise, with_bends
 from ves_twin.diagnosis.observe import Observed, observe
 from ves_twin.diagnosis.refine import refine
 from ves_twin.diagnosis.runs import Runs
@@ -63,7 +63,8 @@ def differential(
     """
     runs = seen.runs
     rows, count = _usual(seen, baseline)
-    fit = refine(Evidence(runs, rows, whitening), (), runs.origin, linearise(runs, runs.origin), 1)
+    local = with_bends(linearise(runs, runs.origin))
+    fit = refine(Evidence(runs, rows, whitening), (), runs.origin, local, 1)
     noise = float(np.sqrt(1.0 + 1.0 / count))
     tuned = again(Tuned.to(runs, fit.shift, noise))
     step = np.float32(fit.step_share) * fit.local.columns[-1]

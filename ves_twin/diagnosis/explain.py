@@ -11,7 +11,7 @@ from ves_twin.diagnosis.assess import Assessment, pull_limit
 from ves_twin.diagnosis.bank import build_bank
 from ves_twin.diagnosis.evidence import Evidence
 from ves_twin.diagnosis.forward import Hypothesis
-from ves_twin.diagnosis.linearise import Linearisation
+from ves_twin.diagnosis.linearise import Linearisation, renewed
 from ves_twin.diagnosis.null import Thresholds
 from ves_twin.diagnosis.probability import probabilities
 from ves_twin.diagnosis.refine import Fit, bare_residual, refine, residual_about
@@ -319,7 +319,8 @@ def suspects_at(
     likely = Screen(bank, evidence.whitening, fit.free).suspects(about)
     others = [bank.hypotheses[s.hypothesis] for s in likely]
     rest = tuple(h for h in others if h not in fit.causes)[:SHORTLIST]
-    local = build_bank(evidence.runs, fit.shift, rest, desk.progress)
+    base = renewed(fit.local, fit.shift)
+    local = build_bank(evidence.runs, fit.shift, rest, desk.progress, base)
     z = residual_about(evidence, fit, local.base)
     return rest, Screen(local, evidence.whitening, fit.free).suspects(z)
 

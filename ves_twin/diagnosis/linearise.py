@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -12,6 +12,15 @@ from ves_twin.types import FloatArray, IntArray, SingleArray
 STEP_SD = 2.0
 """Prior sd of the discretisation column. A first-order integrator is off by twice what halving its
 step changes, a second-order one by 4/3 of it."""
+
+GUESS = 0.1
+"""Share of a column that changes over a rig within its tolerances, where that was not measured."""
+
+STIFF = 3.0
+"""Change of a column [sigma] below which it is not computed anew at a fit."""
+
+FORWARD_STEP = 1.0
+"""Commissioning sd of a one-sided difference at a fit."""
 
 
 @dataclass(frozen=True)
@@ -23,12 +32,15 @@ class Linearisation:
         point: departures where it holds (coordinates,).
         prediction: channels there (rows, c).
         columns: change for one sd of each nuisance, then the discretisation (k + 1, rows, c).
+        bends: how much each column changes from here to a rig drawn within its tolerances, as the
+            root of the sum of squares over all rows, in declared noise sd (k + 1,).
     """
 
     runs: Runs
     point: FloatArray
     prediction: SingleArray
     columns: SingleArray
+    bends: FloatArray
 
 
 def linearise(
@@ -66,4 +78,32 @@ def linearise(
     near = prediction[None] if forward_step is not None else stacks[2::2]
     columns = list((far - near) * np.array(weights, np.float32)[:, None, None])
     columns.append(np.float32(STEP_SD) * (runs.one(point, refined=True) - prediction))
-    return Linearisation(runs, point, prediction, np.stack(columns))
+    found = np.stack(columns)
+    return Linearisation(runs, point, prediction, found, GUESS * _sizes(runs, found))
+
+
+def with_bends(base: Linearisation, progress: Progress = silent) -> Linearisation:
+    """The same, with its bends as a second linearisation at a drawn rig has them."""
+    runs, where = base.runs, base.runs.nuisances
+    drawn = np.random.default_rng(0).standard_normal(len(where))
+    there = runs.depart(base.point, where, base.point[where] + runs.sd[where] * drawn)
+    other = linearise(runs, there, progress, forward_step=FORWARD_STEP)
+    if not np.all(np.isfinite(other.columns)):
+        return base
+    return replace(base, bends=_sizes(runs, other.columns - base.columns))
+
+
+def renewed(local: Linearisation, point: FloatArray) -> Linearisation:
+    """At another point: columns that bend are computed there, the others stay."""
+    runs = local.runs
+    bent = np.flatnonzero(local.bends[:-1] > STIFF)
+    axes = runs.nuisances[bent], runs.sd[runs.nuisances[bent]]
+    there = linearise(runs, point, axes=axes, forward_step=FORWARD_STEP)
+    columns = local.columns.copy()
+    columns[[*bent, -1]] = there.columns
+    return replace(local, point=point, prediction=there.prediction, columns=columns)
+
+
+def _sizes(runs: Runs, columns: SingleArray) -> FloatArray:
+    sds = np.array([runs.forward.channels[c].sd for c in runs.columns])
+    return np.asarray(np.sqrt(np.sum(np.square(columns / sds, dtype=float), axis=(1, 2))))

@@ -8,7 +8,7 @@ import numpy as np
 
 from ves_twin.diagnosis.evidence import Evidence
 from ves_twin.diagnosis.forward import Hypothesis
-from ves_twin.diagnosis.linearise import STEP_SD, Linearisation, linearise
+from ves_twin.diagnosis.linearise import STEP_SD, Linearisation, renewed
 from ves_twin.diagnosis.probe import probe
 from ves_twin.diagnosis.runs import Runs
 from ves_twin.diagnosis.search import FARTHEST, Point, Search
@@ -16,9 +16,6 @@ from ves_twin.types import FloatArray, IntArray, SingleArray
 
 NEAR = 0.3
 """Commissioning sd within which nuisance columns are taken to hold; absent parameters: 6 %."""
-
-FORWARD_STEP = 1.0
-"""Commissioning sd of a one-sided difference at a fit."""
 
 WORTH = 3e-4
 """Fall of chi^2, of all of it, below which another linearisation is not worth its runs."""
@@ -106,8 +103,8 @@ def refine(
         if _near(runs, search, point.shift):
             break
         before = point.chi2
-        local = linearise(runs, point.shift, forward_step=FORWARD_STEP)
-        search = Search(evidence, free, local, farthest)
+        turned = replace(search.local, columns=search.turned)
+        search = Search(evidence, free, renewed(turned, point.shift), farthest)
         point, jacobian = search.run(search.at(point.shift, point.delta))
         if before - point.chi2 < WORTH * point.chi2:
             break

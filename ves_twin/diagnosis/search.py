@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ves_twin.diagnosis.evidence import Evidence
-from ves_twin.diagnosis.linearise import Linearisation
+from ves_twin.diagnosis.linearise import GUESS, Linearisation
 from ves_twin.types import FloatArray, IntArray, SingleArray
 
 ITERATIONS = 40
@@ -38,9 +38,9 @@ BENT = 0.01
 """Squared error [sigma^2] of a predicted change above which the Jacobian is turned: single
 precision makes 1e-6 of it, and a smaller error moves no estimate."""
 
-LEAST_MOVE = 1.0
-"""Move [sd] below which the columns learn less from it: a rig that sticks and slips answers some
-7 sigma off by chance, whatever the move."""
+CHANCE = 25.0
+"""Squared change of a prediction [sigma^2] from which the columns learn half as much: a rig that
+sticks and slips answers some 5 sigma off by chance, whatever the move."""
 
 DAMPING = 10.0
 """First weight, and growth of the weight, that a step which did not help adds to the priors: a
@@ -85,11 +85,13 @@ class Search:
     """Gauss-Newton in whitened space; the Jacobian follows the runs it makes anyway (Broyden).
 
     J has a column for each free parameter, for one sd of each nuisance, and for delta. After a
-    move m that changed the prediction by c instead of J m it becomes J + (c - J m) m' / m'm, so
-    columns that no longer hold turn right without a run of their own. They are turned before
-    whitening too, for whoever goes on from the fit, with another noise or another cause.
+    move m that changed the prediction by c instead of J m it becomes J + (c - J m) (B m)' / m'B m,
+    with B the squares of what the columns may be off by: a surprise is laid to those that bend,
+    and the others stay right. They are turned before whitening too, for whoever goes on from the
+    fit, with another noise or another cause.
 
-    Source: Broyden 1965, the good update.
+    Source: Broyden 1965, the good update, with weights: the most probable J if its columns' errors
+    are independent and normal with the covariance B.
     """
 
     def __init__(
@@ -118,6 +120,8 @@ class Search:
         self.damping = 0.0
         self.unit = np.ones(len(free) + len(self.nuisances) + 1)
         self.unit[len(free) : -1] = runs.sd[self.nuisances]
+        self.bends = np.append(np.zeros(len(free)), local.bends[[*self.kept, len(runs.nuisances)]])
+        self.bends[len(free) + self.known] = 0.0  # those columns are right
 
     def at(self, shift: FloatArray, delta: float) -> Point:
         """The best point that differs from a given one by what only adds to the channels.
@@ -157,6 +161,7 @@ class Search:
             columns.append(self.evidence.whitening.apply(raw[-1]))
         self.raw = np.array(raw, np.float32).reshape(-1, *point.prediction.shape)
         free = np.array(columns).reshape(-1, len(point.residual)).T
+        self.bends[: len(self.free)] = GUESS * np.linalg.norm(free, axis=0)
         return np.concatenate([free, self.columns], axis=1)
 
     def _ends(self, shift: FloatArray, axis: int) -> tuple[FloatArray, FloatArray]:
@@ -260,8 +265,7 @@ class Search:
         move = (there - np.append(point.shift[axes], point.delta)) / self.unit
         surprise = point.residual - trial.residual - jacobian @ move
         if surprise @ surprise > BENT:
-            turning = move.copy()
-            turning[len(self.free) + self.known] = 0.0  # those columns are right
-            share = turning / (turning @ turning + LEAST_MOVE**2)
+            turning = self.bends**2 * move
+            share = turning / (turning @ move + CHANCE)
             jacobian += np.outer(surprise, share)
             self._turn(trial.prediction - point.prediction, move, share)

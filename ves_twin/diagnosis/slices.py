@@ -67,7 +67,11 @@ def of_time(bank: Bank, seconds: float) -> Bank:
 
 def _part(bank: Bank, runs: Runs, columns: list[int], rows: IntArray) -> Bank:
     base = Linearisation(
-        runs, runs.origin, bank.base.prediction[rows], bank.base.columns[columns][:, rows]
+        runs,
+        runs.origin,
+        bank.base.prediction[rows],
+        bank.base.columns[columns][:, rows],
+        bank.base.bends[columns],
     )
     # a shape is a column of the base, or one of those behind them
     count = len(bank.base.columns)
