@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from ves_twin.diagnosis.linearise import Linearisation, linearise
+from ves_twin.diagnosis.linearise import STIFF, Linearisation, linearise
 from ves_twin.diagnosis.metric import Metric
 from ves_twin.diagnosis.refine import Fit
 from ves_twin.diagnosis.runs import Runs
@@ -94,7 +94,8 @@ def held_out_gain(
         confidence: of the interval.
         seed: of the resampling.
     """
-    better, plain = _Carried.of(runs, extended), _Carried.of(runs, nominal)
+    better = _Carried.of(runs, extended)
+    plain = better.beside(extended, nominal)
     own = whitening.adapted(better.left(measured, whitening))
     floor = own.floor(better.left(measured, own))
     after, before = better.energies(measured, own), plain.energies(measured, own)
@@ -133,21 +134,30 @@ class _Carried:
 
     @staticmethod
     def of(runs: Runs, fit: Fit) -> _Carried:
-        there = fit.local.runs
-        shared = [n for n, i in enumerate(fit.active) if there.coordinates[i].recording == -1]
-        names = [axis.parameter.name for axis in runs.coordinates]
-        carried = np.array(
-            [names.index(there.coordinates[fit.active[n]].parameter.name) for n in shared], int
+        axes = _Axes.of(runs, fit)
+        every = np.concatenate([axes.carried, axes.new]), np.concatenate([axes.sd, axes.drawn])
+        return _Carried(
+            linearise(runs, axes.point, axes=every, forward_step=FORWARD_STEP), axes.root
         )
-        point = runs.origin
-        point[carried] = fit.shift[fit.active[shared]]
-        new = np.array([i for i in runs.nuisances if runs.coordinates[i].recording != -1], int)
-        covariance = fit.posterior[np.ix_(shared, shared)]
-        sd = np.sqrt(np.maximum(np.diag(covariance), 1e-30))
-        axes = np.concatenate([carried, new]), np.concatenate([sd, runs.sd[new]])
-        values, vectors = np.linalg.eigh(covariance / np.outer(sd, sd))
-        local = linearise(runs, point, axes=axes, forward_step=FORWARD_STEP)
-        return _Carried(local, vectors * np.sqrt(np.maximum(values, 0.0)))
+
+    def beside(self, one: Fit, other: Fit) -> _Carried:
+        """Another fit, by the columns of this one: those that bend are computed anew."""
+        runs = self.local.runs
+        mine, axes = _Axes.of(runs, one), _Axes.of(runs, other)
+        place = {int(i): n for n, i in enumerate([*mine.carried, *mine.new])}
+        rows = [place[int(i)] for i in [*axes.carried, *axes.new]]
+        sd, own = np.concatenate([axes.sd, axes.drawn]), np.concatenate([mine.sd, mine.drawn])
+        share = (sd / own[rows]).astype(np.float32)
+        columns = self.local.columns[[*rows, -1]]
+        columns[:-1] *= share[:, None, None]
+        bent = np.flatnonzero(axes.bends > STIFF)
+        some = np.concatenate([axes.carried, axes.new])[bent], sd[bent]
+        there = linearise(runs, axes.point, axes=some, forward_step=FORWARD_STEP)
+        columns[[*bent, -1]] = there.columns
+        bends = np.append(axes.bends, 0.0)
+        return _Carried(
+            Linearisation(runs, axes.point, there.prediction, columns, bends), axes.root
+        )
 
     def left(self, measured: SingleArray, whitening: Whitening) -> FloatArray:
         """What the nuisances cannot explain, whitened (samples,)."""
@@ -181,6 +191,45 @@ class _Carried:
         columns = whitening.apply(self.local.columns).T
         count = len(self.root)
         return Metric(np.concatenate([columns[:, :count] @ self.root, columns[:, count:]], axis=1))
+
+
+@dataclass(frozen=True)
+class _Axes:
+    """What a fit says of other recordings.
+
+    Attributes:
+        point: departures there.
+        carried: coordinates that both have, with the fit's own sd, and the covariance's root.
+        new: coordinates drawn anew for each recording, with their prior sd `drawn`.
+        bends: how much each column, carried and new, changes over a rig [sigma].
+    """
+
+    point: FloatArray
+    carried: IntArray
+    sd: FloatArray
+    root: FloatArray
+    new: IntArray
+    drawn: FloatArray
+    bends: FloatArray
+
+    @staticmethod
+    def of(runs: Runs, fit: Fit) -> _Axes:
+        there = fit.local.runs
+        shared = [n for n, i in enumerate(fit.active) if there.coordinates[i].recording == -1]
+        names = [axis.parameter.name for axis in runs.coordinates]
+        labels = [there.coordinates[i].parameter.name for i in fit.active[shared]]
+        carried = np.array([names.index(label) for label in labels], int)
+        point = runs.origin
+        point[carried] = fit.shift[fit.active[shared]]
+        new = np.array([i for i in runs.nuisances if runs.coordinates[i].recording != -1], int)
+        covariance = fit.posterior[np.ix_(shared, shared)]
+        sd = np.sqrt(np.maximum(np.diag(covariance), 1e-30))
+        values, vectors = np.linalg.eigh(covariance / np.outer(sd, sd))
+        root = vectors * np.sqrt(np.maximum(values, 0.0))
+        every = [there.coordinates[i].parameter.name for i in there.nuisances]
+        bend = dict(zip(every, fit.local.bends[:-1], strict=True))
+        bends = np.array([bend.get(names[i], np.inf) for i in [*carried, *new]])
+        return _Axes(point, carried, sd, root, new, runs.sd[new], bends)
 
 
 def _starts(runs: Runs, k: int, rows: int) -> IntArray:
