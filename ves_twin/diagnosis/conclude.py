@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
+import numpy as np
+
 from ves_twin.diagnosis.assess import pull_limit
 from ves_twin.diagnosis.build_up import build_up
 from ves_twin.diagnosis.explain import Desk, Explanation, explain
@@ -84,7 +86,9 @@ class HeldOut:
         """
         before = found.commissioning
         if before.pull > limit:
-            at = (before.shift, before.local, 0, before.step_share)
+            best = found.best  # held within the limit it is a better start than what was strained
+            start = np.where(best.local.runs.sd > 0.0, best.shift, 0.0)
+            at = (start, best.local, 0, best.step_share)
             before = refine(found.evidence, (), *at, farthest=limit)
         rivals = [] if found.adequate else [fit for fit in found.fits if fit is not found.best]
         return [self.gain(before, fit) for fit in [found.best, *rivals]]

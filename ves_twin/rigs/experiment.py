@@ -2,18 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from pathlib import Path
 from typing import Annotated, Any, Self
 
-from pydantic import Field, ValidationError, field_validator, model_validator
+from pydantic import Field, field_validator, model_validator
 
-from ves_twin.errors import UnknownNameError
 from ves_twin.rigs.description import Number, Start
 from ves_twin.scenario.experiment import StartState, Window
 from ves_twin.scenario.fields import Part, Seconds, named, si
-from ves_twin.scenario.load import refusal
-from ves_twin.toml_file import read_toml
+from ves_twin.scenario.told import Told
 
 OF_VES_II = ("scenario", "settings")
 """Keys of an experiment with VES II that a rig has nothing for."""
@@ -58,7 +54,7 @@ class RigDifferences(Part):
     window: Window | None = None
 
 
-class RigExperiment(Part):
+class RigExperiment(Told):
     """How a recording was made, as far as the rig's file does not say.
 
     `drive` are the signals that were fed in, and so tells the mode; `compare` those that are
@@ -91,34 +87,3 @@ class RigExperiment(Part):
         if value is not None and not isinstance(value, dict | Load):
             raise ValueError(f'got {value!r}, expected {{ body = "...", mass = "... kg" }}')
         return value
-
-    @staticmethod
-    def load(path: str | Path) -> RigExperiment:
-        """An experiment from a TOML file.
-
-        Raises:
-            FileAccessError: missing or unreadable file.
-            UnknownNameError: unknown key; says the nearest one.
-            InvalidInputError: wrong type, unit or range; says the key.
-        """
-        content, _ = read_toml("experiment", Path(path))
-        try:
-            return RigExperiment.model_validate(content)
-        except ValidationError as error:
-            raise refusal(error, Path(path).name, RigExperiment) from None
-
-    def of(self, name: str) -> RigExperiment:
-        """The experiment of one recording, by its name with or without its ending."""
-        own = self.recordings.get(name) or self.recordings.get(Path(name).stem)
-        if own is None:
-            return self
-        said = {k: v for k in RigDifferences.model_fields if (v := getattr(own, k)) is not None}
-        said["parameters"] = {**self.parameters, **own.parameters}
-        return self.model_copy(update=said)
-
-    def check_names(self, names: Sequence[str]) -> None:
-        """Raise UnknownNameError if it speaks of a recording that is not there."""
-        known = {*names, *(Path(name).stem for name in names)}
-        for name in self.recordings:
-            if name not in known:
-                raise UnknownNameError("recording in the experiment", name, known)

@@ -3,9 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Sequence
 from enum import StrEnum
-from pathlib import Path
 from typing import Annotated, Any, Self
 
 from pydantic import Field, ValidationError, field_validator, model_validator
@@ -17,8 +15,8 @@ from ves_twin.recording.recording import Recording
 from ves_twin.scenario.fields import Joints, Part, Pose, Seconds, named, si
 from ves_twin.scenario.load import refusal
 from ves_twin.scenario.schema import Scenario
+from ves_twin.scenario.told import Told
 from ves_twin.signals import SIGNALS, Role
-from ves_twin.toml_file import read_toml
 
 DRIVES = ("leg.command", "platform.command", "arm.command", "gravity.estimate")
 """What can be fed into a plant."""
@@ -94,7 +92,7 @@ class Differences(Part):
     window: Window | None = None
 
 
-class Experiment(Part):
+class Experiment(Told):
     """How a recording was made, as far as its own metadata do not say.
 
     `scenario` gives clocks, leg gains, belief and the emulated system; `settings` are dotted keys
@@ -128,37 +126,6 @@ class Experiment(Part):
         if self.settings and self.scenario is None:
             raise ValueError("settings: they change a scenario, and none is named")
         return self
-
-    @staticmethod
-    def load(path: str | Path) -> Experiment:
-        """An experiment from a TOML file.
-
-        Raises:
-            FileAccessError: missing or unreadable file.
-            UnknownNameError: unknown key or signal; says the nearest one.
-            InvalidInputError: wrong type, unit or range; says the key.
-        """
-        content, _ = read_toml("experiment", Path(path))
-        try:
-            return Experiment.model_validate(content)
-        except ValidationError as error:
-            raise refusal(error, Path(path).name, Experiment) from None
-
-    def of(self, name: str) -> Experiment:
-        """The experiment of one recording, by its name with or without its ending."""
-        own = self.recordings.get(name) or self.recordings.get(Path(name).stem)
-        if own is None:
-            return self
-        said = {k: v for k in Differences.model_fields if (v := getattr(own, k)) is not None}
-        said["parameters"] = {**self.parameters, **own.parameters}
-        return self.model_copy(update=said)
-
-    def check_names(self, names: Sequence[str]) -> None:
-        """Raise UnknownNameError if it speaks of a recording that is not there."""
-        known = {*names, *(Path(name).stem for name in names)}
-        for name in self.recordings:
-            if name not in known:
-                raise UnknownNameError("recording in the experiment", name, known)
 
     def rig(self, given: Plant | None, scenario: Scenario) -> Plant:
         """The plant that is tried, with the numbers and the payload of the experiment.
