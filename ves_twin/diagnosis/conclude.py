@@ -25,6 +25,10 @@ from ves_twin.workers import Workers
 MOST = 0.5
 """Share of the held-out excess that a part of the truth must take, its interval's lower end."""
 
+ROUGH = 0.01
+"""Fall of chi^2, of all of it, that ends the search for the model before, where commissioning
+errors are held: it moves a gain by no more than that."""
+
 
 @dataclass(frozen=True)
 class Conclusion:
@@ -89,7 +93,7 @@ class HeldOut:
             best = found.best  # held within the limit it is a better start than what was strained
             start = np.where(best.local.runs.sd > 0.0, best.shift, 0.0)
             at = (start, best.local, 0, best.step_share)
-            before = refine(found.evidence, (), *at, farthest=limit)
+            before = refine(found.evidence, (), *at, farthest=limit, enough=ROUGH)
         rivals = [] if found.adequate else [fit for fit in found.fits if fit is not found.best]
         return [self.gain(before, fit) for fit in [found.best, *rivals]]
 

@@ -11,7 +11,7 @@ from ves_twin.diagnosis.forward import Hypothesis
 from ves_twin.diagnosis.linearise import STEP_SD, Linearisation, renewed
 from ves_twin.diagnosis.probe import probe
 from ves_twin.diagnosis.runs import Runs
-from ves_twin.diagnosis.search import FARTHEST, Point, Search
+from ves_twin.diagnosis.search import FARTHEST, WORTHLESS, Point, Search
 from ves_twin.types import FloatArray, IntArray, SingleArray
 
 NEAR = 0.3
@@ -72,6 +72,7 @@ def refine(
     step_share: float = 0.0,
     farthest: float = FARTHEST,
     probed: bool = False,
+    enough: float = WORTHLESS,
 ) -> Fit:
     """Fit causes and nuisances with the full forward.
 
@@ -86,6 +87,7 @@ def refine(
         farthest: commissioning sd within which nuisances are held.
         probed: whether the Jacobian is put right along what is known least at the end: for fits
             whose intervals somebody reads.
+        enough: fall of chi^2, of all of it, that is not worth another run.
     """
     runs = evidence.runs
     free = (
@@ -93,18 +95,18 @@ def refine(
         if causes
         else np.zeros(0, int)
     )
-    search = Search(evidence, free, local, farthest)
+    search = Search(evidence, free, local, farthest, enough)
     start = np.clip(shift, search.low, search.high)
     point, jacobian = search.run(search.at(start, step_share))
     if np.isfinite(point.chi2) and not _near(runs, search, point.shift):
-        search = Search(evidence, free, _stepped(search, point), farthest)
+        search = Search(evidence, free, _stepped(search, point), farthest, enough)
         point, jacobian = search.run(search.at(point.shift, point.delta))
     for _ in range(rounds):
         if _near(runs, search, point.shift):
             break
         before = point.chi2
         turned = replace(search.local, columns=search.turned)
-        search = Search(evidence, free, renewed(turned, point.shift), farthest)
+        search = Search(evidence, free, renewed(turned, point.shift), farthest, enough)
         point, jacobian = search.run(search.at(point.shift, point.delta))
         if before - point.chi2 < WORTH * point.chi2:
             break

@@ -100,8 +100,10 @@ class Search:
         free: IntArray,
         local: Linearisation,
         farthest: float = FARTHEST,
+        enough: float = WORTHLESS,
     ) -> None:
         runs = evidence.runs
+        self.enough = enough
         self.evidence, self.runs, self.free, self.local = evidence, runs, free, local
         self.kept = np.flatnonzero(~np.isin(runs.nuisances, free))
         self.nuisances = runs.nuisances[self.kept]
@@ -192,7 +194,7 @@ class Search:
             found = self._step(point, jacobian)
             fall = point.chi2 - found.chi2
             point = found
-            if fall < CONVERGED + WORTHLESS * point.chi2:
+            if fall < CONVERGED + self.enough * point.chi2:
                 if not self.tempered or self._heat(point) < 1.0 + HOT:
                     break
                 self.tempered = False
