@@ -80,7 +80,7 @@ class HeldOut:
         )
 
     def gains(self, found: Explanation, limit: float) -> list[Gain]:
-        """Of the best explanation; of its rivals too, where it leaves something unexplained.
+        """Of the best explanation; of its rivals too, where that could be part of the truth.
 
         Args:
             found: the explanation.
@@ -94,8 +94,11 @@ class HeldOut:
             start = np.where(best.local.runs.sd > 0.0, best.shift, 0.0)
             at = (start, best.local, 0, best.step_share)
             before = refine(found.evidence, (), *at, farthest=limit, enough=ROUGH)
-        rivals = [] if found.adequate else [fit for fit in found.fits if fit is not found.best]
-        return [self.gain(before, fit) for fit in [found.best, *rivals]]
+        first = self.gain(before, found.best)
+        if found.adequate or first.low is None or first.low <= MOST:
+            return [first]
+        rivals = [fit for fit in found.fits if fit is not found.best]
+        return [first, *(self.gain(before, fit) for fit in rivals)]
 
 
 def whitening_of(runs: Runs, standstill: Recording | None) -> Whitening:
