@@ -23,7 +23,11 @@ from ves_twin.recording.recording import Recording
 from ves_twin.workers import Workers
 
 MOST = 0.5
-"""Share of the held-out excess that a part of the truth must take, its interval's lower end."""
+"""Share of the held-out excess that causes proved one by one must take, interval's lower end."""
+
+ALMOST = 0.95
+"""The same of a single cause that leaves more than noise: a wrong one that moves the same channels
+takes up to nine tenths (viscous damping of a drag with the square of speed, of blind pendulums)."""
 
 ROUGH = 0.01
 """Fall of chi^2, of all of it, that ends the search for the model before, where commissioning
@@ -79,7 +83,7 @@ class HeldOut:
             self.settings.seed,
         )
 
-    def gains(self, found: Explanation, limit: float) -> list[Gain]:
+    def gains(self, found: Explanation, limit: float, least: float) -> list[Gain]:
         """Of the best explanation; of its rivals too, where that could be part of the truth.
 
         Args:
@@ -87,6 +91,7 @@ class HeldOut:
             limit: commissioning sd that a rig in order does not pass. The model before is tuned
                 within it: a cause that commissioning knows too would else be in that model,
                 tens of sd of it, and naming it be worth nothing.
+            least: share of the excess from which something unexplained leaves a part of the truth.
         """
         before = found.commissioning
         if before.pull > limit:
@@ -95,7 +100,7 @@ class HeldOut:
             at = (start, best.local, 0, best.step_share)
             before = refine(found.evidence, (), *at, farthest=limit, enough=ROUGH)
         first = self.gain(before, found.best)
-        if found.adequate or first.low is None or first.low <= MOST:
+        if found.adequate or first.low is None or first.low <= least:
             return [first]
         rivals = [fit for fit in found.fits if fit is not found.best]
         return [first, *(self.gain(before, fit) for fit in rivals)]
@@ -125,8 +130,10 @@ def conclude(
         found = build_up(desk, found, held.gain)
     found = _probed(found)
     limit = pull_limit(desk.first.screen.bank, desk.settings.alpha)
-    gains = held.gains(found, limit) if held else []
-    kind = _kind(found, gains, grown)
+    together = grown and len(found.best.causes) > 1
+    least = MOST if together else ALMOST
+    gains = held.gains(found, limit, least) if held else []
+    kind = _kind(found, gains, least)
     ahead = _forecast(forward, recordings, found, desk.settings) if _names(kind) else None
     return Conclusion(found, kind, gains[0] if gains else None, ahead)
 
@@ -147,24 +154,23 @@ def _names(kind: Kind) -> bool:
     return kind not in (Kind.NOTHING, Kind.UNKNOWN)
 
 
-def _kind(found: Explanation, gains: Sequence[Gain], proved: bool) -> Kind:
+def _kind(found: Explanation, gains: Sequence[Gain], least: float) -> Kind:
     if not found.adequate:
-        return Kind.PARTIAL if _beats(found, gains, proved) else Kind.UNKNOWN
+        return Kind.PARTIAL if _beats(found, gains, least) else Kind.UNKNOWN
     if len(found.chosen) > 1:
         return Kind.AMBIGUOUS
     return Kind.NAMED if len(found.best.causes) == 1 else Kind.SEVERAL
 
 
-def _beats(found: Explanation, gains: Sequence[Gain], proved: bool) -> bool:
+def _beats(found: Explanation, gains: Sequence[Gain], least: float) -> bool:
     """Whether the causes take most of the held-out excess away, and no rival nearly as much.
 
     Of causes together each was proved against its rivals already.
     """
     if len(found.chosen) > 1 or not gains or gains[0].low is None:
         return False
-    together = proved and len(found.best.causes) > 1
-    rivals = [] if together else [gain.share or 0.0 for gain in gains[1:]]
-    return gains[0].low > max([MOST, *rivals])
+    rivals = [] if least == MOST else [gain.share or 0.0 for gain in gains[1:]]
+    return gains[0].low > max([least, *rivals])
 
 
 def _forecast(

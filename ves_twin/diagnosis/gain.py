@@ -141,17 +141,18 @@ class _Carried:
         )
 
     def beside(self, one: Fit, other: Fit) -> _Carried:
-        """Another fit, by the columns of this one: those that bend are computed anew."""
+        """Another fit, by the columns of this one: those that bend, or are new, are computed."""
         runs = self.local.runs
         mine, axes = _Axes.of(runs, one), _Axes.of(runs, other)
         place = {int(i): n for n, i in enumerate([*mine.carried, *mine.new])}
-        rows = [place[int(i)] for i in [*axes.carried, *axes.new]]
+        where = np.concatenate([axes.carried, axes.new])
         sd, own = np.concatenate([axes.sd, axes.drawn]), np.concatenate([mine.sd, mine.drawn])
-        share = (sd / own[rows]).astype(np.float32)
+        rows = np.array([place.get(int(i), -1) for i in where], int)
+        share = np.where(rows >= 0, sd / own[rows], 0.0).astype(np.float32)
         columns = self.local.columns[[*rows, -1]]
         columns[:-1] *= share[:, None, None]
-        bent = np.flatnonzero(axes.bends > STIFF)
-        some = np.concatenate([axes.carried, axes.new])[bent], sd[bent]
+        bent = np.flatnonzero((axes.bends > STIFF) | (rows < 0))
+        some = where[bent], sd[bent]
         there = linearise(runs, axes.point, axes=some, forward_step=FORWARD_STEP)
         columns[[*bent, -1]] = there.columns
         bends = np.append(axes.bends, 0.0)
