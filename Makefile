@@ -46,6 +46,7 @@ bench: .venv/.dev
 	$(BIN)/python benchmarks/memory.py
 	$(BIN)/python benchmarks/measured.py
 	$(BIN)/python benchmarks/environments.py
+	$(BIN)/python benchmarks/many_environments.py
 	$(BIN)/python benchmarks/diagnosis_time.py
 
 # into site/; warnings are errors. The variable silences an advertisement of the theme's.

@@ -1,8 +1,7 @@
 """Environment steps against bare mj_step on the same model, interleaved in one process.
 
 Run by `make bench`. Prints the median over rounds of (processor time of bare mj_step) / (that of
-env.step over as many ticks), and how many times one environment's steps eight of them make in
-processes, by the clock on the wall.
+env.step over as many ticks).
 """
 
 from __future__ import annotations
@@ -27,9 +26,6 @@ STEPS = 10
 
 PIECES = 8
 """Pieces of a round."""
-
-COPIES = 8
-"""Environments side by side."""
 
 
 def ratios(name: str, plant: str, rounds: int) -> tuple[list[float], float]:
@@ -58,42 +54,18 @@ def ratios(name: str, plant: str, rounds: int) -> tuple[list[float], float]:
     return found, rounds * PIECES * STEPS / total
 
 
-def side_by_side(name: str, plant: str, steps: int) -> float:
-    """Steps a second of COPIES environments in processes, all together."""
-    envs = gym.make_vec(
-        name,
-        num_envs=COPIES,
-        vectorization_mode="async",
-        vector_kwargs={"context": "spawn"},
-        plant=plant,
-    )
-    actions = np.zeros(envs.action_space.shape)
-    envs.reset(seed=0)
-    envs.step(actions)
-    begin = perf_counter()
-    for _ in range(steps):
-        envs.step(actions)
-    spent = perf_counter() - begin
-    envs.close()
-    return COPIES * steps / spent
-
-
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--rounds", type=int, default=12)
-    parser.add_argument("--steps", type=int, default=200, help="of eight in processes; 0 for none")
     given = parser.parse_args()
-    print(
-        "environment                       plant       ratio   5 %    95 %  steps/s  8 in processes"
-    )
+    print("environment                       plant       ratio   5 %    95 %  steps/s")
     for name in ENVIRONMENTS:
         for plant in ("ves2", "ves2_fast"):
             found, speed = ratios(name, plant, given.rounds)
             cuts = statistics.quantiles(found, n=20)
-            together = side_by_side(name, plant, given.steps) if given.steps else np.nan
             print(
                 f"{name:<34}{plant:<10}{statistics.median(found):7.3f}{cuts[0]:7.3f}{cuts[-1]:8.3f}"
-                f"{speed:9.0f}{together / speed:10.2f} x",
+                f"{speed:9.0f}",
                 flush=True,
             )
 

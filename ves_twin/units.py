@@ -115,7 +115,10 @@ def to_unit(given: str, unit: str, what: str) -> tuple[float, float]:
     """
     if given == unit:
         return 1.0, 0.0
-    zero, one = to_si(f"0 {_named(given)}", unit, what), to_si(f"1 {_named(given)}", unit, what)
+    try:
+        zero, one = (to_si(f"{number} {_named(given)}", unit, what) for number in (0, 1))
+    except InvalidInputError:
+        raise InvalidInputError(what, given, f"a unit that converts to {unit}") from None
     return one - zero, zero
 
 

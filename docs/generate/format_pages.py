@@ -38,10 +38,39 @@ unit (`"180 deg"`, `"12 mm"`). Tables and schemas here are generated from the cl
 | [verdict](verdict.md) | what a diagnosis says | [JSON schema](verdict.schema.json) |
 """
 
+_SCENARIO = """# Scenario
+
+TOML in `scenarios/`, run by `ves-twin run NAME`, or a file of your own, run by `ves-twin run my_scenario.toml`:
+
+```toml
+# Does a heavier platform follow a slow heave?
+plant = "ves2_fast"
+
+[parameters]
+"platform.mass" = "75 kg"
+
+[run]
+duration = 5.0
+
+[platform]
+mode = "position"
+
+[platform.motion]
+kind = "sine"
+amplitude = [0.0, 0.0, "50 mm", 0.0, 0.0, 0.0]
+frequency = [0.3, 0.3, 0.3, 0.3, 0.3, 0.3]
+
+[arm]
+start = [0.0, "90 deg", 0.0]
+```
+
+The first line is a comment: the `question`. The `name` is that of the file. Neither is a key to write, all others are below. A copy of a file in
+`scenarios/` is a good beginning; to change a key or two of one, `ves-twin run NAME --set KEY=VALUE` is enough."""
+
 _HEADS = {
     "rig": "# Rig\n\nTOML beside a MuJoCo model; worked example in [bring your own rig](../bring-your-own-rig.md). The file begins with"
     f' `schema = 1` and `kind = "{KIND}"`, and may name another one as its `base`; the schema is of the rest.',
-    "scenario": "# Scenario\n\nTOML in `scenarios/`, run by `ves-twin run NAME`. The first line is a comment: the question.",
+    "scenario": _SCENARIO,
     "import-map": "# Import map\n\nTOML, read by `ves-twin import --map` and drafted by `ves-twin inspect --draft-map`;"
     " worked example in [measured data](../measured-data.md#map).",
     "experiment": "# Experiment\n\nTOML, read by `ves-twin compare --experiment` and `ves-twin diagnose --experiment`;"

@@ -54,10 +54,14 @@ def plant_page() -> str:
 
 
 def _row(p: Parameter) -> str:
-    source = " ".join(p.source.split()).replace("|", "\\|")
-    return (
-        f"| `{p.name}` | {_number(p.value)} | {p.unit} | {_number(p.sd)} | {p.grade} | {source} |"
-    )
+    source = _plain(" ".join(p.source.split()))
+    cells = (f"`{p.name}`", _number(p.value), _plain(p.unit), _number(p.sd), p.grade, source)
+    return f"| {' | '.join(cells)} |"
+
+
+def _plain(text: str) -> str:
+    """Text whose stars are no emphasis and whose bars are no cells."""
+    return text.replace("*", "\\*").replace("|", "\\|")
 
 
 def _number(value: np.ndarray) -> str:

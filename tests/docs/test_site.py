@@ -119,6 +119,24 @@ def test_the_map_of_the_page_on_measured_data_keeps_to_its_schema(site):
     assert len(content) >= 6
 
 
+def test_the_example_of_the_page_on_scenarios_is_one(site, tmp_path):
+    text = html.unescape((site / "formats" / "scenario.html").read_text(encoding="utf-8"))
+    blocks = [re.sub(r"<[^>]+>", "", b) for b in re.findall(r"<code>(.*?)</code>", text, re.DOTALL)]
+    (block,) = [b for b in blocks if b.startswith("# Does")]
+    path = tmp_path / "my_scenario.toml"
+    path.write_text(block)
+    scenario = vt.Scenario.load(str(path), {"run.duration": 0.3})
+    assert scenario.name == "my_scenario"
+    assert scenario.question.startswith("Does a heavier")
+    assert vt.simulate(scenario).info.outcome == "completed"
+
+
+def test_units_with_stars_are_shown_as_they_are(site):
+    for page in ("formats/plant.html", "thesis-scorecard.html"):
+        text = (site / page).read_text(encoding="utf-8")
+        assert not re.search(r"\w<em>[^<]*</em>\w", text), page
+
+
 def test_the_example_of_the_page_on_python_runs(capsys):
     page = (ROOT / "docs" / "python.md").read_text(encoding="utf-8")
     (code,) = re.findall(r"```python\n(.*?)```", page, re.DOTALL)

@@ -1,5 +1,7 @@
 """The page on environments shows the tables that the code has, and a policy that works."""
 
+import subprocess
+import sys
 import textwrap
 from pathlib import Path
 
@@ -40,3 +42,13 @@ def test_the_policy_of_the_page_runs_and_damps(tmp_path):
         for name in (f"{path}:Brake", "still")
     ]
     assert scores[0] > scores[1]
+
+
+@pytest.mark.slow
+def test_the_script_of_the_page_shares_environments_out(tmp_path):
+    start = PAGE.index("    # many.py")
+    path = tmp_path / "many.py"
+    code = textwrap.dedent(PAGE[start : PAGE.index("It is a Gymnasium `VectorEnv`", start)])
+    path.write_text(f"{code}    print(observations.shape, terminated.any())\n")
+    done = subprocess.run([sys.executable, str(path)], capture_output=True, text=True)
+    assert (done.stdout, done.stderr) == ("(8, 28) False\n", "")

@@ -216,7 +216,7 @@ def test_an_experiment_that_cannot_be_is_one_line(lab, capsys, text, words):
     ("old", "new", "words"),
     [
         ('to = "cart.position"', 'to = "cart.positon"', "did you mean 'cart.position'"),
-        ('unit = "N*m"', 'unit = "kg"', "a finite quantity in N*m"),
+        ('unit = "N*m"', 'unit = "kg"', "a unit that converts to N*m"),
         ('to = "drive.force"', 'to = "leg.length.1"', "unknown signal column 'leg.length.1'"),
     ],
 )

@@ -99,6 +99,8 @@ def _ves2(
         plant, scenario = told.plant, told.scenario
         standstill = standstill or told.standstill
     else:
+        for name, recording in zip(arguments.measured, measured, strict=True):
+            _needs_drive(name, recording)
         plant = _nominal(arguments.plant, measured[0])
     ready()
     with RunProgress("diagnose", 1.0, unit="share") as progress:
@@ -179,6 +181,17 @@ def _told(
     if len(named) < len(recordings):
         raise InvalidInputError("recordings", "two of one name", "names that tell them apart")
     return tell(named, Experiment.load(arguments.experiment), plant)
+
+
+def _needs_drive(name: str, recording: Recording) -> None:
+    """Raise unless a recording without an experiment file has all that the rig was told."""
+    from ves_twin.benches.ves2 import DRIVE
+    from ves_twin.errors import InvalidInputError
+
+    missing = [signal for signal in DRIVE if signal not in recording.signals]
+    if missing:
+        wanted = "what the rig was told, or an --experiment file that says it"
+        raise InvalidInputError(name, f"no {missing[0]}", wanted)
 
 
 def _nominal(given: str | None, recording: Recording) -> Plant:

@@ -39,13 +39,14 @@ def execute(arguments: argparse.Namespace) -> int:
     from ves_twin.measured.import_map import ImportMap
     from ves_twin.measured.open_log import open_log
     from ves_twin.recording.files import save_recording
+    from ves_twin.simulator.simulate import make_folder
 
     told = ImportMap.load(arguments.map)
     window = _window(arguments, told.window)
     ranges, known = _plant(arguments.plant)
     path = _target(arguments.out)
     imported = import_log(open_log(arguments.file), told, window, ranges, known)
-    path.parent.mkdir(parents=True, exist_ok=True)
+    make_folder(path.parent)
     save_recording(imported.recording, path)
     if arguments.json:
         content = {**imported.account.to_dict(), "recording": str(path)}

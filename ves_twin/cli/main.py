@@ -68,7 +68,8 @@ class Parser(argparse.ArgumentParser):
 
     def error(self, message: str) -> NoReturn:
         """Raise instead of printing the usage."""
-        raise VesTwinError(f"{self.prog}: {message}")
+        command = self.prog.partition(" ")[2]
+        raise VesTwinError(f"{command}: {message}" if command else message)
 
 
 def build_parser() -> Parser:

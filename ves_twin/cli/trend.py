@@ -61,12 +61,15 @@ def execute(arguments: argparse.Namespace) -> int:
     from ves_twin.cli.run import output_folder
     from ves_twin.diagnosis.report.trend_page import trend_page
     from ves_twin.errors import InvalidInputError
+    from ves_twin.plant.plant import Plant
     from ves_twin.report.page import write_page
     from ves_twin.rigs.trend_mjcf import trend_mjcf
     from ves_twin.simulator.simulate import make_folder
 
     if not means_rig(arguments):
         named = rig_name(arguments) or "none"
+        if named != "none":
+            Plant.load(named)  # a name or file that does not exist is told as such
         raise InvalidInputError("--plant", named, "a rig of two files; VES II is not followed")
     names = recordings_in(arguments.measured)
     given = rig_recordings(arguments, names)

@@ -149,7 +149,7 @@ def _rows(time: FloatArray, scenario: Scenario, experiment: Experiment) -> slice
     stop = min(experiment.window.stop, float(time[-1]) - tail)
     first, last = np.searchsorted(time, [start - 1e-9, stop - 1e-9])
     if last - first < FEWEST:
-        came = f"{last - first} rows between {start:.3g} and {stop:.3g} s"
+        came = f"{max(last - first, 0)} rows between {start:.3g} and {stop:.3g} s"
         raise InvalidInputError("window", came, f"at least {FEWEST} rows")
     return slice(int(first), int(last))
 

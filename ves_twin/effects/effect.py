@@ -55,7 +55,8 @@ class Effect(ABC):
             if not number or not math.isfinite(value):
                 raise InvalidInputError(self._of(magnitude), value, "a finite number")
             if not magnitude.low <= value <= magnitude.high:
-                bounds = f"{magnitude.low:g} to {magnitude.high:g} {magnitude.unit}"
+                unit = "" if magnitude.unit in ("1", "dimensionless") else f" {magnitude.unit}"
+                bounds = f"{magnitude.low:g} to {magnitude.high:g}{unit}"
                 raise InvalidInputError(self._of(magnitude), value, bounds)
 
     @property

@@ -75,4 +75,5 @@ def _table(file: Path) -> pa.Table:
         return pq.read_table(file)
     except (pa.ArrowInvalid, OSError) as error:
         reason = str(error).split("\n", 1)[0]
-        raise InvalidInputError(str(file), reason, "a Parquet recording") from None
+        wanted = "a Parquet recording; `ves-twin import` makes one of a log"
+        raise InvalidInputError(str(file), reason, wanted) from None

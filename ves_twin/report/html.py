@@ -43,6 +43,10 @@ def joined(parts: Iterable[Html]) -> Html:
     return Html("\n".join(parts))
 
 
+MANY = 8
+"""Columns that a table has at its usual size; more are set closer, so that the page holds them."""
+
+
 def table(head: Sequence[object], rows: Iterable[Sequence[object]], caption: object = "") -> Html:
     """A table; cells that begin like a number stand to the right.
 
@@ -54,7 +58,8 @@ def table(head: Sequence[object], rows: Iterable[Sequence[object]], caption: obj
     top = "".join(f"<th>{markup(cell)}</th>" for cell in head)
     body = "\n".join(f"<tr>{''.join(_cell(cell) for cell in row)}</tr>" for row in rows)
     words = f"<caption>{markup(caption)}</caption>" if caption else ""
-    whole = f"<table>{words}<thead><tr>{top}</tr></thead>\n<tbody>{body}</tbody></table>"
+    many = _class("many" if len(head) > MANY else "")
+    whole = f"<table{many}>{words}<thead><tr>{top}</tr></thead>\n<tbody>{body}</tbody></table>"
     return Html(f'<div class="wide">{whole}</div>')
 
 

@@ -33,6 +33,8 @@ th { color: var(--soft); font-weight: 600; border-bottom: 2px solid var(--line);
 td:first-child { white-space: nowrap; }
 td.number { text-align: right; font-variant-numeric: tabular-nums; white-space: nowrap; }
 .wide { overflow-x: auto; }
+table.many { font-size: .72rem; }
+table.many th, table.many td { padding: .2rem .28rem; }
 figure { margin: .8rem 0 1.2rem; }
 figure svg { width: 100%; height: auto; }
 figcaption { color: var(--soft); font-size: .9rem; }

@@ -66,6 +66,7 @@ class RigComparison:
     identity: str
     mode: Mode
     rate: float
+    poses: bool
     columns: tuple[ColumnGap, ...]
 
     def to_dict(self) -> dict[str, object]:
@@ -144,7 +145,9 @@ def _one(recording: Recording, rig: Rig, mode: Mode) -> RigComparison:
         )
     name = recording.info.scenario
     told = rig.description
-    return RigComparison(name, told.name, rig.identity, mode, told.rate, tuple(columns))
+    return RigComparison(
+        name, told.name, rig.identity, mode, told.rate, programme.poses, tuple(columns)
+    )
 
 
 def _slow(gap: FloatArray, bad: BoolArray, grid: AnalysisGrid) -> SingleArray:

@@ -9,7 +9,7 @@ from ves_twin.report.html import Html, paragraph, section, table
 from ves_twin.report.page import html_page
 from ves_twin.report.plots import MEASURED, RESIDUAL, SIMULATED, Trace, draw_traces
 from ves_twin.report.quantity import quantity
-from ves_twin.rigs.compare_mjcf import ColumnGap, RigComparison
+from ves_twin.rigs.compare_mjcf import FORGET, ColumnGap, RigComparison
 from ves_twin.rigs.description import Mode
 
 WORDS = {
@@ -39,12 +39,15 @@ def rig_comparison_page(found: Sequence[RigComparison]) -> str:
         ]
         slow = f"rms below {0.5 * one.rate:g} Hz"
         head = ("column", "rms", slow, "peak", "mean", "noise of a row, declared")
-        figures = [_figure(c, f"r{k}-{n}") for n, c in enumerate(one.columns[:DRAWN])]
+        figures = [_figure(c, f"r{k}-{n}", one.poses) for n, c in enumerate(one.columns[:DRAWN])]
         parts.append(
             section(f"{one.name}: {WORDS[one.mode]}", table(head, rows, "difference"), *figures)
         )
     first = found[0]
-    lead = paragraph(f"Rig {first.rig} ({first.identity}), made by ves-twin compare.", "note")
+    said = f"Rig {first.rig} ({first.identity}), made by ves-twin compare."
+    if any(one.mode is not Mode.MOTION for one in found):
+        said += f" What is simulated forwards is compared from {FORGET:g} s on."
+    lead = paragraph(said, "note")
     return html_page("Measured against simulated", [lead, *parts])
 
 
@@ -64,7 +67,7 @@ def comparison_lines(found: Sequence[RigComparison]) -> list[str]:
     return lines
 
 
-def _figure(column: ColumnGap, name: str) -> Html:
+def _figure(column: ColumnGap, name: str, poses: bool) -> Html:
     figure = new_figure(3.4)
     above, below = figure.subplots(2, 1, sharex=True)
     lines = [
@@ -75,5 +78,5 @@ def _figure(column: ColumnGap, name: str) -> Html:
     draw_traces(above, column.time, lines, unit)
     gap = [Trace("difference", column.measured - column.simulated, RESIDUAL)]
     draw_traces(below, column.time, gap, f"difference, {unit}", 2.0 * column.channel.sd)
-    below.set_xlabel("time, or number of the pose", fontsize=8)
+    below.set_xlabel("number of the pose" if poses else "time, s", fontsize=8)
     return svg(figure, name, f"{column.channel.name}. Grey: two sigma of a row's noise.")

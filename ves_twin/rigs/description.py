@@ -22,7 +22,7 @@ KIND = "rig"
 
 SCHEMA = 1
 
-Unit = Annotated[str, named("unit", SI_UNITS)]
+Unit = Annotated[str, named("unit", sorted(SI_UNITS))]
 Number = float | str
 """A number in SI, or a text with a unit; the place that reads it knows which."""
 

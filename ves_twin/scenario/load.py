@@ -130,7 +130,7 @@ def refusal(error: ValidationError, where: str, model: type[BaseModel]) -> VesTw
     found = error.errors(include_url=False)
     first = next((e for e in found if e["type"] == "extra_forbidden"), found[0])
     location, parents = _without_tags(model, [str(part) for part in first["loc"]])
-    key = ".".join(location) or "scenario"
+    key = ".".join(location) or "content"
     if first["type"] == "union_tag_invalid":
         context = first["ctx"]
         known = [tag.strip("' ") for tag in context["expected_tags"].split(",")]
@@ -145,7 +145,8 @@ def refusal(error: ValidationError, where: str, model: type[BaseModel]) -> VesTw
     message = first["msg"].removeprefix("Value error, ").removeprefix("value: ")
     message = message.replace("Input should be ", "")
     if first["type"] == "value_error":
-        return InvalidScenarioError(f"{where}: {key}: {message}")
+        at = f"{where}: {key}" if location else where  # else the message names its keys
+        return InvalidScenarioError(f"{at}: {message}")
     return InvalidInputError(f"{where}: {key}", first["input"], message[0].lower() + message[1:])
 
 

@@ -91,6 +91,7 @@ def _differences(card: Scorecard) -> list[str]:
         f" {value_words(row) or 'nothing'}, asked {_target(row)}. {_sentence(row.note)}"
         for row in rows
     ]
+    lines = [line.replace("*", "\\*") for line in lines]  # N*m twice would be emphasis
     return ["## What differs", "", *lines, ""]
 
 
