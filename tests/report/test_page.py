@@ -43,6 +43,11 @@ def test_numbers_read_with_a_prefix(value, unit, text):
     assert quantity(value, unit) == text
 
 
+def test_more_digits_come_where_they_are_asked_for():
+    assert quantity(1.19735, "N", 5) == "1.1973 N"
+    assert quantity(1.19735, "N") == "1.2 N"
+
+
 def test_shares_have_two_digits():
     assert percent(0.01234) == "1.2 %"
     assert percent(None) == "-"

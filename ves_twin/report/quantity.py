@@ -13,18 +13,19 @@ UNSURE = "-"
 """What stands for a number that is not there."""
 
 
-def quantity(value: float | None, unit: str) -> str:
+def quantity(value: float | None, unit: str, figures: int = 3) -> str:
     """A number with its unit and a prefix such as "0.31 mm"; "-" for none.
 
     Args:
         value: in `unit`.
         unit: SI unit; a product such as N*m takes the prefix on its first factor. Powers and
             products of kilograms take none.
+        figures: significant digits.
     """
     if value is None or not math.isfinite(value):
         return UNSURE
     if unit in PLAIN:
-        return f"{value:.3g}"
+        return f"{value:.{figures}g}"
     size = abs(value)
     if size == 0.0:
         return f"0 {_shown(unit)}"
@@ -32,11 +33,11 @@ def quantity(value: float | None, unit: str) -> str:
         value, unit, size = 1e3 * value, "g", 1e3 * size
     first = unit.split("/")[0].split("*")[0]
     if first.startswith("kg") or "^" in first:
-        return f"{value:.3g} {_shown(unit)}"
+        return f"{value:.{figures}g} {_shown(unit)}"
     factor, prefix = next(((f, p) for f, p in PREFIXES if size >= 0.9995 * f), PREFIXES[-1])
     if prefix == "k" and unit.startswith("N") and size < 1e4:
-        return f"{value:.4g} {_shown(unit)}"  # 1500 N reads better than 1.5 kN
-    return f"{value / factor:.3g} {prefix}{_shown(unit)}"
+        return f"{value:.{max(figures, 4)}g} {_shown(unit)}"  # 1500 N reads better than 1.5 kN
+    return f"{value / factor:.{figures}g} {prefix}{_shown(unit)}"
 
 
 def digits(value: float | None, form: str = ".3g") -> str:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import numpy as np
+
 from ves_twin.diagnosis.disagreement import disagree
 from ves_twin.diagnosis.leftover import Loud
 from ves_twin.diagnosis.rivals import Place
@@ -185,7 +187,7 @@ def strangers(verdict: Verdict) -> list[str]:
 
 def size_words(estimate: Estimate) -> str:
     """Size of a departure: "12.4 mN m", or "1.04 kg, 39 g above nominal"."""
-    value = quantity(estimate.value, estimate.unit)
+    value = quantity(estimate.value, estimate.unit, _figures(estimate))
     if estimate.nominal == 0.0:
         return value
     change = estimate.value - estimate.nominal
@@ -202,7 +204,16 @@ def interval_words(estimate: Estimate) -> str:
     if estimate.nominal and estimate.unit != "1":
         there = [quantity(end - estimate.nominal, estimate.unit) for end in (low, high)]
         return f"{there[0]} to {there[1]} from nominal"
-    return f"{quantity(low, estimate.unit)} to {quantity(high, estimate.unit)}"
+    ends = [quantity(end, estimate.unit, _figures(estimate)) for end in (low, high)]
+    return f"{ends[0]} to {ends[1]}"
+
+
+def _figures(estimate: Estimate) -> int:
+    """Digits that an interval needs so that its ends differ by ten of the last one at least."""
+    width, size = estimate.high - estimate.low, max(abs(estimate.low), abs(estimate.high))
+    if not 0.0 < width < size:
+        return 3
+    return int(np.clip(2 + np.ceil(np.log10(size / width)), 3, 7))
 
 
 def gain_sentence(verdict: Verdict) -> str:
