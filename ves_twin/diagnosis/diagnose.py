@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 from ves_twin.diagnosis.assess import assess, pull_limit
 from ves_twin.diagnosis.bank import Bank, build_bank, cached_bank
+from ves_twin.diagnosis.both_views import both_views
 from ves_twin.diagnosis.compose import Findings, compose
 from ves_twin.diagnosis.conclude import HeldOut, conclude, whitening_of
 from ves_twin.diagnosis.differential import differential
@@ -19,9 +20,10 @@ from ves_twin.diagnosis.null import cached_thresholds
 from ves_twin.diagnosis.observe import Observed, observe
 from ves_twin.diagnosis.runs import Progress, Runs, silent
 from ves_twin.diagnosis.settings import Settings
-from ves_twin.diagnosis.tolerances import FEWEST, naming_limit, tolerance_scale
+from ves_twin.diagnosis.tolerances import FEWEST, cached_scale, naming_limit
 from ves_twin.diagnosis.verdict import Basis, Kind, Proposal, Verdict
 from ves_twin.diagnosis.whitening import Whitening
+from ves_twin.diagnosis.widened import Widened, widening
 from ves_twin.errors import UnknownNameError
 from ves_twin.recording.recording import Recording
 from ves_twin.workers import Workers
@@ -68,38 +70,78 @@ def diagnose(
     chosen = settings or Settings()
     _check_causes(forward, exclude)
     with Workers(chosen.workers) as workers:
-        seen = observe(forward, recordings, workers, chosen.rate)
-        whitening = whitening_of(seen.runs, standstill)
-        if baseline:
-            seen, whitening = _changed(seen, whitening, recordings, baseline, standstill, chosen)
-        bank = _bank(seen, chosen, progress).without(tuple(exclude))
-        limits = cached_thresholds(bank, whitening, chosen, progress)
-        pull = pull_limit(bank, chosen.alpha)
-        first = assess(
-            seen.measured, bank, whitening, limits.effect, limits.misfit, pull, limits.bends
+        scale = _scale(forward, commissioning, workers, chosen)
+        material = _Material(
+            tuple(recordings),
+            tuple(held_out),
+            standstill,
+            tuple(baseline),
+            next_programmes,
+            tuple(exclude),
+            scale,
         )
-        scale = _scale(forward, commissioning, workers, chosen.rate)
-        basis = _basis(standstill, scale, held_out, baseline)
-        findings = Findings(seen, first, limits, chosen, naming_limit(bank, scale), scale)
-        if not first.exceeds(limits.effect, limits.misfit, pull):
-            return compose(findings, Kind.NOTHING, basis, tuple(exclude))
-        desk = Desk(first, limits, chosen, progress)
-        held = HeldOut.of(forward, held_out, standstill, chosen, workers) if held_out else None
-        end = conclude(desk, forward, (*recordings, *held_out), held)
-        found, kind = end.found, end.kind
-        proposals = _next(seen.runs, found, next_programmes) if kind is Kind.AMBIGUOUS else ()
-        apart: tuple[Alone, ...] = ()
-        if found is None or not found.adequate:
-            apart = disagreement(seen, bank, whitening, limits, chosen, progress)
-        findings = replace(
-            findings,
-            found=found,
-            gain=end.gain,
-            forecast=end.forecast,
-            proposals=proposals,
-            apart=apart,
-        )
-        return compose(findings, kind, basis, tuple(exclude))
+        declared = _view(forward, material, chosen, workers, progress)
+        wide = widening(scale)
+        if wide == 1.0 or declared.verdict is Kind.NOTHING:
+            return declared
+        measured = _view(Widened(forward, wide), material, chosen, workers, progress, wide)
+        return both_views(declared, measured)
+
+
+@dataclass(frozen=True)
+class _Material:
+    """What a verdict is taken from, whatever the tolerances."""
+
+    recordings: tuple[Recording, ...]
+    held_out: tuple[Recording, ...]
+    standstill: Recording | None
+    baseline: tuple[Recording, ...]
+    next_programmes: Sequence[Programme] | Callable[[], Sequence[Programme]]
+    exclude: tuple[str, ...]
+    scale: float | None
+
+
+def _view(
+    forward: Forward,
+    material: _Material,
+    chosen: Settings,
+    workers: Workers,
+    progress: Progress,
+    widened: float = 1.0,
+) -> Verdict:
+    """The verdict with the tolerances of one forward, `widened` times the declared ones."""
+    recordings, standstill = material.recordings, material.standstill
+    held_out, baseline, scale = material.held_out, material.baseline, material.scale
+    seen = observe(forward, recordings, workers, chosen.rate)
+    whitening = whitening_of(seen.runs, standstill)
+    if baseline:
+        seen, whitening = _changed(seen, whitening, recordings, baseline, standstill, chosen)
+    bank = _bank(seen, chosen, progress).without(material.exclude)
+    limits = cached_thresholds(bank, whitening, chosen, progress)
+    pull = pull_limit(bank, chosen.alpha)
+    first = assess(seen.measured, bank, whitening, limits.effect, limits.misfit, pull, limits.bends)
+    basis = _basis(standstill, scale, held_out, baseline)
+    kappa = naming_limit(bank, scale)
+    findings = Findings(seen, first, limits, chosen, kappa, scale, widened=widened)
+    if not first.exceeds(limits.effect, limits.misfit, pull):
+        return compose(findings, Kind.NOTHING, basis, material.exclude)
+    desk = Desk(first, limits, chosen, progress)
+    held = HeldOut.of(forward, held_out, standstill, chosen, workers) if held_out else None
+    end = conclude(desk, forward, (*recordings, *held_out), held)
+    found, kind = end.found, end.kind
+    proposals = _next(seen.runs, found, material.next_programmes) if kind is Kind.AMBIGUOUS else ()
+    apart: tuple[Alone, ...] = ()
+    if found is None or not found.adequate:
+        apart = disagreement(seen, bank, whitening, limits, chosen, progress)
+    findings = replace(
+        findings,
+        found=found,
+        gain=end.gain,
+        forecast=end.forecast,
+        proposals=proposals,
+        apart=apart,
+    )
+    return compose(findings, kind, basis, material.exclude)
 
 
 def _changed(
@@ -152,12 +194,12 @@ def _basis(
 
 
 def _scale(
-    forward: Forward, commissioning: Sequence[Recording], workers: Workers, rate: float
+    forward: Forward, commissioning: Sequence[Recording], workers: Workers, chosen: Settings
 ) -> float | None:
     if len(commissioning) < FEWEST:
         return None
-    rigs = [observe(forward, [recording], workers, rate) for recording in commissioning]
-    return tolerance_scale([(rig.runs, rig.measured) for rig in rigs])
+    rigs = [observe(forward, [recording], workers, chosen.rate) for recording in commissioning]
+    return cached_scale([(rig.runs, rig.measured) for rig in rigs], chosen.cache)
 
 
 def _next(
