@@ -7,6 +7,7 @@ import json
 import os
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
+from math import isnan
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -243,7 +244,10 @@ def _score(arguments: argparse.Namespace, folder: Path, key: Path, answers: Path
         Path(arguments.page).write_text(text, encoding="utf-8")
     if arguments.json:
         rows = {name: {"hits": r.hits, "of": r.of} for name, r in marks.rows.items()}
-        print(json.dumps({"rows": rows, "seconds": dict(marks.seconds)}, indent=1))
+        told = {"rows": rows, "seconds": dict(marks.seconds)}
+        if after:
+            told["correlation"] = None if isnan(after.correlation) else after.correlation
+        print(json.dumps(told, indent=1))
     else:
         print(text)
     return 0

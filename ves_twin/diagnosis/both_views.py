@@ -20,16 +20,17 @@ def both_views(declared: Verdict, measured: Verdict) -> Verdict:
         declared: with tolerances as declared; it saw something.
         measured: with tolerances widened to what was measured.
     """
-    if _firm(measured):
+    if is_firm(measured):
         return measured
-    if _firm(declared) and not _firm_rival(declared, measured):
+    if is_firm(declared) and not _firm_rival(declared, measured):
         return declared
     if measured.verdict is Kind.NOTHING and declared.verdict is Kind.NAMED:
         return declared
     return measured
 
 
-def _firm(verdict: Verdict) -> bool:
+def is_firm(verdict: Verdict) -> bool:
+    """Whether every cause that it names is a fault for sure, and it names some for good."""
     named = verdict.verdict in FIRM_KINDS
     return named and all(cause.firm for cause in verdict.causes)
 

@@ -7,12 +7,12 @@ from dataclasses import dataclass, replace
 
 from ves_twin.diagnosis.assess import assess, pull_limit
 from ves_twin.diagnosis.bank import Bank, build_bank, cached_bank
-from ves_twin.diagnosis.both_views import both_views
+from ves_twin.diagnosis.both_views import both_views, is_firm
 from ves_twin.diagnosis.compose import Findings, compose
 from ves_twin.diagnosis.conclude import HeldOut, conclude, whitening_of
 from ves_twin.diagnosis.differential import differential
 from ves_twin.diagnosis.disagreement import Alone, disagreement
-from ves_twin.diagnosis.explain import Desk, Explanation
+from ves_twin.diagnosis.explain import Desk, Explanation, explain
 from ves_twin.diagnosis.forward import Forward, Programme
 from ves_twin.diagnosis.likeness import check_likeness
 from ves_twin.diagnosis.next_experiment import separations
@@ -80,12 +80,16 @@ def diagnose(
             tuple(exclude),
             scale,
         )
-        declared = _view(forward, material, chosen, workers, progress)
+        declared = _View.of(forward, material, chosen, workers, progress)
         wide = widening(scale)
-        if wide == 1.0 or declared.verdict is Kind.NOTHING:
-            return declared
-        measured = _view(Widened(forward, wide), material, chosen, workers, progress, wide)
-        return both_views(declared, measured)
+        if wide == 1.0 or not declared.loud:
+            return declared.verdict(progress)
+        widened = Widened(forward, wide)
+        measured = _View.of(widened, material, chosen, workers, progress, wide).verdict(progress)
+        if is_firm(measured):
+            return measured
+        in_order = measured.verdict is Kind.NOTHING
+        return both_views(declared.verdict(progress, alone=in_order), measured)
 
 
 @dataclass(frozen=True)
@@ -101,47 +105,92 @@ class _Material:
     scale: float | None
 
 
-def _view(
-    forward: Forward,
-    material: _Material,
-    chosen: Settings,
-    workers: Workers,
-    progress: Progress,
-    widened: float = 1.0,
-) -> Verdict:
-    """The verdict with the tolerances of one forward, `widened` times the declared ones."""
-    recordings, standstill = material.recordings, material.standstill
-    held_out, baseline, scale = material.held_out, material.baseline, material.scale
-    seen = observe(forward, recordings, workers, chosen.rate)
-    whitening = whitening_of(seen.runs, standstill)
-    if baseline:
-        seen, whitening = _changed(seen, whitening, recordings, baseline, standstill, chosen)
-    bank = _bank(seen, chosen, progress).without(material.exclude)
-    limits = cached_thresholds(bank, whitening, chosen, progress)
-    pull = pull_limit(bank, chosen.alpha)
-    first = assess(seen.measured, bank, whitening, limits.effect, limits.misfit, pull, limits.bends)
-    basis = _basis(standstill, scale, held_out, baseline)
-    kappa = naming_limit(bank, scale)
-    findings = Findings(seen, first, limits, chosen, kappa, scale, widened=widened)
-    if not first.exceeds(limits.effect, limits.misfit, pull):
-        return compose(findings, Kind.NOTHING, basis, material.exclude)
-    desk = Desk(first, limits, chosen, progress)
-    held = HeldOut.of(forward, held_out, standstill, chosen, workers) if held_out else None
-    end = conclude(desk, forward, (*recordings, *held_out), held)
-    found, kind = end.found, end.kind
-    proposals = _next(seen.runs, found, material.next_programmes) if kind is Kind.AMBIGUOUS else ()
-    apart: tuple[Alone, ...] = ()
-    if found is None or not found.adequate:
-        apart = disagreement(seen, bank, whitening, limits, chosen, progress)
-    findings = replace(
-        findings,
-        found=found,
-        gain=end.gain,
-        forecast=end.forecast,
-        proposals=proposals,
-        apart=apart,
-    )
-    return compose(findings, kind, basis, material.exclude)
+@dataclass(frozen=True)
+class _View:
+    """A record with the tolerances of one forward, looked at and not explained.
+
+    Attributes:
+        forward: the plant.
+        material: the record and what is beside it.
+        findings: with the record before any cause.
+        pull: commissioning error that a rig in order does not pass [sd].
+        whitening: noise as declared or measured.
+    """
+
+    forward: Forward
+    material: _Material
+    findings: Findings
+    pull: float
+    whitening: Whitening
+
+    @staticmethod
+    def of(
+        forward: Forward,
+        material: _Material,
+        chosen: Settings,
+        workers: Workers,
+        progress: Progress,
+        widened: float = 1.0,
+    ) -> _View:
+        """Look; the forward's tolerances are `widened` times the declared ones."""
+        recordings, standstill = material.recordings, material.standstill
+        seen = observe(forward, recordings, workers, chosen.rate)
+        whitening = whitening_of(seen.runs, standstill)
+        if material.baseline:
+            usual = material.baseline
+            seen, whitening = _changed(seen, whitening, recordings, usual, standstill, chosen)
+        bank = _bank(seen, chosen, progress).without(material.exclude)
+        limits = cached_thresholds(bank, whitening, chosen, progress)
+        pull = pull_limit(bank, chosen.alpha)
+        first = assess(
+            seen.measured, bank, whitening, limits.effect, limits.misfit, pull, limits.bends
+        )
+        kappa, scale = naming_limit(bank, material.scale), material.scale
+        findings = Findings(seen, first, limits, chosen, kappa, scale, widened=widened)
+        return _View(forward, material, findings, pull, whitening)
+
+    @property
+    def loud(self) -> bool:
+        """Whether something is there."""
+        limits = self.findings.limits
+        return self.findings.first.exceeds(limits.effect, limits.misfit, self.pull)
+
+    def verdict(self, progress: Progress, alone: bool = False) -> Verdict:
+        """Explain it; `alone` asks for a single cause that leaves noise, and for nothing else."""
+        findings, material = self.findings, self.material
+        seen, chosen, first = findings.seen, findings.settings, findings.first
+        basis = _basis(material)
+        if not self.loud:
+            return compose(findings, Kind.NOTHING, basis, material.exclude)
+        desk = Desk(first, findings.limits, chosen, progress)
+        if alone and not _one_is_enough(desk):
+            return compose(findings, Kind.UNKNOWN, basis, material.exclude)
+        held_out, still, workers = material.held_out, material.standstill, seen.runs.workers
+        own = seen.runs.forward  # tuned to this rig where there is a baseline
+        held = HeldOut.of(own, held_out, still, chosen, workers) if held_out else None
+        end = conclude(desk, self.forward, (*material.recordings, *held_out), held)
+        found, kind = end.found, end.kind
+        ambiguous = kind is Kind.AMBIGUOUS
+        proposals = _next(seen.runs, found, material.next_programmes) if ambiguous else ()
+        apart: tuple[Alone, ...] = ()
+        if found is None or not found.adequate:
+            bank, limits = first.screen.bank, findings.limits
+            apart = disagreement(seen, bank, self.whitening, limits, chosen, progress)
+        findings = replace(
+            findings,
+            found=found,
+            gain=end.gain,
+            forecast=end.forecast,
+            proposals=proposals,
+            apart=apart,
+        )
+        return compose(findings, kind, basis, material.exclude)
+
+
+def _one_is_enough(desk: Desk) -> bool:
+    """Whether a single cause leaves noise."""
+    found = explain(desk.first, desk.thresholds, desk.settings, desk.progress, pairs=False)
+    return found is not None and found.adequate
 
 
 def _changed(
@@ -179,17 +228,12 @@ def _check_causes(forward: Forward, names: Sequence[str]) -> None:
             raise UnknownNameError("cause", name, known)
 
 
-def _basis(
-    standstill: Recording | None,
-    scale: float | None,
-    held_out: Sequence[Recording],
-    baseline: Sequence[Recording],
-) -> Basis:
+def _basis(material: _Material) -> Basis:
     return Basis(
-        noise="declared" if standstill is None else "measured",
-        tolerances="declared" if scale is None else "measured",
-        held_out="measured" if held_out else "none",
-        baseline="measured" if baseline else "none",
+        noise="declared" if material.standstill is None else "measured",
+        tolerances="declared" if material.scale is None else "measured",
+        held_out="measured" if material.held_out else "none",
+        baseline="measured" if material.baseline else "none",
     )
 
 
