@@ -72,13 +72,13 @@ SUITES = {
     ),
     "pendulum_right": Blind(
         "pendulum, tolerances as declared, with and without recordings of other rigs",
-        "--none 0 --single 24 --outside 0 --pair 0 --commissioned 6",
+        "--none 0 --single 16 --outside 0 --pair 0 --commissioned 6",
         (Aim("single: firm names of the other answers that stay", 0.85),),
         without="--no-commissioning",
     ),
     "pendulum_background": Blind(
         "pendulum with drag that no model has, and a baseline",
-        "--none 10 --single 20 --outside 0 --pair 0 --baseline --background quadratic_drag=0.01",
+        "--none 10 --single 20 --outside 0 --pair 0 --baseline --background quadratic_drag=0.005",
         (
             Aim("single, d >= 10: exact", 0.70),
             Aim("single: a wrong name", 0.02, -1),
@@ -92,7 +92,7 @@ SUITES = {
     ),
     "pendulum_next": Blind(
         "pendulum, a first recording that tells little, then the next experiment",
-        "--none 0 --single 12 --confusable 12 --outside 0 --pair 0 --poor",
+        "--none 0 --single 10 --confusable 8 --outside 0 --pair 0 --poor",
         (
             Aim("ambiguous: truth among the causes", 0.95),
             Aim("next experiment, proposed: resolved", 0.80),
@@ -102,7 +102,7 @@ SUITES = {
     ),
     "pendulum_repaired": Blind(
         "pendulum, held-out recordings after the effect was repaired",
-        "--none 0 --single 16 --outside 0 --pair 0 --repaired",
+        "--none 0 --single 12 --outside 0 --pair 0 --repaired",
         (Aim("held-out without the effect: the gate refuses", 0.95),),
     ),
     "ves2_fast": Blind(

@@ -123,6 +123,12 @@ def test_the_start_that_is_read_is_that_of_the_motion():
     assert found[START.name][0] == pytest.approx([0.4, -1.5], abs=0.02)
 
 
+def test_no_entry_of_the_menu_swings_beyond_a_right_angle():
+    for programme in pendulum_menu():
+        swing = np.abs(DELAYED.simulate(programme, {})[:, 0]).max()
+        assert 0.02 < swing < np.pi / 2, programme.name
+
+
 def test_only_a_release_parts_the_two_delays():
     apart = {}
     for programme in pendulum_menu():

@@ -20,16 +20,17 @@ FADE = 0.25
 """Time in which a torque fades in [s]: from rest it begins with none."""
 
 MENU: Mapping[str, tuple[float, tuple[float, float], float]] = {
-    "multisine as before, other phases": (0.45, (0.2, 2.5), 0.0),
-    "small multisine": (0.15, (0.2, 2.5), 0.0),
-    "large multisine": (1.2, (0.2, 2.5), 0.0),
-    "slow multisine": (0.45, (0.1, 0.5), 0.0),
-    "quick multisine": (0.45, (2.5, 8.0), 0.0),
+    "multisine, other phases": (0.25, (0.2, 2.5), 0.0),
+    "small multisine": (0.1, (0.2, 2.5), 0.0),
+    "slow multisine": (0.4, (0.1, 0.5), 0.0),
+    "quick multisine": (1.2, (2.5, 8.0), 0.0),
     "let go from 0.1 rad": (0.0, (0.2, 2.5), 0.1),
     "let go from 0.6 rad": (0.0, (0.2, 2.5), 0.6),
-    "let go from 0.6 rad into a multisine": (0.45, (0.2, 2.5), 0.6),
+    "let go from 1.2 rad": (0.0, (0.2, 2.5), 1.2),
+    "let go from 0.6 rad into a multisine": (0.3, (0.2, 2.5), 0.6),
 }
-"""Name -> amplitude of a tone [N m], band [Hz], angle that it is held at before [rad]."""
+"""Name -> amplitude of a tone [N m], band [Hz], angle that it is held at before [rad]. None swings
+beyond a right angle: near the top a motion tells rounding errors, and no cause."""
 
 
 def pendulum_menu() -> tuple[Programme, ...]:

@@ -37,7 +37,8 @@ def mark_gain(
     had, passed, right = [], [], 0
     for truth in truths:
         answer = answers.get(truth.case)
-        if truth.hidden is not Hidden.SINGLE or truth.repaired or not truth.values:
+        known = truth.values and not truth.repaired and not truth.background
+        if truth.hidden is not Hidden.SINGLE or not known:  # true values do not explain the rest
             continue
         if answer is None or answer.verdict != "named" or not answer.energies:
             continue
