@@ -13,7 +13,7 @@ import pytest
 from scipy.signal import lfilter
 
 from ves_twin.benches.pendulum import PARAMETERS, Pendulum
-from ves_twin.blind.answer import Answer
+from ves_twin.blind.answers import Answer
 from ves_twin.blind.bench import BlindRig
 from ves_twin.blind.mark import mark
 from ves_twin.blind.pendulum import BlindPendulum
@@ -37,7 +37,8 @@ SLOW = 0.97
 
 def truth(n: int, hidden: Hidden, label: str = "") -> Truth:
     causes = (HiddenCause(*label.split("@"), {"size": 1.0}, 15.0),) if label else ()
-    return Truth(f"{hidden}-{n}", hidden, causes)
+    kind = "any" if hidden is Hidden.OUTSIDE else ""
+    return Truth(f"{hidden}-{n}", hidden, causes, kind)
 
 
 def measured(seed: int, departure: tuple[str, float] | None = None, outside: str = "") -> Recording:
@@ -70,7 +71,7 @@ LACKING = [
 SLOW_NONE = [(t, slow_noise(recording, n)) for n, (t, recording) in enumerate(NONE)]
 
 EXACT, QUIET = "single, d 10 to 20: exact", "nothing hidden: nothing said"
-ABSTAINS = "outside and detected: abstains"
+ABSTAINS = "a kind that the library lacks, detected: abstains"
 
 
 @pytest.fixture(scope="module")

@@ -57,8 +57,13 @@ def test_the_first_screen_has_verdict_cause_size_interval_gain_and_basis(proven)
     assert "Diagnosis of &lt;run&gt;" in top
     assert "Found: friction at plant. Held-out recordings confirm it." in top
     size = proven.causes[0].parameters["friction.size"]
-    assert f"{size.value:.3g}" in top
-    assert f"{size.low:.3g} to {size.high:.3g}" in top
+    ends = re.search(r"([-\d.e]+) to ([-\d.e]+)", top)
+    width = size.high - size.low  # of which the printed digits show a tenth
+    assert [float(end) for end in ends.groups()] == pytest.approx(
+        [size.low, size.high], abs=width / 20
+    )
+    numbers = [float(number) for number in re.findall(r"-?\d+\.\d+", top)]
+    assert any(number == pytest.approx(size.value, abs=width / 20) for number in numbers)
     assert f"{100 * proven.gain.share:.0f} % of the error beyond noise" in top
     assert "declared, not measured" in top
     assert "plant.toml" in top

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import hashlib
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import mujoco
 import numpy as np
@@ -12,6 +12,7 @@ from mujoco import rollout
 
 from ves_twin.diagnosis.forward import Channel, Hypothesis, Parameter, Programme
 from ves_twin.errors import InvalidInputError
+from ves_twin.signals import Role, Signal
 from ves_twin.types import FloatArray
 
 STEP = 0.002
@@ -84,6 +85,24 @@ COMMAND_DELAY = (
 """A twin of the sensor delay: from rest, in open loop, no recording tells them apart."""
 
 
+START = Signal(
+    "joint.start",
+    ("angle", "rate"),
+    ("rad", "rad/s"),
+    Role.COMMAND,
+    "joint",
+    "where the motion begins",
+)
+"""Fed in where a recording does not begin at rest; the same in all rows."""
+
+UNKNOWN_START = {"start.angle": 0.03, "start.rate": 0.3}
+"""Sd about a start that was read off a recording [rad], [rad/s]: a tenth of a swing, so that what
+a delay or a bias moves it by is free."""
+
+BEFORE = 0.05
+"""Rows of a cut recording this early [s] may show what a delay held back from before the cut."""
+
+
 @dataclass(frozen=True)
 class Pendulum:
     """The plant: edits of its MjSpec (mass, damping, friction, spring, armature) and its loop.
@@ -95,17 +114,32 @@ class Pendulum:
         parameters: what may differ.
         hypotheses: the library.
         channels: what is compared.
+        started: whether recordings say where they begin; at rest if not.
     """
 
     parameters: tuple[Parameter, ...] = PARAMETERS
     hypotheses: tuple[Hypothesis, ...] = HYPOTHESES
     channels: tuple[Channel, ...] = CHANNELS
+    started: bool = False
 
     @staticmethod
     def with_command_delay() -> Pendulum:
         """With the delay of the command in the library too."""
         parameter, hypothesis = COMMAND_DELAY
         return Pendulum((*PARAMETERS, parameter), (*HYPOTHESES, hypothesis))
+
+    def anywhere(self, known: bool) -> Pendulum:
+        """For recordings that say where they begin; read off their first rows if not `known`."""
+        if known:
+            return replace(self, started=True)
+        widened = tuple(
+            replace(p, sd=UNKNOWN_START[p.name], low=-10.0 * sd, high=10.0 * sd)
+            if (sd := UNKNOWN_START.get(p.name, 0.0))
+            else p
+            for p in self.parameters
+        )
+        later = tuple(replace(c, settling=BEFORE) for c in self.channels)
+        return replace(self, started=True, parameters=widened, channels=later)
 
     @property
     def identity(self) -> str:
@@ -115,8 +149,8 @@ class Pendulum:
 
     @property
     def drive(self) -> tuple[str, ...]:
-        """The torque that was asked for [N m]."""
-        return ("joint.torque",)
+        """The torque that was asked for [N m], and where the motion began."""
+        return ("joint.torque", START.name) if self.started else ("joint.torque",)
 
     def simulate(
         self, programme: Programme, values: Mapping[str, float], refined: bool = False
@@ -140,7 +174,8 @@ class Pendulum:
         steps = per_row * (2 if refined else 1)
         model.opt.timestep = per_row * STEP / steps
         state = np.zeros(mujoco.mj_stateSize(model, mujoco.mjtState.mjSTATE_FULLPHYSICS))
-        state[1], state[2] = value["start.angle"], value["start.rate"]
+        begun = programme.drive[START.name][0] if START.name in programme.drive else (0.0, 0.0)
+        state[1], state[2] = value["start.angle"] + begun[0], value["start.rate"] + begun[1]
         control = np.repeat(torque, steps)[None, :, None]
         path, _ = rollout.rollout(
             model, mujoco.MjData(model), initial_state=state[None], control=control

@@ -2,86 +2,84 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 
 from ves_twin.blind.bench import BlindBench, BlindRig
+from ves_twin.blind.benches import bench_of
 from ves_twin.blind.draw import Loudness, draw_truths
+from ves_twin.blind.recipe import Recipe
+from ves_twin.blind.save_bare import save_bare
 from ves_twin.blind.seal import new_key, seal
-from ves_twin.blind.suite import FILE, HELD_OUT, RECORDING, STANDSTILL, Suite, check_bench
+from ves_twin.blind.stand_ins import stand_ins
+from ves_twin.blind.suite import (
+    BASELINE,
+    FILE,
+    HELD_OUT,
+    RECORDING,
+    STANDSTILL,
+    Suite,
+    commissioning_file,
+)
 from ves_twin.blind.truth import Hidden, Truth
 from ves_twin.diagnosis.linearise import linearise
 from ves_twin.diagnosis.observe import observe
 from ves_twin.diagnosis.whitening import whitening_declared
 from ves_twin.errors import FileAccessError, InvalidInputError
-from ves_twin.recording.files import save_recording
-from ves_twin.recording.recording import Recording, RecordingInfo
 from ves_twin.workers import Workers
 
 Progress = Callable[[float, str], None]
 
+DRIFT = 0.3
+"""Commissioning sd by which a rig changes between its baseline and the case, of its spread."""
+
+LEAD = (2.0, 8.0)
+"""Motion before the piece that a cut recording is [s]."""
+
 
 def make_suite(
-    bench_name: str,
-    counts: Mapping[Hidden, int],
-    folder: Path,
-    key_file: Path,
-    seed: int,
-    progress: Progress,
-    spread: float = 1.0,
-    workers: int = 1,
+    recipe: Recipe, folder: Path, key_file: Path, progress: Progress, workers: int = 1
 ) -> Suite:
     """Write a suite; one that was interrupted goes on where it was.
 
     Args:
-        bench_name: a name of BENCHES.
-        counts: cases of each sort.
+        recipe: what it is asked to hold.
         folder: for the recordings.
         key_file: takes the key; it is what a diagnosis must not see.
-        seed: of everything drawn, and as secret as the key.
         progress: told how far it is.
-        spread: commissioning errors, in declared sd.
         workers: processes.
 
     Raises:
-        UnknownNameError: no such plant.
-        InvalidInputError: a folder that holds something else.
+        UnknownNameError: no such plant or background.
+        InvalidInputError: a folder that holds something else, or a recipe that cannot be met.
         FileAccessError: not writable.
     """
-    check_bench(bench_name)
-    bench = bench_of(bench_name)
+    bench = bench_of(recipe.bench)
+    recipe.check(bench)
     key = _key(folder, key_file)
-    root = np.random.default_rng([seed, 1])
-    standstill = bench.record(BlindRig(bench.commissioned(root, spread)), "standstill", root)
+    root = np.random.default_rng([recipe.seed, 1])
+    standstill = bench.record(BlindRig(bench.commissioned(root, recipe.spread)), "standstill", root)
     save_bare(standstill, folder / STANDSTILL)
-    truths = _truths(bench, counts, seed, spread, progress, workers)
+    _commission(bench, recipe, folder)
+    truths = _truths(bench, recipe, progress, workers)
     for n, truth in enumerate(truths):
         progress(n / len(truths), "recordings")
         sealed = folder / truth.case / "truth.sealed"
         if not sealed.is_file():
-            _record(bench, truth, folder, np.random.default_rng([seed, 2, n]))
-            sealed.write_bytes(seal(truth.to_json(), key))
+            whole = _record(bench, truth, recipe, folder, n)
+            sealed.write_bytes(seal(whole.to_json(), key))
     excluded = {
         t.case: tuple(c.label for c in t.causes)
         for t in truths
         if t.hidden is Hidden.OUTSIDE and t.causes
     }
-    suite = Suite(bench_name, tuple(t.case for t in truths), excluded)
+    cases = tuple(t.case for t in truths)
+    suite = Suite(recipe.bench, cases, excluded, recipe.commissioned, recipe.baseline)
     suite.save(folder)
     return suite
-
-
-def bench_of(name: str) -> BlindBench:
-    """The generator of a plant."""
-    from ves_twin.blind.pendulum import BlindPendulum
-    from ves_twin.blind.rig import BlindVes2
-
-    if name == "pendulum":
-        return BlindPendulum()
-    return BlindVes2("ves2_pressure_fast" if name == "ves2_fast" else "ves2_pressure")
 
 
 def _key(folder: Path, key_file: Path) -> str:
@@ -98,50 +96,49 @@ def _key(folder: Path, key_file: Path) -> str:
     return key
 
 
-def _truths(
-    bench: BlindBench,
-    counts: Mapping[Hidden, int],
-    seed: int,
-    spread: float,
-    progress: Progress,
-    workers: int,
-) -> list[Truth]:
-    rng = np.random.default_rng([seed, 0])
-    nominal = bench.record(BlindRig(), "train", rng)
+def _commission(bench: BlindBench, recipe: Recipe, folder: Path) -> None:
+    """Other rigs in order, each drawn for itself."""
+    for k in range(recipe.commissioned):
+        rng = np.random.default_rng([recipe.seed, 3, k])
+        rig = BlindRig(bench.commissioned(rng, recipe.spread), background=recipe.background)
+        save_bare(bench.record(rig, "train", rng), folder / commissioning_file(k + 1))
+
+
+def _truths(bench: BlindBench, recipe: Recipe, progress: Progress, workers: int) -> list[Truth]:
+    rng = np.random.default_rng([recipe.seed, 0])
+    nominal = bench.record(BlindRig(), recipe.programme, rng)
     with Workers(workers) as shared:
         runs = observe(bench.forward, [nominal], shared).runs
         base = linearise(runs, runs.origin, progress)
         loudness = Loudness(base, whitening_declared(runs))
-        return draw_truths(bench, counts, loudness, rng, spread)
+        truths = draw_truths(bench, recipe.counts, loudness, rng, recipe.spread)
+        left_out = [t for t in truths if t.hidden is Hidden.OUTSIDE and t.causes]
+        likes = dict(zip([t.case for t in left_out], stand_ins(runs, left_out), strict=True))
+    return [
+        replace(t, background=recipe.background, stand_ins=likes.get(t.case, ())) for t in truths
+    ]
 
 
-def _record(bench: BlindBench, truth: Truth, folder: Path, rng: np.random.Generator) -> None:
-    values = bench.commissioned(rng, truth.spread)
+def _record(bench: BlindBench, truth: Truth, recipe: Recipe, folder: Path, number: int) -> Truth:
+    """Write the recordings of a case; its truth with every value of the rig."""
+    rng = np.random.default_rng([recipe.seed, 2, number])
+    usual = bench.commissioned(rng, truth.spread)
     nominal = {p.name: p.nominal for p in bench.forward.parameters}
+    values = dict(usual)
     for cause in truth.causes:
         for name, departure in cause.departures.items():
             values[name] = values.get(name, nominal[name]) + departure
-    rig = BlindRig(values, truth.outside, truth.outside_size)
-    save_bare(bench.record(rig, "train", rng), folder / truth.case / RECORDING)
-    save_bare(bench.record(rig, "held_out", rng), folder / truth.case / HELD_OUT)
-
-
-def save_bare(recording: Recording, path: Path) -> None:
-    """Write a recording that tells nothing but what a laboratory would know of it.
-
-    Raises:
-        FileAccessError: not writable.
-    """
-    info = RecordingInfo(
-        "measured",
-        scenario=recording.info.scenario,
-        settings=recording.info.settings,
-        log=recording.info.log,
-        period=recording.info.period,
-        own_signals=recording.info.own_signals,
-    )
-    try:
-        path.parent.mkdir(parents=True, exist_ok=True)
-    except OSError as error:
-        raise FileAccessError(f"cannot write {path.parent}: {error.strerror}") from None
-    save_recording(replace(recording, info=info), path)
+    truth = replace(truth, values=values, repaired=recipe.repaired)
+    rig = BlindRig(values, truth.outside, truth.outside_size, background=truth.background)
+    healthy = BlindRig(usual, background=truth.background)
+    place = folder / truth.case
+    lead = np.random.default_rng([recipe.seed, 4, number]).uniform(*LEAD) if recipe.cut else 0.0
+    save_bare(bench.record(rig, recipe.programme, rng, lead), place / RECORDING)
+    held = healthy if recipe.repaired else rig
+    save_bare(bench.record(held, "held_out", rng, lead), place / HELD_OUT)
+    if recipe.baseline:
+        rng = np.random.default_rng([recipe.seed, 5, number])
+        before = bench.again(usual, rng, truth.spread, DRIFT * truth.spread)
+        healthy = replace(healthy, values=before)
+        save_bare(bench.record(healthy, recipe.programme, rng), place / BASELINE)
+    return truth

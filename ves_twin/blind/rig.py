@@ -14,6 +14,8 @@ from scipy.signal import lfilter
 from ves_twin.benches.ves2 import RigForward
 from ves_twin.benches.ves2_library import with_departures
 from ves_twin.blind.bench import BlindBench, BlindRig
+from ves_twin.diagnosis.forward import Programme
+from ves_twin.errors import InvalidInputError
 from ves_twin.plant.plant import Plant
 from ves_twin.recording.recording import Recording
 from ves_twin.scenario.schema import Scenario
@@ -84,8 +86,18 @@ class BlindVes2(BlindBench):
             *(f"anchor_position@leg.{k}.z" for k in legs),
         )
 
-    def record(self, rig: BlindRig, programme: str, rng: np.random.Generator) -> Recording:
-        """Legs and arm together (train), smaller on other lines, or a standstill."""
+    def record(
+        self, rig: BlindRig, programme: str, rng: np.random.Generator, lead: float = 0.0
+    ) -> Recording:
+        """Legs and arm together (train), smaller on other lines, or a standstill.
+
+        Raises:
+            InvalidInputError: another programme, a lead, or a background: not built for this rig.
+        """
+        if programme not in ("train", "held_out", "standstill") or lead > 0.0 or rig.background:
+            came = f"{programme}, lead {lead:g} s, background {dict(rig.background)}"
+            expected = "train, held_out or standstill from rest, without a background"
+            raise InvalidInputError("recording of VES II", came, expected)
         plant, offsets = with_departures(self.plant, rig.values)  # the noise wanders by itself
         plant = plant.with_values(
             {name: self.plant.parameters.array(name) * rng.uniform(*LEVELS) for name in NOISES}
@@ -102,6 +114,10 @@ class BlindVes2(BlindBench):
         rows = _collected(sim, self._programme(programme, {"run.substeps": 2}))
         rows.signals["sensor.wrench"][:] += offsets
         return _edited(rows, rig, rng, self.plant)
+
+    def play(self, rig: BlindRig, programme: Programme, rng: np.random.Generator) -> Recording:
+        """Not built for this rig; raises InvalidInputError."""
+        raise InvalidInputError("a next experiment", "VES II", "the pendulum")
 
     def _programme(self, name: str, more: Mapping[str, object] | None = None) -> Scenario:
         changes: dict[str, object] = {"plant": self.plant.name, "run.duration": SECONDS}

@@ -14,6 +14,17 @@ SCHEMA = 1
 
 FILE = "suite.json"
 STANDSTILL, RECORDING, HELD_OUT = "standstill.parquet", "recording.parquet", "held_out.parquet"
+BASELINE = "baseline.parquet"
+
+
+def commissioning_file(number: int) -> str:
+    """Recording of a rig in order, counted from 1."""
+    return f"commissioning-{number:02d}.parquet"
+
+
+def next_file(choice: str) -> str:
+    """Recording of a next experiment: the proposed one, or one at random."""
+    return f"next-{choice}.parquet"
 
 
 @dataclass(frozen=True)
@@ -24,12 +35,16 @@ class Suite:
         bench: which plant with which library: a name of BENCHES.
         cases: names, in order.
         excluded: case -> causes that its diagnosis must not consider.
+        commissioned: recordings of other rigs in order.
+        baseline: whether each case has one.
         schema: version.
     """
 
     bench: str
     cases: tuple[str, ...]
     excluded: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
+    commissioned: int = 0
+    baseline: bool = False
     schema: int = SCHEMA
 
     def save(self, folder: Path) -> None:
@@ -61,7 +76,13 @@ def load_suite(folder: Path) -> Suite:
     if not isinstance(content, dict) or content.get("schema") != SCHEMA:
         raise InvalidInputError(str(path), content, f"a suite of schema {SCHEMA}")
     excluded = {case: tuple(names) for case, names in content["excluded"].items()}
-    return Suite(str(content["bench"]), tuple(content["cases"]), excluded)
+    return Suite(
+        str(content["bench"]),
+        tuple(content["cases"]),
+        excluded,
+        int(content.get("commissioned", 0)),
+        bool(content.get("baseline", False)),
+    )
 
 
 BENCHES = ("pendulum", "ves2", "ves2_fast")

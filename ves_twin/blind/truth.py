@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Mapping
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, field
 from enum import StrEnum
 
 
@@ -54,6 +54,11 @@ class Truth:
         outside: kind outside the library and its size; empty if none.
         outside_size: in the kind's unit.
         spread: commissioning errors, in declared sd.
+        values: of every parameter that was drawn or hidden; empty until it is recorded.
+        background: kinds outside the library that the rig has besides, with their sizes.
+        stand_ins: causes, alone or together, that would leave hardly anything of a cause which
+            the diagnosis must leave out.
+        repaired: whether nothing is hidden any more in the held-out recording.
     """
 
     case: str
@@ -62,6 +67,10 @@ class Truth:
     outside: str = ""
     outside_size: float = 0.0
     spread: float = 1.0
+    values: Mapping[str, float] = field(default_factory=dict)
+    background: Mapping[str, float] = field(default_factory=dict)
+    stand_ins: tuple[tuple[str, ...], ...] = ()
+    repaired: bool = False
 
     @property
     def d(self) -> float:
@@ -77,4 +86,6 @@ class Truth:
         """From text."""
         content = json.loads(text)
         causes = tuple(HiddenCause(**cause) for cause in content.pop("causes"))
-        return Truth(causes=causes, hidden=Hidden(content.pop("hidden")), **content)
+        twins = tuple(tuple(labels) for labels in content.pop("stand_ins", ()))
+        sort = Hidden(content.pop("hidden"))
+        return Truth(causes=causes, hidden=sort, stand_ins=twins, **content)

@@ -5,11 +5,18 @@ from __future__ import annotations
 import argparse
 import json
 import os
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from math import isnan
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
+    from ves_twin.blind.answers import Answer
     from ves_twin.blind.mark import Marks
+    from ves_twin.blind.mark_next import NextMarks
+    from ves_twin.blind.recipe import Recipe
+    from ves_twin.blind.truth import Truth
 
 SUMMARY = "hide effects in recordings, answer from the recordings alone, mark anybody's answers"
 
@@ -18,27 +25,67 @@ QUICK = {"none": 6, "single": 10, "outside": 4, "pair": 2, "confusable": 0}
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """Options of the three verbs."""
+    """Options of the five verbs."""
     verbs = parser.add_subparsers(dest="verb", metavar="VERB", required=True)
     make = verbs.add_parser("make", help="write recordings, and the sealed truth beside them")
+    _add_recipe(make)
+    answer = verbs.add_parser("answer", help="diagnose the cases that have no answer yet")
+    answer.add_argument("--nulls", type=int, default=60, help="rigs of the null distribution")
+    answer.add_argument(
+        "--workers", metavar="N", type=int, default=os.cpu_count() or 1, help="processes"
+    )
+    answer.add_argument(
+        "--no-commissioning", action="store_true", help="without the recordings of other rigs"
+    )
+    answer.add_argument(
+        "--no-baseline", action="store_true", help="without those of the same rig in order"
+    )
+    answer.add_argument(
+        "--after",
+        metavar="CHOICE",
+        help="with the next experiment that was played: proposed or random",
+    )
+    play = verbs.add_parser("play", help="record the next experiment of ambiguous cases")
+    play.add_argument("--choice", default="proposed", help="proposed (default) or random")
+    score = verbs.add_parser("score", help="mark answers")
+    score.add_argument("--page", metavar="FILE", help="write the marks as a page, too")
+    score.add_argument("--json", action="store_true", help="the marks as JSON on stdout")
+    score.add_argument(
+        "--against", metavar="FILE", help="other answers: how many of their firm names stay"
+    )
+    reveal = verbs.add_parser("reveal", help="open the seal: what was hidden, case by case")
+    for verb in (make, answer, play, score, reveal):
+        verb.add_argument("--out", metavar="DIR", default="runs/blind", help="folder of the suite")
+    for verb in (make, play, score, reveal):
+        verb.add_argument("--key", metavar="FILE", help="key of the seal (default: DIR.key)")
+    for verb in (answer, play, score):
+        verb.add_argument("--answers", metavar="FILE", help="answers (default: DIR.answers.json)")
+
+
+def _add_recipe(make: argparse.ArgumentParser) -> None:
     make.add_argument("--bench", default="pendulum", help="pendulum, ves2_fast or ves2")
     make.add_argument("--cases", metavar="N", type=int, help="so many single causes and no more")
     for sort, count in QUICK.items():
         make.add_argument(f"--{sort}", metavar="N", type=int, help=f"cases (default: {count})")
     make.add_argument("--spread", type=float, default=1.0, help="commissioning errors, declared sd")
     make.add_argument("--seed", type=int, help="of all draws (default: the system's randomness)")
-    answer = verbs.add_parser("answer", help="diagnose the cases that have no answer yet")
-    answer.add_argument("--nulls", type=int, default=60, help="rigs of the null distribution")
-    score = verbs.add_parser("score", help="mark answers")
-    score.add_argument("--page", metavar="FILE", help="write the marks as a page, too")
-    score.add_argument("--json", action="store_true", help="the marks as JSON on stdout")
-    reveal = verbs.add_parser("reveal", help="open the seal: what was hidden, case by case")
-    for verb in (make, answer, score, reveal):
-        verb.add_argument("--out", metavar="DIR", default="runs/blind", help="folder of the suite")
-    for verb in (make, score, reveal):
-        verb.add_argument("--key", metavar="FILE", help="key of the seal (default: DIR.key)")
-    for verb in (answer, score):
-        verb.add_argument("--answers", metavar="FILE", help="answers (default: DIR.answers.json)")
+    make.add_argument(
+        "--commissioned", metavar="N", type=int, default=0, help="recordings of N rigs in order"
+    )
+    make.add_argument(
+        "--background",
+        metavar="KIND=SIZE",
+        action="append",
+        default=[],
+        help="every rig has this, which the library lacks",
+    )
+    for flag, words in {
+        "baseline": "a recording of each rig before anything is hidden in it",
+        "cut": "recordings cut out of a longer motion",
+        "poor": "a first recording that tells little",
+        "repaired": "held-out recordings after the effect was repaired",
+    }.items():
+        make.add_argument(f"--{flag}", action="store_true", help=words)
 
 
 def execute(arguments: argparse.Namespace) -> int:
@@ -50,8 +97,11 @@ def execute(arguments: argparse.Namespace) -> int:
         return _reveal(folder, _beside(folder, arguments.key, ".key"))
     answers = _beside(folder, arguments.answers, ".answers.json")
     if arguments.verb == "answer":
-        return _answer(folder, answers, arguments.nulls)
-    return _score(arguments, folder, _beside(folder, arguments.key, ".key"), answers)
+        return _answer(arguments, folder, answers)
+    key = _beside(folder, arguments.key, ".key")
+    if arguments.verb == "play":
+        return _play(folder, key, answers, arguments.choice)
+    return _score(arguments, folder, key, answers)
 
 
 def _beside(folder: Path, given: str | None, ending: str) -> Path:
@@ -59,11 +109,23 @@ def _beside(folder: Path, given: str | None, ending: str) -> Path:
 
 
 def _make(arguments: argparse.Namespace, folder: Path, key: Path) -> int:
+    from ves_twin.blind.make import make_suite
+    from ves_twin.cli.progress import RunProgress
+
+    recipe = _recipe(arguments)
+    with RunProgress("blind make", 1.0, unit="share") as progress:
+        suite = make_suite(recipe, folder, key, progress.share, os.cpu_count() or 1)
+    print(f"{len(suite.cases)} cases in {folder}/, key in {key}")
+    return 0
+
+
+def _recipe(arguments: argparse.Namespace) -> Recipe:
     import secrets
 
-    from ves_twin.blind.make import make_suite
+    from ves_twin.blind.material import check_commissioned
+    from ves_twin.blind.recipe import Recipe
     from ves_twin.blind.truth import Hidden
-    from ves_twin.cli.progress import RunProgress
+    from ves_twin.diagnosis.tolerances import FEWEST
 
     counts = {sort: getattr(arguments, sort) for sort in QUICK}
     if arguments.cases is not None:
@@ -71,33 +133,73 @@ def _make(arguments: argparse.Namespace, folder: Path, key: Path) -> int:
     asked = {
         Hidden(sort): QUICK[sort] if count is None else count for sort, count in counts.items()
     }
-    seed = secrets.randbelow(2**31) if arguments.seed is None else arguments.seed
-    with RunProgress("blind make", 1.0, unit="share") as progress:
-        suite = make_suite(
-            arguments.bench,
-            asked,
-            folder,
-            key,
-            seed,
-            progress.share,
-            arguments.spread,
-            os.cpu_count() or 1,
-        )
-    print(f"{len(suite.cases)} cases in {folder}/, key in {key}")
-    return 0
+    check_commissioned(arguments.commissioned, FEWEST)
+    return Recipe(
+        arguments.bench,
+        asked,
+        secrets.randbelow(2**31) if arguments.seed is None else arguments.seed,
+        arguments.spread,
+        arguments.commissioned,
+        dict(_background(text) for text in arguments.background),
+        arguments.baseline,
+        arguments.cut,
+        arguments.poor,
+        arguments.repaired,
+    )
 
 
-def _answer(folder: Path, answers: Path, nulls: int) -> int:
+def _background(text: str) -> tuple[str, float]:
+    from ves_twin.errors import InvalidInputError
+
+    kind, _, size = text.partition("=")
+    try:
+        return kind, float(size)
+    except ValueError:
+        raise InvalidInputError(
+            "--background", text, "KIND=SIZE, for instance line=0.005"
+        ) from None
+
+
+def _answer(arguments: argparse.Namespace, folder: Path, answers: Path) -> int:
     from ves_twin.blind.answer import answer_suite
+    from ves_twin.blind.material import Use
     from ves_twin.cli.progress import RunProgress
     from ves_twin.compiled import cache_folder
     from ves_twin.diagnosis.settings import Settings
 
+    use = Use(not arguments.no_commissioning, not arguments.no_baseline, arguments.after or "")
+    if use.after and not arguments.answers:
+        answers = _after(answers, use.after)
     cache = cache_folder().parent / "banks"
-    settings = Settings(workers=os.cpu_count() or 1, cache=cache, nulls=nulls)
+    settings = Settings(workers=arguments.workers, cache=cache, nulls=arguments.nulls)
     with RunProgress("blind answer", 1.0, unit="share") as progress:
-        found = answer_suite(folder, answers, settings, progress.share)
+        found = answer_suite(folder, answers, settings, progress.share, use)
     print(f"{len(found)} answers in {answers}")
+    return 0
+
+
+def _after(answers: Path, choice: str) -> Path:
+    """Answers of both recordings, beside those of the first."""
+    return answers.with_name(f"{answers.stem}-{choice}.json")
+
+
+def _play(folder: Path, key: Path, answers: Path, choice: str) -> int:
+    from ves_twin.blind.answers import read_answers
+    from ves_twin.blind.mark import read_truths
+    from ves_twin.blind.play import play_next
+    from ves_twin.cli.progress import RunProgress
+
+    secret = _read_key(key)
+    with RunProgress("blind play", 1.0, unit="share") as progress:
+        played = play_next(
+            folder,
+            secret,
+            read_truths(folder, secret),
+            read_answers(answers),
+            choice,
+            progress.share,
+        )
+    print(f"{len(played)} next experiments ({choice}) in {folder}/")
     return 0
 
 
@@ -126,18 +228,52 @@ def _read_key(key: Path) -> str:
 
 
 def _score(arguments: argparse.Namespace, folder: Path, key: Path, answers: Path) -> int:
-    from ves_twin.blind.answer import read_answers
+    from ves_twin.blind.answers import read_answers
     from ves_twin.blind.mark import mark, read_truths
+    from ves_twin.blind.mark_gain import mark_gain
 
-    marks = mark(read_truths(folder, _read_key(key)), read_answers(answers))
+    truths, given = read_truths(folder, _read_key(key)), read_answers(answers)
+    other = read_answers(Path(arguments.against)) if arguments.against else None
+    marks = mark(truths, given, other)
+    more = {name: rate for name, rate in mark_gain(folder, truths, given).items() if rate.of}
+    after = _next_marks(folder, truths, given, answers)
+    more |= {name: rate for name, rate in after.rows.items() if rate.of} if after else {}
+    marks = replace(marks, rows={**marks.rows, **more})
+    text = _text(marks) + (_correlation(after) if after else "")
     if arguments.page:
-        Path(arguments.page).write_text(_text(marks), encoding="utf-8")
+        Path(arguments.page).write_text(text, encoding="utf-8")
     if arguments.json:
         rows = {name: {"hits": r.hits, "of": r.of} for name, r in marks.rows.items()}
-        print(json.dumps({"rows": rows, "seconds": dict(marks.seconds)}, indent=1))
+        told = {"rows": rows, "seconds": dict(marks.seconds)}
+        if after:
+            told["correlation"] = None if isnan(after.correlation) else after.correlation
+        print(json.dumps(told, indent=1))
     else:
-        print(_text(marks))
+        print(text)
     return 0
+
+
+def _next_marks(
+    folder: Path, truths: Sequence[Truth], given: Mapping[str, Answer], answers: Path
+) -> NextMarks | None:
+    """Of the next experiments that were played and answered; None without."""
+    from ves_twin.blind.answers import read_answers
+    from ves_twin.blind.mark_next import mark_next
+    from ves_twin.blind.play import CHOICES, played_file
+
+    done = [c for c in CHOICES if _after(answers, c).is_file() and played_file(folder, c).is_file()]
+    if not done:
+        return None
+    after = {choice: read_answers(_after(answers, choice)) for choice in done}
+    played = {choice: json.loads(played_file(folder, choice).read_text()) for choice in done}
+    return mark_next(truths, given, after, played)
+
+
+def _correlation(after: NextMarks) -> str:
+    return (
+        f"\nPredicted and realised separation of the rivals (logarithms of chi^2):"
+        f" correlation {after.correlation:.2f} over {len(after.points)} experiments.\n"
+    )
 
 
 def _text(marks: Marks) -> str:

@@ -53,6 +53,7 @@ class Findings:
         forecast: ahead in time, of causes that belong to a stretch of it.
         proposals: next programmes.
         apart: what each recording says alone.
+        widened: factor on the declared commissioning sd in this view.
     """
 
     seen: Observed
@@ -66,6 +67,7 @@ class Findings:
     forecast: Gain | None = None
     proposals: tuple[Proposal, ...] = ()
     apart: tuple[Alone, ...] = ()
+    widened: float = 1.0
 
 
 def compose(
@@ -89,6 +91,7 @@ def compose(
         naming_limit=findings.kappa,
         tolerance_scale=findings.scale,
         naming_odds=findings.settings.odds,
+        widened=findings.widened,
     )
     return Verdict(
         verdict=kind,
@@ -164,7 +167,7 @@ def _cause(
         low, high = max(value - z * sd, parameter.low), min(value + z * sd, parameter.high)
         estimates[parameter.name] = Estimate(value, low, high, parameter.unit, parameter.nominal)
         if parameter.sd > 0.0:
-            sigmas.append(abs(size) / parameter.sd)
+            sigmas.append(findings.widened * abs(size) / parameter.sd)
     absent = len(sigmas) < len(hypothesis.parameters)
     return Cause(
         effect=hypothesis.effect,

@@ -3,15 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 from ves_twin.diagnosis.assess import assess, pull_limit
 from ves_twin.diagnosis.bank import Bank, build_bank, cached_bank
+from ves_twin.diagnosis.both_views import both_views, is_firm
 from ves_twin.diagnosis.compose import Findings, compose
 from ves_twin.diagnosis.conclude import HeldOut, conclude, whitening_of
 from ves_twin.diagnosis.differential import differential
 from ves_twin.diagnosis.disagreement import Alone, disagreement
-from ves_twin.diagnosis.explain import Desk, Explanation
+from ves_twin.diagnosis.explain import Desk, Explanation, explain
 from ves_twin.diagnosis.forward import Forward, Programme
 from ves_twin.diagnosis.likeness import check_likeness
 from ves_twin.diagnosis.next_experiment import separations
@@ -19,9 +20,10 @@ from ves_twin.diagnosis.null import cached_thresholds
 from ves_twin.diagnosis.observe import Observed, observe
 from ves_twin.diagnosis.runs import Progress, Runs, silent
 from ves_twin.diagnosis.settings import Settings
-from ves_twin.diagnosis.tolerances import FEWEST, naming_limit, tolerance_scale
+from ves_twin.diagnosis.tolerances import FEWEST, cached_scale, naming_limit
 from ves_twin.diagnosis.verdict import Basis, Kind, Proposal, Verdict
 from ves_twin.diagnosis.whitening import Whitening
+from ves_twin.diagnosis.widened import Widened, widening
 from ves_twin.errors import UnknownNameError
 from ves_twin.recording.recording import Recording
 from ves_twin.workers import Workers
@@ -68,29 +70,112 @@ def diagnose(
     chosen = settings or Settings()
     _check_causes(forward, exclude)
     with Workers(chosen.workers) as workers:
+        scale = _scale(forward, commissioning, workers, chosen)
+        material = _Material(
+            tuple(recordings),
+            tuple(held_out),
+            standstill,
+            tuple(baseline),
+            next_programmes,
+            tuple(exclude),
+            scale,
+        )
+        declared = _View.of(forward, material, chosen, workers, progress)
+        wide = widening(scale)
+        if wide == 1.0 or not declared.loud:
+            return declared.verdict(progress)
+        widened = Widened(forward, wide)
+        measured = _View.of(widened, material, chosen, workers, progress, wide).verdict(progress)
+        if is_firm(measured):
+            return measured
+        in_order = measured.verdict is Kind.NOTHING
+        return both_views(declared.verdict(progress, alone=in_order), measured)
+
+
+@dataclass(frozen=True)
+class _Material:
+    """What a verdict is taken from, whatever the tolerances."""
+
+    recordings: tuple[Recording, ...]
+    held_out: tuple[Recording, ...]
+    standstill: Recording | None
+    baseline: tuple[Recording, ...]
+    next_programmes: Sequence[Programme] | Callable[[], Sequence[Programme]]
+    exclude: tuple[str, ...]
+    scale: float | None
+
+
+@dataclass(frozen=True)
+class _View:
+    """A record with the tolerances of one forward, looked at and not explained.
+
+    Attributes:
+        forward: the plant.
+        material: the record and what is beside it.
+        findings: with the record before any cause.
+        pull: commissioning error that a rig in order does not pass [sd].
+        whitening: noise as declared or measured.
+    """
+
+    forward: Forward
+    material: _Material
+    findings: Findings
+    pull: float
+    whitening: Whitening
+
+    @staticmethod
+    def of(
+        forward: Forward,
+        material: _Material,
+        chosen: Settings,
+        workers: Workers,
+        progress: Progress,
+        widened: float = 1.0,
+    ) -> _View:
+        """Look; the forward's tolerances are `widened` times the declared ones."""
+        recordings, standstill = material.recordings, material.standstill
         seen = observe(forward, recordings, workers, chosen.rate)
         whitening = whitening_of(seen.runs, standstill)
-        if baseline:
-            seen, whitening = _changed(seen, whitening, recordings, baseline, standstill, chosen)
-        bank = _bank(seen, chosen, progress).without(tuple(exclude))
+        if material.baseline:
+            usual = material.baseline
+            seen, whitening = _changed(seen, whitening, recordings, usual, standstill, chosen)
+        bank = _bank(seen, chosen, progress).without(material.exclude)
         limits = cached_thresholds(bank, whitening, chosen, progress)
         pull = pull_limit(bank, chosen.alpha)
         first = assess(
             seen.measured, bank, whitening, limits.effect, limits.misfit, pull, limits.bends
         )
-        scale = _scale(forward, commissioning, workers, chosen.rate)
-        basis = _basis(standstill, scale, held_out, baseline)
-        findings = Findings(seen, first, limits, chosen, naming_limit(bank, scale), scale)
-        if not first.exceeds(limits.effect, limits.misfit, pull):
-            return compose(findings, Kind.NOTHING, basis, tuple(exclude))
-        desk = Desk(first, limits, chosen, progress)
-        held = HeldOut.of(forward, held_out, standstill, chosen, workers) if held_out else None
-        end = conclude(desk, forward, (*recordings, *held_out), held)
+        kappa, scale = naming_limit(bank, material.scale), material.scale
+        findings = Findings(seen, first, limits, chosen, kappa, scale, widened=widened)
+        return _View(forward, material, findings, pull, whitening)
+
+    @property
+    def loud(self) -> bool:
+        """Whether something is there."""
+        limits = self.findings.limits
+        return self.findings.first.exceeds(limits.effect, limits.misfit, self.pull)
+
+    def verdict(self, progress: Progress, alone: bool = False) -> Verdict:
+        """Explain it; `alone` asks for a single cause that leaves noise, and for nothing else."""
+        findings, material = self.findings, self.material
+        seen, chosen, first = findings.seen, findings.settings, findings.first
+        basis = _basis(material)
+        if not self.loud:
+            return compose(findings, Kind.NOTHING, basis, material.exclude)
+        desk = Desk(first, findings.limits, chosen, progress)
+        if alone and not _one_is_enough(desk):
+            return compose(findings, Kind.UNKNOWN, basis, material.exclude)
+        held_out, still, workers = material.held_out, material.standstill, seen.runs.workers
+        own = seen.runs.forward  # tuned to this rig where there is a baseline
+        held = HeldOut.of(own, held_out, still, chosen, workers) if held_out else None
+        end = conclude(desk, self.forward, (*material.recordings, *held_out), held)
         found, kind = end.found, end.kind
-        proposals = _next(seen.runs, found, next_programmes) if kind is Kind.AMBIGUOUS else ()
+        ambiguous = kind is Kind.AMBIGUOUS
+        proposals = _next(seen.runs, found, material.next_programmes) if ambiguous else ()
         apart: tuple[Alone, ...] = ()
         if found is None or not found.adequate:
-            apart = disagreement(seen, bank, whitening, limits, chosen, progress)
+            bank, limits = first.screen.bank, findings.limits
+            apart = disagreement(seen, bank, self.whitening, limits, chosen, progress)
         findings = replace(
             findings,
             found=found,
@@ -99,7 +184,13 @@ def diagnose(
             proposals=proposals,
             apart=apart,
         )
-        return compose(findings, kind, basis, tuple(exclude))
+        return compose(findings, kind, basis, material.exclude)
+
+
+def _one_is_enough(desk: Desk) -> bool:
+    """Whether a single cause leaves noise."""
+    found = explain(desk.first, desk.thresholds, desk.settings, desk.progress, pairs=False)
+    return found is not None and found.adequate
 
 
 def _changed(
@@ -137,27 +228,22 @@ def _check_causes(forward: Forward, names: Sequence[str]) -> None:
             raise UnknownNameError("cause", name, known)
 
 
-def _basis(
-    standstill: Recording | None,
-    scale: float | None,
-    held_out: Sequence[Recording],
-    baseline: Sequence[Recording],
-) -> Basis:
+def _basis(material: _Material) -> Basis:
     return Basis(
-        noise="declared" if standstill is None else "measured",
-        tolerances="declared" if scale is None else "measured",
-        held_out="measured" if held_out else "none",
-        baseline="measured" if baseline else "none",
+        noise="declared" if material.standstill is None else "measured",
+        tolerances="declared" if material.scale is None else "measured",
+        held_out="measured" if material.held_out else "none",
+        baseline="measured" if material.baseline else "none",
     )
 
 
 def _scale(
-    forward: Forward, commissioning: Sequence[Recording], workers: Workers, rate: float
+    forward: Forward, commissioning: Sequence[Recording], workers: Workers, chosen: Settings
 ) -> float | None:
     if len(commissioning) < FEWEST:
         return None
-    rigs = [observe(forward, [recording], workers, rate) for recording in commissioning]
-    return tolerance_scale([(rig.runs, rig.measured) for rig in rigs])
+    rigs = [observe(forward, [recording], workers, chosen.rate) for recording in commissioning]
+    return cached_scale([(rig.runs, rig.measured) for rig in rigs], chosen.cache)
 
 
 def _next(

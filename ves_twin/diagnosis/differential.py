@@ -10,6 +10,7 @@ import numpy as np
 
 from ves_twin.diagnosis.evidence import Evidence
 from ves_twin.diagnosis.forward import Channel, Forward, Hypothesis, Parameter, Programme
+from ves_twin.diagnosis.lacking import CHANGE, PARAMETERS, Lacking
 from ves_twin.diagnosis.linearise import linearise, with_bends
 from ves_twin.diagnosis.observe import Observed, observe
 from ves_twin.diagnosis.refine import refine
@@ -51,6 +52,8 @@ def differential(
     programme, made while the rig was in order, shows it: r = y_b - f(nu_b). Of y - r about f(nu_b)
     stays what has changed since, and noise of 1 + 1/n the variance. What is drawn anew for each
     recording, as a zero, is not tuned; its difference has 1 + 1/n the variance, too.
+    What the model lacks acts otherwise where a fault moves the rig otherwise: r, and what tuning
+    took for it, may change by a share.
 
     Args:
         seen: the record that is diagnosed.
@@ -66,10 +69,13 @@ def differential(
     local = with_bends(linearise(runs, runs.origin))
     fit = refine(Evidence(runs, rows, whitening), (), runs.origin, local, 1)
     noise = float(np.sqrt(1.0 + 1.0 / count))
-    tuned = again(Tuned.to(runs, fit.shift, noise))
+    own = Tuned.to(runs, fit.shift, noise)
+    tuned = again(own)
     step = np.float32(fit.step_share) * fit.local.columns[-1]
     usual = rows - tuned.runs.one(tuned.runs.origin) - step
-    return Differential(replace(tuned, measured=tuned.measured - usual), noise)
+    traces = Lacking.of(tuned.runs, usual)
+    free = again(replace(own, lacking=traces))
+    return Differential(replace(free, measured=free.measured - usual), noise)
 
 
 @dataclass(frozen=True)
@@ -78,11 +84,14 @@ class Tuned:
 
     Attributes:
         forward: the one with nominal values.
-        parameters: with those of the rig as nominal, and KEPT of their sd.
+        tuned: its parameters with those of the rig as nominal, and KEPT of their sd, or CHANGE of
+            what they were tuned by if that is more: it stands for what the model lacks.
+        lacking: traces that may grow and turn, by programme.
     """
 
     forward: Forward
-    parameters: tuple[Parameter, ...]
+    tuned: tuple[Parameter, ...]
+    lacking: tuple[Lacking, ...] = ()
 
     @staticmethod
     def to(runs: Runs, shift: FloatArray, noise: float) -> Tuned:
@@ -93,7 +102,11 @@ class Tuned:
             if axis.recording < 0
         }
         parameters = tuple(
-            replace(p, nominal=p.nominal + moved[p.name], sd=KEPT * p.sd)
+            replace(
+                p,
+                nominal=p.nominal + moved[p.name],
+                sd=max(KEPT * p.sd, CHANGE * abs(moved[p.name])) if p.sd > 0.0 else 0.0,
+            )
             if p.name in moved
             else replace(p, sd=noise * p.sd)
             for p in runs.forward.parameters
@@ -102,9 +115,17 @@ class Tuned:
 
     @property
     def identity(self) -> str:
-        """Of the forward and the values."""
+        """Of the forward, the values and the traces."""
         told = f"{self.forward.identity} {[(p.nominal, p.sd) for p in self.parameters]}"
-        return hashlib.sha256(told.encode()).hexdigest()[:16]
+        digest = hashlib.sha256(told.encode())
+        for trace in self.lacking:
+            digest.update(trace.programme.encode() + trace.traces.tobytes())
+        return digest.hexdigest()[:16]
+
+    @property
+    def parameters(self) -> tuple[Parameter, ...]:
+        """The tuned ones, and what the lacking physics may do."""
+        return (*self.tuned, *PARAMETERS) if self.lacking else self.tuned
 
     @property
     def channels(self) -> tuple[Channel, ...]:
@@ -125,8 +146,13 @@ class Tuned:
         self, programme: Programme, values: Mapping[str, float], refined: bool = False
     ) -> FloatArray:
         """As the forward, at the rig's own values where nothing else is said."""
-        own = {p.name: p.nominal for p in self.parameters if not p.per_recording}
-        return self.forward.simulate(programme, own | dict(values), refined)
+        own = {p.name: p.nominal for p in self.tuned if not p.per_recording} | dict(values)
+        sizes = np.array([own.pop(p.name, 0.0) for p in PARAMETERS])
+        rows = self.forward.simulate(programme, own, refined)
+        for trace in self.lacking:
+            if trace.programme == programme.identity:
+                rows = rows + np.tensordot(sizes, trace.traces, axes=1)
+        return rows
 
 
 def _usual(seen: Observed, baseline: Sequence[Recording]) -> tuple[SingleArray, int]:

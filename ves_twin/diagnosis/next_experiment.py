@@ -33,8 +33,10 @@ def separations(
 ) -> list[Separation]:
     """Candidate programmes by falling separation of the rivals.
 
-    For rivals i and j the separation is min over a of |s_i - a s_j|^2 with the nuisances
-    marginalised: what rival j, at whatever size, leaves unexplained of rival i.
+    For rivals i and j the separation is min over a of |s_i - a s_j|^2 + (a - 1)^2 D_j^2 with the
+    nuisances marginalised: what rival j leaves unexplained of rival i. D_j is its size over its sd
+    in the recordings that are there, which hold it: a programme that a cause leaves as it is parts
+    it from a rival that would show there.
 
     Args:
         there: runs in which the rivals were fitted.
@@ -43,6 +45,7 @@ def separations(
     """
     found = []
     axes = _axes(there, rivals) if programmes else None
+    held = np.array([_held(fit) for fit in rivals])
     for programme in programmes:
         runs = Runs(there.forward, (programme,), there.columns, there.workers)
         base = linearise(runs, runs.origin, axes=_on(runs, there, axes))
@@ -50,7 +53,8 @@ def separations(
         metric = Metric(whitening.apply(base.columns).T)
         shifts = [_carry(there, fit, runs) for fit in rivals]
         changes = whitening.apply(runs.many(shifts) - base.prediction).T
-        found.append(Separation(programme, _closest(changes.T @ metric.project(changes))))
+        gram = changes.T @ metric.project(changes)
+        found.append(Separation(programme, _closest(gram, held)))
     return sorted(found, key=lambda separation: -separation.chi2)
 
 
@@ -91,8 +95,17 @@ def _carry(there: Runs, fit: Fit, runs: Runs) -> FloatArray:
     return runs.depart(runs.origin, where, fit.sizes)
 
 
-def _closest(gram: FloatArray) -> float:
-    power = np.maximum(np.diag(gram), 1e-12)
-    apart = power[:, None] - gram**2 / power
+def _held(fit: Fit) -> float:
+    """Size over its sd, squared, as the recordings that are there tell it."""
+    count = len(fit.sizes)
+    known = fit.posterior[:count, :count]
+    return float(fit.sizes @ np.linalg.lstsq(known, fit.sizes, rcond=None)[0])
+
+
+def _closest(gram: FloatArray, held: FloatArray) -> float:
+    """The least separation of two rivals, of <s_i, s_j> and D_j^2."""
+    power = np.diag(gram)
+    apart = power[:, None] - 2.0 * gram + power
+    apart = apart - (gram - power) ** 2 / np.maximum(power + held, 1e-12)
     np.fill_diagonal(apart, np.inf)
     return float(np.max([np.min(apart), 0.0]))

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from pathlib import Path
 
 import numpy as np
 from scipy.optimize import brentq
 from scipy.stats import chi2, norm
 
-from ves_twin.diagnosis.bank import Bank
+from ves_twin.diagnosis.bank import Bank, bank_key, write_arrays
 from ves_twin.diagnosis.evidence import Evidence
 from ves_twin.diagnosis.linearise import linearise
 from ves_twin.diagnosis.refine import bare_residual, refine, residual_about
@@ -50,6 +51,24 @@ def tolerance_scale(rigs: Sequence[tuple[Runs, SingleArray]]) -> float:
     if excess(1e-3) < 0.0:
         return 0.0
     return float(brentq(excess, 1e-3, 1e3))
+
+
+def cached_scale(rigs: Sequence[tuple[Runs, SingleArray]], folder: Path | None) -> float:
+    """The scale from a file, computed and written where there is none: each rig costs a fit.
+
+    Raises:
+        FileAccessError: the folder cannot be written.
+    """
+    if folder is None:
+        return tolerance_scale(rigs)
+    content = "".join(bank_key(runs, measured.tobytes()) for runs, measured in rigs)
+    path = folder / f"scale-{bank_key(rigs[0][0], content.encode())}.npz"
+    if path.is_file():
+        with np.load(path) as kept:
+            return float(kept["scale"])
+    scale = tolerance_scale(rigs)
+    write_arrays(path, scale=np.array(scale))
+    return scale
 
 
 def _directions(runs: Runs, measured: SingleArray) -> tuple[FloatArray, FloatArray]:

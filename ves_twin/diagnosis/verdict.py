@@ -132,7 +132,8 @@ class Proposal:
 class Statistics:
     """The figures the verdict was taken on, each beside its threshold.
 
-    `naming_odds` are those at which a rival is dropped.
+    `naming_odds` are those at which a rival is dropped; `widened` is the factor on the declared
+    tolerances with which this was found, above 1 where recordings of rigs in order ask for it.
     """
 
     effect: float
@@ -144,6 +145,7 @@ class Statistics:
     naming_limit: float | None = None
     tolerance_scale: float | None = None
     naming_odds: float | None = None
+    widened: float = 1.0
 
 
 @dataclass(frozen=True)

@@ -14,9 +14,9 @@ from ves_twin.benches.diagnose_rig import diagnose_rig
 from ves_twin.benches.pendulum import Pendulum
 from ves_twin.blind.bench import BlindBench, BlindRig
 from ves_twin.blind.judge import judge
-from ves_twin.blind.make import save_bare
 from ves_twin.blind.pendulum import BlindPendulum
 from ves_twin.blind.rig import BlindVes2
+from ves_twin.blind.save_bare import save_bare
 from ves_twin.blind.suite import HELD_OUT, RECORDING, STANDSTILL
 from ves_twin.compiled import cache_folder
 from ves_twin.control.leg_loop import FilterPlace

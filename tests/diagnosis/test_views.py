@@ -1,0 +1,60 @@
+"""Tolerances as declared and as rigs in order show them: which verdict is said."""
+
+import numpy as np
+import pytest
+
+from ves_twin.benches.pendulum import STEP, Pendulum
+from ves_twin.diagnosis.both_views import both_views
+from ves_twin.diagnosis.forward import Programme
+from ves_twin.diagnosis.verdict import Basis, Cause, Kind, Statistics, Verdict
+from ves_twin.diagnosis.widened import LEAST, Widened, widening
+
+BASIS = Basis("declared", "measured", "none")
+FIGURES = Statistics(1.0, 2.0, 1.0, 2.0)
+
+
+def said(kind, *names, firm=True):
+    causes = tuple(Cause(name, "x", {}, 1.0, firm, 9.0) for name in names)
+    return Verdict(kind, BASIS, FIGURES, causes, tuple((n,) for n in range(len(causes))))
+
+
+NOTHING, UNKNOWN = said(Kind.NOTHING), said(Kind.UNKNOWN)
+FIRM, SOFT = said(Kind.NAMED, "a"), said(Kind.NAMED, "a", firm=False)
+
+
+@pytest.mark.parametrize(
+    ("declared", "measured", "expected"),
+    [
+        (UNKNOWN, NOTHING, "measured"),  # within the tolerances as they are
+        (UNKNOWN, FIRM, "measured"),
+        (FIRM, NOTHING, "declared"),  # only the tighter view is sharp enough, kappa is the same
+        (SOFT, NOTHING, "declared"),  # so many declared sd off: fault or commissioning error
+        (said(Kind.SEVERAL, "a", "b", firm=False), NOTHING, "measured"),
+        (FIRM, said(Kind.NAMED, "b"), "measured"),
+        (FIRM, said(Kind.NAMED, "b", firm=False), "measured"),
+        (FIRM, said(Kind.AMBIGUOUS, "a", "b", firm=False), "declared"),
+        (FIRM, said(Kind.AMBIGUOUS, "c", "b"), "measured"),
+        (FIRM, UNKNOWN, "declared"),
+        (SOFT, UNKNOWN, "measured"),
+    ],
+)
+def test_which_of_two_views_is_said(declared, measured, expected):
+    chosen = {"declared": declared, "measured": measured}[expected]
+    assert both_views(declared, measured) is chosen
+
+
+def test_a_plant_known_less_well_predicts_the_same():
+    plant = Pendulum()
+    wide = Widened(plant, 2.5)
+    time = STEP * np.arange(50)
+    programme = Programme("", time, {"joint.torque": np.ones((50, 1))})
+    values = {"link.mass": 1.1}
+    assert np.array_equal(wide.simulate(programme, values), plant.simulate(programme, values))
+    assert [p.sd for p in wide.parameters] == [2.5 * p.sd for p in plant.parameters]
+    assert len({plant.identity, wide.identity, Widened(plant, 2.0).identity}) == 3
+
+
+def test_tolerances_are_widened_on_a_ladder_and_only_where_five_rigs_can_tell():
+    assert widening(None) == 1.0
+    assert widening(LEAST - 0.01) == 1.0
+    assert widening(2.5) == widening(2.6) == pytest.approx(2.5, rel=0.1)
