@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from ves_twin.diagnosis.linearise import STIFF, Linearisation, linearise
+from ves_twin.diagnosis.linearise import STIFF, Linearisation, linearise, strangeness
 from ves_twin.diagnosis.metric import Metric
 from ves_twin.diagnosis.refine import Fit
 from ves_twin.diagnosis.runs import Runs
@@ -151,7 +151,9 @@ class _Carried:
         share = np.where(rows >= 0, sd / own[rows], 0.0).astype(np.float32)
         columns = self.local.columns[[*rows, -1]]
         columns[:-1] *= share[:, None, None]
-        bent = np.flatnonzero((axes.bends > STIFF) | (rows < 0))
+        usual = replace(self.local, columns=self._in_tolerances(mine))
+        strange = strangeness(usual, runs.one(axes.point))
+        bent = np.flatnonzero((axes.bends * strange > STIFF) | (rows < 0))
         some = where[bent], sd[bent]
         there = linearise(runs, axes.point, axes=some, forward_step=FORWARD_STEP)
         columns[[*bent, -1]] = there.columns
@@ -159,6 +161,12 @@ class _Carried:
         return _Carried(
             Linearisation(runs, axes.point, there.prediction, columns, bends), axes.root
         )
+
+    def _in_tolerances(self, mine: _Axes) -> SingleArray:
+        """Columns for one commissioning sd, none of what has no such sd."""
+        share = self.local.runs.sd[mine.carried] / mine.sd
+        every = np.concatenate([share, np.ones(len(mine.new)), [1.0]]).astype(np.float32)
+        return np.asarray(self.local.columns * every[:, None, None])
 
     def left(self, measured: SingleArray, whitening: Whitening) -> FloatArray:
         """What the nuisances cannot explain, whitened (samples,)."""

@@ -93,15 +93,32 @@ def with_bends(base: Linearisation, progress: Progress = silent) -> Linearisatio
     return replace(base, bends=_sizes(runs, other.columns - base.columns))
 
 
-def renewed(local: Linearisation, point: FloatArray) -> Linearisation:
-    """At another point: columns that bend are computed there, the others stay."""
+def renewed(local: Linearisation, point: FloatArray, prediction: SingleArray) -> Linearisation:
+    """At another point: columns that bend on the way there are computed, the others stay.
+
+    Args:
+        local: with columns that held elsewhere.
+        point: departures there.
+        prediction: channels there.
+    """
     runs = local.runs
-    bent = np.flatnonzero(local.bends[:-1] > STIFF)
+    bent = np.flatnonzero(local.bends[:-1] * strangeness(local, prediction) > STIFF)
     axes = runs.nuisances[bent], runs.sd[runs.nuisances[bent]]
     there = linearise(runs, point, axes=axes, forward_step=FORWARD_STEP)
     columns = local.columns.copy()
     columns[[*bent, -1]] = there.columns
     return replace(local, point=point, prediction=there.prediction, columns=columns)
+
+
+def strangeness(local: Linearisation, prediction: SingleArray) -> float:
+    """How far a prediction is off, in what rigs within their tolerances are: 1 at least.
+
+    A cause that moves the channels by more than commissioning errors do bends columns by more, too.
+    """
+    runs = local.runs
+    off = float(_sizes(runs, (prediction - local.prediction)[None])[0])
+    usual = float(np.linalg.norm(_sizes(runs, local.columns[:-1])))
+    return max(1.0, off / max(usual, 1e-30))
 
 
 def _sizes(runs: Runs, columns: SingleArray) -> FloatArray:

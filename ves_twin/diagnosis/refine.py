@@ -106,7 +106,8 @@ def refine(
             break
         before = point.chi2
         turned = replace(search.local, columns=search.turned)
-        search = Search(evidence, free, renewed(turned, point.shift), farthest, enough)
+        local = renewed(turned, point.shift, point.prediction)
+        search = Search(evidence, free, local, farthest, enough)
         point, jacobian = search.run(search.at(point.shift, point.delta))
         if before - point.chi2 < WORTH * point.chi2:
             break
