@@ -44,7 +44,7 @@ def prepare_pendulum(plant: Pendulum, *groups: Sequence[Recording]) -> PendulumI
 
     Args:
         plant: as it is for recordings that begin at rest.
-        groups: recordings: measured, held out, and so on.
+        *groups: recordings: measured, held out, and so on.
     """
     begins = [[_begin(recording) for recording in group] for group in groups]
     every = [begin for group in begins for begin in group]
