@@ -22,7 +22,6 @@ ROUNDS = 3
 BEYOND = 1.5
 """Times its limit above which a score after a fit is a cause's: new columns move it by a tenth."""
 
-
 STRANGE = 1.5
 """chi^2 for each sample beside the best hypothesis above which it is not taken for the cause."""
 
