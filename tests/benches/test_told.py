@@ -89,10 +89,19 @@ def test_one_recording_may_have_a_window_of_its_own_and_no_rig_of_its_own():
     assert a.time[-1] == T[-1]
     assert b.time[-1] < 2.0
     for words, says in (
-        ({"b": {"payload": 1.0}}, "one rig in all recordings"),
+        ({"b": {"parameters": {"sensor.corner": 19.0}}}, "one rig in all recordings"),
         ({"b": {"noise": "declared"}}, "one noise source"),
         ({"bb": {"payload": 1.0}}, "did you mean 'b'"),
         ({"b": {"window": {"start": 90.0}}}, "window of b"),
     ):
         with pytest.raises(VesTwinError, match=says):
             tell({"a": LEGS, "b": LEGS}, Experiment(**HOME, recordings=words), None)
+
+
+def test_each_recording_may_carry_a_declared_load_of_its_own():
+    own = Experiment(**HOME, payload="1 kg", recordings={"b": {"payload": "3 kg"}})
+    told = tell({"a": LEGS, "b": LEGS}, own, None)
+    assert [r["load.mass"][0, 0] for r in told.recordings] == [1.0, 3.0]
+    assert told.plant.hash == tell({"a": LEGS}, Experiment(**HOME), None).plant.hash
+    alike = tell({"a": LEGS, "b": LEGS}, Experiment(**HOME, payload="1 kg"), None)
+    assert not any("load.mass" in r.signals for r in alike.recordings)

@@ -9,6 +9,7 @@ import pytest
 
 from ves_twin.blind.answers import Answer
 from ves_twin.blind.benches import bench_of
+from ves_twin.blind.draw import LOUDNESS, PAIR_LOUDNESS
 from ves_twin.blind.make import make_suite
 from ves_twin.blind.mark import mark, read_truths
 from ves_twin.blind.rate import Rate
@@ -56,6 +57,14 @@ def test_the_recordings_tell_nothing_of_the_truth(suite):
         assert recording.info.plant_hash == ""
         assert not any(name.startswith("truth.") for name in recording.signals)
         assert not any(cause.effect in told for cause in truth.causes)
+
+
+def test_no_hidden_cause_is_fainter_than_its_sort_may_be(suite):
+    truths = read_truths(suite, suite.with_name("key").read_text().strip())
+    pairs = [cause.d for t in truths if t.hidden is Hidden.PAIR for cause in t.causes]
+    assert len(pairs) == 2 * COUNTS[Hidden.PAIR]
+    assert all(d >= PAIR_LOUDNESS[0] for d in pairs)
+    assert all(c.d >= LOUDNESS[0] for t in truths for c in t.causes)
 
 
 def test_a_suite_that_was_interrupted_goes_on_with_the_same_cases(suite):

@@ -103,6 +103,7 @@ BAD = [
     (["run", "position_sine", "--set", "parameters.chamber.bore=0.06"], "hydraulic_model"),
     (["run", "position_sine", "--seed", "99999999999999999999"], "below 2^63"),
     (["view", "no/such/run.parquet"], "does not exist"),
+    (["view", "no/such"], "run folder, recording or scenario no/such does not exist"),
     (["info", "--plant", "no.toml"], "does not exist"),
 ]
 

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
+from ves_twin.benches.declared_load import LOAD
 from ves_twin.benches.filter_place import EFFECT as FILTER_PLACE
 from ves_twin.benches.filter_place import WithFilterPlaces
 from ves_twin.benches.ves2 import RigForward
@@ -90,7 +91,11 @@ def diagnose_rig(
     if scenario is None:
         every = (*measured.recordings, *others.recordings, *rigs.recordings, *usual.recordings)
         _check_settings(every, setting)
-    forward = WithFilterPlaces(RigForward(plant, setting))
+    sorts = (measured, others, rigs, usual)
+    loaded = any(LOAD.name in r.signals for sort in sorts for r in sort.recordings)
+    if loaded:
+        measured, others, rigs, usual = (s.with_loads() for s in sorts)
+    forward = WithFilterPlaces(RigForward(plant, setting, loaded=loaded))
     offered: list[Programme] = []
 
     def menu() -> list[Programme]:

@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from ves_twin.benches.declared_load import with_load
 from ves_twin.benches.ves2 import COMPARED, DRIVE
 from ves_twin.errors import InvalidInputError
 from ves_twin.kinematics.stewart import leg_lengths
@@ -27,7 +28,8 @@ class Told:
     Attributes:
         recordings: in the order in which they were given.
         scenario: rates, gains and start.
-        plant: the nominal rig with the numbers and the payload of the experiment.
+        plant: the nominal rig with the numbers of the experiment, and with its payload where
+            all recordings have the same; else each recording says its own.
         standstill: recording that tells the noise, if the experiment names one.
     """
 
@@ -57,11 +59,15 @@ def tell(recordings: Mapping[str, Recording], experiment: Experiment, plant: Pla
     experiment.check_names(list(recordings))
     told = {name: experiment.of(name) for name in recordings}
     scenarios = {name: told[name].scenario_of(r) for name, r in recordings.items()}
+    loads = {name: told[name].payload for name in recordings}
+    own = len(set(loads.values())) > 1
+    if own:  # each recording carries its load, and the rig none
+        told = {name: t.model_copy(update={"payload": 0.0}) for name, t in told.items()}
     rigs = {name: told[name].rig(plant, scenarios[name]) for name in recordings}
     first = next(iter(recordings))
     for name in recordings:
         if rigs[name].hash != rigs[first].hash:
-            came = f"another payload or other parameters than {first}"
+            came = f"another plant or other parameters than {first}"
             raise InvalidInputError(name, came, "one rig in all recordings of a diagnosis")
         if told[name].noise != told[first].noise:
             came = f"another noise source than {first}"
@@ -72,6 +78,8 @@ def tell(recordings: Mapping[str, Recording], experiment: Experiment, plant: Pla
         _windowed(_driven(r, told[name], scenarios[name]), told[name], name)
         for name, r in recordings.items()
     )
+    if own:
+        ready = tuple(map(with_load, ready, loads.values()))
     return Told(ready, scenarios[first], rigs[first], standstill)
 
 

@@ -9,6 +9,7 @@ from functools import cached_property
 
 import numpy as np
 
+from ves_twin.benches.declared_load import LOAD, load_in
 from ves_twin.benches.sensor_change import SensorChange, without_sensor_kinds
 from ves_twin.benches.slow_noise import MODES, slow_modes
 from ves_twin.benches.ves2_library import (
@@ -23,6 +24,7 @@ from ves_twin.benches.ves2_library import (
     with_departures,
 )
 from ves_twin.diagnosis.forward import Channel, Hypothesis, Parameter, Programme
+from ves_twin.plant.known_weight import hang_weight
 from ves_twin.plant.plant import Plant
 from ves_twin.recording.recording import Recording, RecordingInfo
 from ves_twin.scenario.schema import Scenario
@@ -54,11 +56,13 @@ class RigForward:
         plant: the nominal rig.
         scenario: rates, leg gains and where the arm starts.
         exclude: kinds of effects that are left out of the library.
+        loaded: whether every programme says what hangs on the arm.
     """
 
     plant: Plant
     scenario: Scenario
     exclude: frozenset[str] = frozenset()
+    loaded: bool = False
 
     @cached_property
     def identity(self) -> str:
@@ -71,7 +75,7 @@ class RigForward:
     @property
     def drive(self) -> tuple[str, ...]:
         """Set-points of legs and arm, and the estimate that the sensor is zeroed against."""
-        return DRIVE
+        return (*DRIVE, LOAD.name) if self.loaded else DRIVE
 
     @cached_property
     def channels(self) -> tuple[Channel, ...]:
@@ -117,10 +121,12 @@ class RigForward:
         Gain and cross-talk of the sensor are laid over a run without them, which is kept: most
         commissioning tolerances are of that kind, and then cost no run of their own.
         """
-        plant, offsets = with_departures(self._smooth, values)
+        load = load_in(programme)
+        rig = hang_weight(self._smooth, load) if load else self._smooth
+        plant, offsets = with_departures(rig, values)
         hardware = plant
         if self.scenario.gravity.file is None:  # else the reading is calibrated, too
-            hardware, _ = with_departures(self._smooth, without_sensor_kinds(values))
+            hardware, _ = with_departures(rig, without_sensor_kinds(values))
         rows = self._kept.run(hardware, programme, self._rates(refined)).copy()
         if hardware is not plant:
             at_rest = programme.drive["gravity.estimate"][0] * float(self.scenario.gravity.zero)
@@ -178,7 +184,8 @@ class LastRun:
         if kept is not None and kept[0] == asked and kept[1] == scenario:
             return kept[2]
         info = RecordingInfo("measured")
-        recording = Recording(programme.time - programme.time[0], programme.drive, info)
+        fed = {name: programme.drive[name] for name in DRIVE}
+        recording = Recording(programme.time - programme.time[0], fed, info)
         answer = predict(recording, plant, scenario, DRIVE, COMPARED)
         rows = np.concatenate([answer[name] for name in COMPARED], axis=1)
         self._kept[programme.identity] = (asked, scenario, rows)

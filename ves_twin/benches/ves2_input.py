@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
+from ves_twin.benches.declared_load import LOAD, loads_of
 from ves_twin.benches.ves2 import DRIVE
 from ves_twin.errors import VesTwinError
 from ves_twin.plant.plant import Plant
@@ -25,6 +26,10 @@ class Inputs:
     recordings: tuple[Recording, ...]
     flaws: tuple[Check, ...]
 
+    def with_loads(self) -> Inputs:
+        """The same, every recording saying what hung on the arm: nothing where it did not."""
+        return replace(self, recordings=loads_of(self.recordings))
+
 
 def prepare_inputs(recordings: Sequence[Recording], plant: Plant, word: str) -> Inputs:
     """Put recordings through the quality gate and on an even clock.
@@ -42,16 +47,18 @@ def prepare_inputs(recordings: Sequence[Recording], plant: Plant, word: str) -> 
         UnknownNameError: a set-point that is not recorded.
         InvalidInputError: set-points that are missing for too long.
     """
-    weight = float(plant.parameters.array("arm.mass").sum() * plant.parameters.number("gravity"))
+    carried, gravity = plant.parameters.array("arm.mass").sum(), plant.parameters.number("gravity")
     even, flaws = [], []
     for number, recording in enumerate(recordings, 1):
         name = f"{word} {number}"
-        failed = quality_gate(recording, weight).failures
+        load = recording[LOAD.name][0, 0] if LOAD.name in recording.signals else 0.0
+        failed = quality_gate(recording, float((carried + load) * gravity)).failures
         wrong = [check for check in failed if check.name in REFUSED]
         if wrong:
             raise VesTwinError(f"{name}: {'; '.join(check.message for check in wrong)}")
         flaws += [replace(check, message=f"{name}: {check.message}") for check in failed]
         for signal in DRIVE:
             recording[signal]  # told by name where it is missing
-        even.append(even_clock(recording, DRIVE))
+        fed = (*DRIVE, LOAD.name) if LOAD.name in recording.signals else DRIVE
+        even.append(even_clock(recording, fed))
     return Inputs(tuple(even), tuple(flaws))

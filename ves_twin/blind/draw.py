@@ -19,7 +19,7 @@ from ves_twin.errors import InvalidInputError
 from ves_twin.types import FloatArray
 
 LOUDNESS = (6.0, 40.0)
-"""Sizes in sigma that single causes are drawn from, log-uniform."""
+"""Sizes in sigma that single causes are drawn from, log-uniform; none is fainter in the end."""
 
 PAIR_LOUDNESS = (10.0, 40.0)
 """The same for each of two."""
@@ -117,7 +117,7 @@ def _cause(
         hypothesis = library[int(rng.integers(len(library)))]
         wanted = _log_uniform(*limits, rng)
         found = _at_loudness(hypothesis, wanted, loudness, rng)
-        if found is not None:
+        if found is not None and found.d >= limits[0]:  # commissioning errors, fitted, take some
             return found
     raise InvalidInputError("causes to hide", "all too faint", f"one that reaches d = {limits[0]}")
 

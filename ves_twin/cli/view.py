@@ -10,7 +10,7 @@ import time
 from pathlib import Path
 
 from ves_twin.cli.run import add_run_options, load, load_controller, run_scenario
-from ves_twin.errors import InvalidInputError, VesTwinError
+from ves_twin.errors import FileAccessError, InvalidInputError, VesTwinError
 
 SUMMARY = "look at a recording or a scenario: rerun, or MuJoCo's viewer with --live"
 
@@ -32,6 +32,8 @@ def execute(arguments: argparse.Namespace) -> int:
     path = Path(arguments.scenario)
     is_recording = path.is_dir() or path.suffix in {".parquet", ".arrows", ".rrd"}
     if not is_recording:
+        if len(path.parts) > 1 and not path.exists():
+            raise FileAccessError(f"run folder, recording or scenario {path} does not exist")
         arguments.no_rrd = False
         summary, folder = run_scenario(arguments)
         if not (folder / "run.rrd").is_file():
