@@ -71,6 +71,20 @@ class Parser(argparse.ArgumentParser):
         command = self.prog.partition(" ")[2]
         raise VesTwinError(f"{command}: {message}" if command else message)
 
+    def parse_known_args(  # type: ignore[override]
+        self, args: Sequence[str] | None = None, namespace: argparse.Namespace | None = None
+    ) -> tuple[argparse.Namespace, list[str]]:
+        """Raise for an option that is unknown, where the nearest one is known: at its command."""
+        found, rest = super().parse_known_args(args, namespace)
+        if rest and self._subparsers is None:
+            raise self.unknown(rest[0])
+        return found, rest
+
+    def unknown(self, word: str) -> UnknownNameError:
+        """What to raise for an option that this parser does not have."""
+        known = set(re.findall(r"(?<![\w-])--[a-z][a-z-]+", self.format_help()))
+        return UnknownNameError("option", word.split("=")[0], known)
+
 
 def build_parser() -> Parser:
     """The parser of all commands."""
@@ -86,14 +100,6 @@ def build_parser() -> Parser:
         command = commands.add_parser(name, help=module.SUMMARY, description=module.SUMMARY)
         module.add_arguments(command)
     return parser
-
-
-def _options(command: str) -> list[str]:
-    """Option names of a command, for the nearest match."""
-    probe = Parser(prog=command)
-    if command in COMMANDS:
-        COMMANDS[command].add_arguments(probe)
-    return re.findall(r"--[a-z][a-z-]+", probe.format_help())
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -112,7 +118,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
             return BAD_INPUT
         found, rest = parser.parse_known_args(words)
         if rest:
-            raise UnknownNameError("option", rest[0].split("=")[0], _options(words[0]))
+            raise parser.unknown(rest[0])
         return int(COMMANDS[found.command].execute(found))
     except VesTwinError as error:
         print(f"ves-twin: {one_line(error)}", file=sys.stderr)
