@@ -39,6 +39,13 @@ def test_declared_noise_is_white_behind_the_anti_alias_filter(runs):
     assert worst[35] < misfit_floor(scores.shape[1], 0.002)
 
 
+def test_a_stack_of_no_shapes_is_whitened_to_no_shapes(runs):
+    whitening = whitening_declared(runs)
+    rows = runs.slices[0].stop
+    one, none = (whitening.apply(np.zeros((n, rows, 2), np.float32)) for n in (1, 0))
+    assert none.shape == (0, one.shape[1])
+
+
 def test_correlated_coloured_noise_is_learnt_from_a_standstill():
     time = 0.01 * np.arange(6000)
     runs = Runs(Toy(), (programme(),), (0, 1))

@@ -174,6 +174,8 @@ class Whitening:
     def _mixed(self, k: int, rows: SingleArray) -> FloatArray:
         if self.runs.programmes[k].poses:
             return np.asarray(rows @ self.mixing[k].T)
+        if rows.size == 0:  # a bank whose every entry is a column has no shapes of its own
+            return np.zeros((*rows.shape[:-2], rows.shape[-2] - ORDER, rows.shape[-1]))
         shaped = np.stack(
             [lfilter(a, [1.0], rows[..., c], axis=-1) for c, a in enumerate(self.filters[k])],
             axis=-1,
