@@ -66,8 +66,8 @@ class RigForward:
 
     @cached_property
     def identity(self) -> str:
-        """Changes with plant, settings, library and versions."""
-        parts = (self.plant.hash, self.scenario.model_dump_json(), versions())
+        """Changes with plant, settings, library and versions; not with what programmes say."""
+        parts = (self.plant.hash, _settings(self.scenario).model_dump_json(), versions())
         digest = hashlib.sha256(repr(parts).encode())
         digest.update(repr((self.parameters, self.hypotheses, self.channels)).encode())
         return digest.hexdigest()[:16]
@@ -190,6 +190,15 @@ class LastRun:
         rows = np.concatenate([answer[name] for name in COMPARED], axis=1)
         self._kept[programme.identity] = (asked, scenario, rows)
         return rows
+
+
+def _settings(scenario: Scenario) -> Scenario:
+    """Rates, leg program, sensor and start: a scenario without what set-points replace."""
+    run = scenario.run.model_copy(update={"duration": 1.0, "seed": 0, "log": "admittance"})
+    arm = scenario.arm.model_copy(update={"moves": (), "path": None, "operator": None})
+    platform = scenario.platform.model_copy(update={"motion": None})
+    parts = {"name": "", "question": "", "run": run, "arm": arm, "platform": platform}
+    return scenario.model_copy(update=parts)
 
 
 def noise_of(plant: Plant) -> dict[str, FloatArray]:
