@@ -5,6 +5,7 @@ import signal
 import subprocess
 import sys
 import time
+from pathlib import Path
 
 import pytest
 
@@ -119,6 +120,17 @@ def test_bad_input_gets_one_line_and_exit_2(capsys, tmp_path, monkeypatch, words
     assert says in err
     assert err.count("\n") == 1
     assert "Traceback" not in err
+
+
+@pytest.mark.parametrize("name", ["demoo", "runs/demoo", "position_sin"])
+def test_view_names_the_nearest_run_folder_or_scenario(capsys, tmp_path, monkeypatch, name):
+    monkeypatch.chdir(tmp_path)
+    for folder in ("demo", "runs/demo"):
+        Path(folder).mkdir(parents=True)
+        Path(folder, "recording.parquet").write_text("")
+    assert main(["view", name]) == 2
+    near = {"position_sin": "position_sine"}.get(name, name[:-1])
+    assert f"did you mean '{near}'?" in capsys.readouterr().err
 
 
 def test_plant_file_of_another_version_gets_one_line(capsys, tmp_path):

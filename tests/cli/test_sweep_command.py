@@ -6,10 +6,12 @@ import subprocess
 import sys
 import time
 
+import pyarrow as pa
 import pyarrow.parquet as pq
 import pytest
 
 from ves_twin.cli.main import main
+from ves_twin.cli.sweep_text import sweep_rows
 
 SHORT = ["--set", "run.duration=0.2", "--set", "run.settle=0.2", "--workers", "1"]
 
@@ -30,6 +32,35 @@ def test_the_same_command_goes_on_in_its_folder_and_another_gets_its_own(
     assert "completed 1" in capsys.readouterr().out
     folders = sorted(p.name for p in (tmp_path / "runs").iterdir())
     assert folders == ["position_sine-sweep", "position_sine-sweep-2"]
+
+
+@pytest.mark.parametrize(
+    ("scenario", "column", "says"),
+    [
+        ("position_sine", "tracking.y.rms", "rms of the tracking error"),
+        ("beam_horizontal_truth", "error.y.rms", "rms of the emulation error"),
+    ],
+)
+def test_a_sweep_prints_its_rows_with_what_was_measured(capsys, tmp_path, scenario, column, says):
+    command = ["sweep", scenario, "--vary", "legs.gain=8,12", *SHORT, "--out", str(tmp_path)]
+    assert main(command) == 0
+    out = capsys.readouterr().out
+    assert says in out
+    head = next(line for line in out.splitlines() if "point  " in line and "outcome" in line)
+    first = out.splitlines()[out.splitlines().index(head) + 1].split()
+    assert head.split()[:4] == ["point", "legs.gain", "outcome", "x"]
+    measured = pq.read_table(tmp_path / "sweep.parquet")[column].to_pylist()[0]
+    assert first[:3] == ["0", "8", "completed"]
+    assert float(first[4]) == pytest.approx(1e3 * measured, abs=6e-4)
+
+
+def test_a_long_sweep_prints_its_first_rows_alone(tmp_path):
+    table = pa.table({"point": range(30), "plant": ["p" * 40] * 30, "outcome": ["lost"] * 30})
+    pq.write_table(table, tmp_path / "sweep.parquet")
+    lines = sweep_rows(tmp_path / "sweep.parquet", {"plant": ""})
+    assert lines[-1] == "  ... and 18 rows more in the table"
+    assert len(lines) == 14
+    assert lines[1].split() == ["0", "p" * 21 + "...", "lost"]
 
 
 BAD = [

@@ -1,8 +1,8 @@
 """The page on environments shows the tables that the code has, and a policy that works."""
 
+import re
 import subprocess
 import sys
-import textwrap
 from pathlib import Path
 
 import gymnasium as gym
@@ -29,12 +29,16 @@ def test_damping_is_reach_without_a_goal():
     assert damping.actions.table() == reach.actions.table()
 
 
+def block(title: str) -> str:
+    """The Python block of the page that begins with a comment."""
+    (code,) = re.findall(rf"```python\n(# {re.escape(title)}\n.*?)```", PAGE, re.DOTALL)
+    return code
+
+
 @pytest.mark.slow
 def test_the_policy_of_the_page_runs_and_damps(tmp_path):
-    start = PAGE.index("    # my_policy.py")
-    code = textwrap.dedent(PAGE[start : PAGE.index("    ves-twin evaluate", start)])
     path = tmp_path / "my_policy.py"
-    path.write_text(code)
+    path.write_text(block("my_policy.py"))
     scores = [
         evaluate(Trial("VibrationDamping-v0", name, "none", "ves2_fast"), range(3))
         .figures["return"]
@@ -46,9 +50,7 @@ def test_the_policy_of_the_page_runs_and_damps(tmp_path):
 
 @pytest.mark.slow
 def test_the_script_of_the_page_shares_environments_out(tmp_path):
-    start = PAGE.index("    # many.py")
     path = tmp_path / "many.py"
-    code = textwrap.dedent(PAGE[start : PAGE.index("It is a Gymnasium `VectorEnv`", start)])
-    path.write_text(f"{code}    print(observations.shape, terminated.any())\n")
+    path.write_text(f"{block('many.py')}    print(observations.shape, terminated.any())\n")
     done = subprocess.run([sys.executable, str(path)], capture_output=True, text=True)
     assert (done.stdout, done.stderr) == ("(8, 28) False\n", "")

@@ -5,6 +5,7 @@ import json
 import numpy as np
 import pytest
 
+from ves_twin.cli.evaluate import UNITS
 from ves_twin.cli.main import main
 from ves_twin.envs.baselines import BASELINES
 from ves_twin.envs.evaluation import (
@@ -67,6 +68,12 @@ def test_the_command_scores_a_policy_of_a_file(tmp_path, capsys):
     assert found["outcomes"] == {"completed": 2}
     returns = [e["metrics"]["return"] for e in found["episodes"]]
     assert found["figures"]["return"]["iqm"] == pytest.approx(np.mean(returns))
+    assert set(found["figures"]) - {"return"} <= set(UNITS)
+    assert main([*words[:-5], "1", *words[-4:]]) == 0
+    text = capsys.readouterr().out
+    assert "1 seed\n" in text
+    (last,) = (line.split() for line in text.splitlines() if "energy_last [J]" in line)
+    assert last[-1] == "-"  # one seed has no interval
 
 
 def test_bad_words_are_answered_in_one_line(capsys):

@@ -9,7 +9,8 @@ import pytest
 from slide import machine, write_day, write_files
 
 from ves_twin.cli.main import main
-from ves_twin.cli.trend import recordings_in
+from ves_twin.cli.trend import _named, recordings_in
+from ves_twin.diagnosis.trend.result import DaySize
 from ves_twin.errors import VesTwinError
 
 DATES = ("2026-03-02", "2026-03-04", "2026-03-09", "2026-03-11")
@@ -109,3 +110,12 @@ def test_an_empty_folder_and_too_few_days_are_one_line(tmp_path, capsys, rig):
     two = sorted(recordings_in([folder]))[:2]
     assert main(["trend", *two, "--plant", str(rig), "--out", str(tmp_path / "out")]) == 2
     assert "at least 3" in capsys.readouterr().err
+
+
+def test_recordings_that_are_called_by_their_date_are_listed_by_it_once():
+    def size(name, date):
+        return DaySize(name, date, 0.0, 1.0, 0.9, 1.1, 0.05, 0.0, True)
+
+    dated = [size(date, date) for date in DATES]
+    assert _named(dated) == list(DATES)
+    assert _named([size("axis_1", DATES[0]), dated[1]])[0] == f"{'axis_1':<10}  {DATES[0]}"

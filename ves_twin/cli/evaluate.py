@@ -13,6 +13,17 @@ if TYPE_CHECKING:
 
 SUMMARY = "score a policy in an environment, one episode a seed"
 
+UNITS = {
+    "energy_integral": "J s",
+    "energy_peak": "J",
+    "energy_last": "J",
+    "goal_error": "rad",
+    "distance_rms": "mm",
+    "distance_peak": "mm",
+    "cost": "s",
+}
+"""Of figures; the return is minus the loss of the environment's own table."""
+
 MOST_SEEDS = 100_000
 """More than anybody waits for."""
 
@@ -77,25 +88,28 @@ def execute(arguments: argparse.Namespace) -> int:
         print(_text(found[0]))
         if differences:
             print(f"\n  less {arguments.against}, seed by seed")
-            print("\n".join(_rows(differences)))
+            print("\n".join(_rows(differences, len(found[0].episodes))))
     return 0
 
 
 def _text(found: Evaluation) -> str:
     trial, count = found.trial, len(found.episodes)
     ends = ", ".join(f"{number} {name}" for name, number in found.outcomes.items())
+    seeds = "1 seed" if count == 1 else f"{count} seeds"
     lines = [
-        f"{trial.environment}: {trial.policy} on rigs {trial.rigs}, {count} seeds",
+        f"{trial.environment}: {trial.policy} on rigs {trial.rigs}, {seeds}",
         f"  outcomes  {ends}",
         "",
-        f"  {'':<18}{'interquartile mean':>20}{'95 % interval':>26}",
+        f"  {'':<22}{'interquartile mean':>20}{'95 % interval':>26}",
     ]
-    return "\n".join([*lines, *_rows(found.figures)])
+    return "\n".join([*lines, *_rows(found.figures, count)])
 
 
-def _rows(figures: Mapping[str, Figure]) -> list[str]:
+def _rows(figures: Mapping[str, Figure], count: int) -> list[str]:
+    """Name with unit, interquartile mean and interval; one seed has no interval."""
     rows = []
     for name, figure in figures.items():
-        interval = f"{figure.low:.4g} to {figure.high:.4g}"
-        rows.append(f"  {name:<18}{figure.iqm:>20.4g}{interval:>26}")
+        label = f"{name} [{UNITS[name]}]" if name in UNITS else name
+        interval = f"{figure.low:.4g} to {figure.high:.4g}" if count > 1 else "-"
+        rows.append(f"  {label:<22}{figure.iqm:>20.4g}{interval:>26}")
     return rows

@@ -6,12 +6,13 @@ from pathlib import Path
 
 from ves_twin.simulator.emulation_error import AxisError
 from ves_twin.simulator.simulate import SUMMARY_NAME, Summary
+from ves_twin.simulator.tracking_error import TrackingError
 
 _MILLI = 1e3
 
 
 def summary_text(summary: Summary, folder: Path) -> str:
-    """Question, outcome, emulation error per axis, speed, and where the files lie."""
+    """Question, outcome, speed, error per axis, events, and where the files lie."""
     lines = [
         f"{summary.scenario}: {summary.question}",
         f"  outcome   {summary.outcome.value} at {summary.duration:.2f} s ({summary.advice})",
@@ -21,6 +22,8 @@ def summary_text(summary: Summary, folder: Path) -> str:
     ]
     if summary.emulation_error:
         lines += ["", *_error_table(summary.emulation_error)]
+    if summary.tracking_error:
+        lines += ["", *_tracking_table(summary.tracking_error)]
     warnings = [e for e in summary.events if e["kind"] not in {"settled", "zeroed"}]
     lines += ["", *(f"  {e['time']:8.3f} s  {e['kind']}: {e['message']}" for e in warnings)]
     files = [name for name in sorted(p.name for p in folder.iterdir()) if _ours(name)]
@@ -55,4 +58,16 @@ def _error_table(errors: dict[str, AxisError]) -> list[str]:
     rows.append(
         "  (legs alone: rms that the legs' bandwidth alone causes; the rest: rms without it)"
     )
+    return rows
+
+
+def _tracking_table(errors: dict[str, TrackingError]) -> list[str]:
+    rows = [
+        "  tracking error: true pose less commanded pose",
+        "  axis       rms      peak  of the motion",
+    ]
+    for axis, error in errors.items():
+        unit = "mrad" if axis.startswith("r") else "mm"
+        rms, peak = _MILLI * error.rms, _MILLI * error.peak
+        rows.append(f"  {axis:<3}{unit:>5}{rms:8.3f}{peak:10.3f}{_share(error.relative):>14}")
     return rows

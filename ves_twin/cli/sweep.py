@@ -153,6 +153,8 @@ def _account(plan: SweepPlan, account: SweepAccount) -> dict[str, object]:
 
 
 def _text(plan: SweepPlan, account: SweepAccount) -> str:
+    from ves_twin.cli.sweep_text import sweep_rows
+
     varied = ", ".join(f"{key} [{unit}]" if unit else key for key, unit in plan.keys.items())
     outcomes = ", ".join(f"{name} {count}" for name, count in sorted(account.outcomes.items()))
     points = str(account.points)
@@ -164,6 +166,8 @@ def _text(plan: SweepPlan, account: SweepAccount) -> str:
         f"  points    {points}",
         f"  outcomes  {outcomes}",
         f"  table     {account.table}",
+        "",
+        *sweep_rows(account.table, plan.keys),
     ]
     if not account.whole:
         lines.append("  lost points are tried again when the same sweep is started again")

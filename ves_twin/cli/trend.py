@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from ves_twin.diagnosis.trend.calendar import Calendar
-    from ves_twin.diagnosis.trend.result import Trend
+    from ves_twin.diagnosis.trend.result import DaySize, Trend
     from ves_twin.recording.recording import Recording
 
 from ves_twin.cli.rig_recordings import add_rig_arguments, means_rig, rig_name, rig_recordings
@@ -147,13 +147,22 @@ def _text(trend: Trend, folder: Path) -> str:
 
     lines = [f"answer    {trend.answer.value}", f"          {trend_headline(trend)}", ""]
     if trend.cause is not None:
-        width = max(len(size.recording) for size in trend.sizes)
+        names = _named(trend.sizes)
+        width = max(map(len, names))
         unit = trend.cause.unit
-        for size in trend.sizes:
+        for name, size in zip(names, trend.sizes, strict=True):
             span = f"{quantity(size.low, unit)} to {quantity(size.high, unit)}"
             mark = "" if size.explained else "   not explained"
             value = quantity(size.value, unit)
-            lines.append(f"  {size.recording:<{width}}  {size.date}  {value:>12}  ({span}){mark}")
+            lines.append(f"  {name:<{width}}  {value:>12}  ({span}){mark}")
         lines.append("")
     lines += [f"  {said}" for said in trend_basis(trend)]
     return "\n".join([*lines, f"  files     {folder}/{PAGE_NAME}, {JSON_NAME}"])
+
+
+def _named(sizes: Sequence[DaySize]) -> list[str]:
+    """Recording and date of each size; the date alone where recordings are called by it."""
+    if all(size.recording == size.date for size in sizes):
+        return [size.date for size in sizes]
+    width = max(len(size.recording) for size in sizes)
+    return [f"{size.recording:<{width}}  {size.date}" for size in sizes]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import difflib
 import os
 import sys
 import tempfile
@@ -10,7 +11,7 @@ import time
 from pathlib import Path
 
 from ves_twin.cli.run import add_run_options, load, load_controller, run_scenario
-from ves_twin.errors import FileAccessError, InvalidInputError, VesTwinError
+from ves_twin.errors import FileAccessError, InvalidInputError, UnknownNameError, VesTwinError
 
 SUMMARY = "look at a recording or a scenario: rerun, or MuJoCo's viewer with --live"
 
@@ -32,8 +33,7 @@ def execute(arguments: argparse.Namespace) -> int:
     path = Path(arguments.scenario)
     is_recording = path.is_dir() or path.suffix in {".parquet", ".arrows", ".rrd"}
     if not is_recording:
-        if len(path.parts) > 1 and not path.exists():
-            raise FileAccessError(f"run folder, recording or scenario {path} does not exist")
+        _check_something_is_there(path)
         arguments.no_rrd = False
         summary, folder = run_scenario(arguments)
         if not (folder / "run.rrd").is_file():
@@ -48,6 +48,32 @@ def execute(arguments: argparse.Namespace) -> int:
     with tempfile.TemporaryDirectory(prefix="ves_twin-") as scratch:
         rrd = write_rrd(load_recording(path), Path(scratch) / "run.rrd")
         return open_viewer(rrd, arguments.web)
+
+
+def _check_something_is_there(path: Path) -> None:
+    """Say which run folder or scenario is nearest where there is none of this name."""
+    from ves_twin.scenario.load import procedure_questions, scenario_questions
+
+    if path.exists():
+        return
+    if len(path.parts) > 1:
+        near = difflib.get_close_matches(str(path), _run_folders(path.parent), n=1, cutoff=0.5)
+        hint = f"; did you mean '{near[0]}'?" if near else ""
+        raise FileAccessError(f"run folder, recording or scenario {path} does not exist{hint}")
+    scenarios = scenario_questions() | procedure_questions()
+    if str(path) not in scenarios:
+        folders = [*_run_folders(Path()), *_run_folders(Path("runs"))]
+        raise UnknownNameError("scenario or run folder", str(path), [*scenarios, *folders])
+
+
+def _run_folders(folder: Path) -> list[str]:
+    """Folders in a folder that hold a recording."""
+    from ves_twin.recording.stream import FILE_NAME, STREAM_NAME
+
+    if not folder.is_dir():
+        return []
+    names = (FILE_NAME, STREAM_NAME)
+    return [str(p) for p in folder.iterdir() if any((p / name).is_file() for name in names)]
 
 
 def check_rrd(path: Path) -> None:

@@ -30,6 +30,11 @@ from ves_twin.resources import find_resource, resource_folder
 NOMINAL = "ves2"
 """The plant that has every number."""
 
+RIG_KIND = "rig"
+"""`kind` of the file of another machine, which is no plant of VES II."""
+
+_PLANT_ASKED = "a plant of VES II; compare, diagnose and trend take a rig of two files"
+
 MJCF_FILES = ("frame.xml", "leg.xml", "platform.xml", "sensor.xml", "puma560.xml")
 """The parts of the rig, each a file that opens on its own in any MuJoCo viewer."""
 
@@ -74,6 +79,8 @@ class Plant:
     def read(path: Path) -> Plant:
         """A plant from a file; raises as `load`."""
         content = read_plant_file(path)
+        if content.get("kind") == RIG_KIND:
+            raise InvalidInputError(f"{path}: kind", RIG_KIND, _PLANT_ASKED)
         changes = content.get("parameters", {})
         if not isinstance(changes, Mapping):
             raise InvalidInputError(f"{path}: parameters", changes, "a table of changed values")

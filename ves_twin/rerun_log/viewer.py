@@ -97,8 +97,12 @@ def _stop(process: subprocess.Popen[bytes]) -> None:
 
 
 def _environment() -> dict[str, str]:
-    """Environment in which rerun sends no usage statistics: it keeps quiet where CI is set."""
+    """Environment in which rerun sends no usage statistics: it keeps quiet where CI is set.
+
+    It logs warnings alone, unless RUST_LOG asks for more: its own lines would hide the address.
+    """
     values = {k: v for k, v in os.environ.items() if k != "FORCE_RERUN_ANALYTICS"}
+    values.setdefault("RUST_LOG", "warn")
     return values | {"CI": "true", "TELEMETRY_ENABLED": "false"}
 
 

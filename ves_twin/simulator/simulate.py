@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import platform as host
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import asdict, dataclass
 from functools import lru_cache
 from importlib.metadata import version
@@ -22,10 +22,12 @@ from ves_twin.recording.recording import Recording, RecordingInfo
 from ves_twin.recording.stream import RecordingStream
 from ves_twin.scenario.schema import Scenario
 from ves_twin.signals import SIGNALS
-from ves_twin.simulator.emulation_error import AxisError, Rows, emulation_error
+from ves_twin.simulator.emulation_error import AxisError, emulation_error
 from ves_twin.simulator.outcome import Outcome
 from ves_twin.simulator.recorder import IDEAL, LEG_LAG, MemorySink, NoSink
 from ves_twin.simulator.simulator import Simulator
+from ves_twin.simulator.tracking_error import TrackingError, tells_tracking, tracking_error
+from ves_twin.types import FloatArray
 from ves_twin.whole_file import write_whole
 
 SUMMARY_NAME = "summary.json"
@@ -49,7 +51,11 @@ class Timing:
 
 @dataclass(frozen=True)
 class Summary:
-    """Account of a run; what `summary.json` holds."""
+    """Account of a run; what `summary.json` holds.
+
+    `emulation_error` is of runs with a zero-g reference, `tracking_error` of those that emulate
+    nothing; each is by axis, and empty elsewhere.
+    """
 
     scenario: str
     question: str
@@ -60,6 +66,7 @@ class Summary:
     plant_hash: str
     duration: float
     emulation_error: dict[str, AxisError]
+    tracking_error: dict[str, TrackingError]
     events: list[dict[str, object]]
     timing: Timing
 
@@ -198,7 +205,14 @@ def _run(sim: Simulator, progress: Progress | None) -> None:
 def _summary(sim: Simulator, recording: Path, prepare: float, run: float) -> Summary:
     assert sim.outcome is not None  # noqa: S101  (the run has ended)
     home = np.array(sim.scenario.platform.home)
-    errors = emulation_error(_pose_rows(recording), home) if IDEAL in sim.recorder.names else {}
+    emulation: dict[str, AxisError] = {}
+    tracking: dict[str, TrackingError] = {}
+    if IDEAL in sim.recorder.names:
+        three = _rows(recording, ("truth.pose", IDEAL, LEG_LAG))
+        emulation = emulation_error(((truth, ideal, lag) for truth, ideal, lag in three), home)
+    elif tells_tracking(sim.scenario):
+        two = _rows(recording, ("truth.pose", "platform.command"))
+        tracking = tracking_error(((truth, command) for truth, command in two), home)
     return Summary(
         scenario=sim.scenario.name,
         question=sim.scenario.question,
@@ -208,7 +222,8 @@ def _summary(sim: Simulator, recording: Path, prepare: float, run: float) -> Sum
         plant=sim.plant.name,
         plant_hash=sim.plant.hash,
         duration=max(sim.time, 0.0),
-        emulation_error=errors,
+        emulation_error=emulation,
+        tracking_error=tracking,
         events=[asdict(event) for event in sim.events],
         timing=Timing(
             prepare=prepare,
@@ -220,13 +235,12 @@ def _summary(sim: Simulator, recording: Path, prepare: float, run: float) -> Sum
     )
 
 
-def _pose_rows(recording: Path) -> Iterator[Rows]:
-    """Truth and references of a Parquet file, a row group at a time."""
-    groups = [SIGNALS[name].columns for name in ("truth.pose", IDEAL, LEG_LAG)]
+def _rows(recording: Path, names: Sequence[str]) -> Iterator[list[FloatArray]]:
+    """Some signals of a Parquet file, a row group at a time."""
+    groups = [SIGNALS[name].columns for name in names]
     file = pq.ParquetFile(recording)
     for batch in file.iter_batches(columns=[column for group in groups for column in group]):
-        truth, ideal, lag = (
+        yield [
             np.column_stack([batch.column(column).to_numpy() for column in group])
             for group in groups
-        )
-        yield truth, ideal, lag
+        ]

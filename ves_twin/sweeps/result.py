@@ -27,6 +27,14 @@ class AxisResult(Part):
     rms_rest: float
 
 
+class TrackingResult(Part):
+    """Tracking error of one axis [m or rad], where nothing is emulated."""
+
+    rms: float
+    peak: float
+    relative: float | None
+
+
 class PointResult(Part):
     """One finished point.
 
@@ -40,6 +48,7 @@ class PointResult(Part):
     reason: str = ""
     duration: float = 0.0
     emulation_error: dict[str, AxisResult] = Field(default_factory=dict)
+    tracking_error: dict[str, TrackingResult] = Field(default_factory=dict)
     run_hash: str = ""
     seconds: float = 0.0
     host: str = ""

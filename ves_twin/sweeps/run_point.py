@@ -5,6 +5,7 @@ from __future__ import annotations
 import hashlib
 import os
 import platform
+from dataclasses import asdict
 from time import perf_counter
 
 import numpy as np
@@ -16,8 +17,9 @@ from ves_twin.simulator.emulation_error import emulation_error
 from ves_twin.simulator.outcome import Outcome
 from ves_twin.simulator.recorder import IDEAL, LEG_LAG
 from ves_twin.simulator.simulate import simulate, versions
+from ves_twin.simulator.tracking_error import tells_tracking, tracking_error
 from ves_twin.sweeps.point import Point
-from ves_twin.sweeps.result import ERROR, LOST, REFUSED, AxisResult, PointResult
+from ves_twin.sweeps.result import ERROR, LOST, REFUSED, AxisResult, PointResult, TrackingResult
 
 
 class ForeignWorkerError(VesTwinError):
@@ -38,14 +40,15 @@ def run_point(point: Point) -> PointResult:
         return _without_run(point, REFUSED, one_line(error))
     except Exception as error:
         return _without_run(point, ERROR, f"{type(error).__name__}: {one_line(error)}")
-    outcome = recording.info.outcome
+    outcome, home = recording.info.outcome, np.array(point.scenario.platform.home)
     return PointResult(
         number=point.number,
         run_id=point.run_id,
         outcome=outcome,
         reason="" if outcome == Outcome.COMPLETED else recording.info.events[-1].message,
         duration=_duration(recording),
-        emulation_error=_errors(recording, np.array(point.scenario.platform.home)),
+        emulation_error=_errors(recording, home),
+        tracking_error=_tracking(recording, home) if tells_tracking(point.scenario) else {},
         run_hash=run_hash(recording),
         seconds=perf_counter() - begin,
         host=_host(),
@@ -103,6 +106,12 @@ def _errors(recording: Recording, home: np.ndarray) -> dict[str, AxisResult]:
         )
         for axis, error in emulation_error([rows], home).items()
     }
+
+
+def _tracking(recording: Recording, home: np.ndarray) -> dict[str, TrackingResult]:
+    rows = (recording["truth.pose"], recording["platform.command"])
+    found = tracking_error([rows], home)
+    return {axis: TrackingResult(**asdict(error)) for axis, error in found.items()}
 
 
 def _host() -> str:

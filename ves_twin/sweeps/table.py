@@ -7,16 +7,17 @@ same sweep is the same to the byte wherever it ran.
 from __future__ import annotations
 
 import json
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 
 import pyarrow as pa
 import pyarrow.parquet as pq
 
+from ves_twin.scenario.fields import Part
 from ves_twin.signals import SIGNALS
 from ves_twin.sweeps.key_value import Value
 from ves_twin.sweeps.plan import SweepPlan
-from ves_twin.sweeps.result import AxisResult, PointResult
+from ves_twin.sweeps.result import PointResult
 from ves_twin.whole_file import whole_file
 
 TABLE_NAME = "sweep.parquet"
@@ -41,7 +42,7 @@ def write_tables(folder: Path, plan: SweepPlan, results: Mapping[int, PointResul
     ]
     _write(folder / TIMING_NAME, timing, {})
     metadata = {KEY: json.dumps(plan.identity, sort_keys=True).encode()}
-    columns = [*_settings(plan), *_outcomes(plan, rows), *_errors(rows)]
+    columns = [*_settings(plan), *_outcomes(plan, rows), *_errors(rows), *_tracking(rows)]
     _write(folder / TABLE_NAME, columns, metadata)
     return folder / TABLE_NAME
 
@@ -71,25 +72,29 @@ def _outcomes(plan: SweepPlan, rows: Sequence[PointResult]) -> list[_Column]:
 
 def _errors(rows: Sequence[PointResult]) -> list[_Column]:
     """Emulation error of each axis; nothing where no point has a reference."""
-    if not any(row.emulation_error for row in rows):
+    parts = ("rms", "peak", "relative", "rms_rest")
+    return _by_axis("error", parts, [row.emulation_error for row in rows])
+
+
+def _tracking(rows: Sequence[PointResult]) -> list[_Column]:
+    """Tracking error of each axis; nothing where every point emulates a base."""
+    return _by_axis("tracking", ("rms", "peak", "relative"), [row.tracking_error for row in rows])
+
+
+def _by_axis(
+    prefix: str, parts: Sequence[str], rows: Sequence[Mapping[str, Part]]
+) -> list[_Column]:
+    if not any(rows):
         return []
     pose = SIGNALS["truth.pose"]
     columns = []
     for axis, unit in zip(pose.axes, pose.units, strict=True):
-        found = [row.emulation_error.get(axis) for row in rows]
-        for name, read in _PARTS.items():
-            values = [None if error is None else read(error) for error in found]
+        found = [row.get(axis) for row in rows]
+        for name in parts:
+            values = [None if error is None else getattr(error, name) for error in found]
             shown = "dimensionless" if name == "relative" else unit
-            columns.append(_column(f"error.{axis}.{name}", pa.float64(), values, shown))
+            columns.append(_column(f"{prefix}.{axis}.{name}", pa.float64(), values, shown))
     return columns
-
-
-_PARTS: Mapping[str, Callable[[AxisResult], float | None]] = {
-    "rms": lambda error: error.rms,
-    "peak": lambda error: error.peak,
-    "relative": lambda error: error.relative,
-    "rms_rest": lambda error: error.rms_rest,
-}
 
 
 def _kind(values: Sequence[Value]) -> pa.DataType:
