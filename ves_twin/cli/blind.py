@@ -24,6 +24,9 @@ QUICK = {"none": 6, "single": 10, "outside": 4, "pair": 2, "confusable": 0}
 """Cases of each sort if nothing is said."""
 
 
+_COVER = "90 % intervals that hold the hidden size"
+
+
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Options of the five verbs."""
     verbs = parser.add_subparsers(dest="verb", metavar="VERB", required=True)
@@ -243,7 +246,8 @@ def _score(arguments: argparse.Namespace, folder: Path, key: Path, answers: Path
     if arguments.page:
         Path(arguments.page).write_text(text, encoding="utf-8")
     if arguments.json:
-        rows = {name: {"hits": r.hits, "of": r.of} for name, r in marks.rows.items()}
+        counted = {**marks.rows, _COVER: marks.coverage}
+        rows = {name: {"hits": r.hits, "of": r.of} for name, r in counted.items() if r.of}
         told = {"rows": rows, "seconds": dict(marks.seconds)}
         if after:
             told["correlation"] = None if isnan(after.correlation) else after.correlation
@@ -280,7 +284,7 @@ def _text(marks: Marks) -> str:
     lines = ["| counted | hits of cases (share; 95 % Wilson) |", "|---|---|"]
     lines += [f"| {name} | {rate} |" for name, rate in marks.rows.items()]
     if marks.coverage.of:
-        lines.append(f"| 90 % intervals that hold the hidden size | {marks.coverage} |")
+        lines.append(f"| {_COVER} | {marks.coverage} |")
     lines += [
         f"| stated probability {span}: right | {r} |" for span, r in marks.reliability.items()
     ]
