@@ -163,7 +163,7 @@ def section(name: str, blind: Blind, folder: Path, workers: tuple[str, ...]) -> 
         met = "met" if found is not None and found > blind.correlation else "missed"
         asked.append(f"correlation of predicted and realised > {blind.correlation:g}: {met}")
     parts = [f"## {blind.title}\n", "\n".join(told), ""]
-    parts += [f"Asked: {'; '.join(asked)}.\n"] if asked else []
+    parts += ["Asked:\n", *(f"- {one}" for one in asked), ""] if asked else []
     parts.append(ves_twin("blind", "score", *out, *against))
     if blind.without:
         parts.append(f"The same with `{blind.without}`:\n")
