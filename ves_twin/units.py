@@ -24,6 +24,15 @@ SI_UNITS = frozenset(
 things, "dimensionless" is a share."""
 
 
+PLAIN = frozenset({"1", "", "dimensionless"})
+"""Units that nobody writes behind a number."""
+
+
+def unit_tail(unit: str) -> str:
+    """A unit as it stands behind a number: with a space before it, nothing where there is none."""
+    return "" if unit in PLAIN else f" {unit}"
+
+
 def check_unit(unit: str, what: str) -> None:
     """Raise UnknownNameError unless a unit is one that numbers have inside."""
     if unit not in SI_UNITS:

@@ -7,6 +7,7 @@ import json
 from typing import TYPE_CHECKING
 
 from ves_twin.errors import InvalidInputError
+from ves_twin.units import unit_tail
 
 if TYPE_CHECKING:
     from ves_twin.effects.effect import Effect
@@ -111,7 +112,7 @@ def plant_content(name: str) -> dict[str, object]:
         f"differences from {NOMINAL}": _differences(plant),
         "effects": {
             f"{e.kind} on {e.target}": ", ".join(
-                f"{m.name} = {e.values[m.name]:g} {m.unit}" for m in e.magnitudes
+                f"{m.name} = {e.values[m.name]:g}{unit_tail(m.unit)}" for m in e.magnitudes
             )
             + f". {_meaning(e)}"
             for e in plant.effects
@@ -156,12 +157,16 @@ def _changed(here: ParameterTable, there: ParameterTable) -> dict[str, object]:
 
 def _words(difference: dict[str, object]) -> str:
     """Nominal and present value; of a list that changes in part only those entries, from 1."""
-    before, now, unit = difference["nominal"], difference["here"], difference["unit"]
+    before, now, tail = (
+        difference["nominal"],
+        difference["here"],
+        unit_tail(str(difference["unit"])),
+    )
     if isinstance(before, list) and isinstance(now, list):
         pairs = list(zip(before, now, strict=True))
         if len(set(map(str, pairs))) == 1:
-            return f"each {before[0]} -> {now[0]} {unit}"
+            return f"each {before[0]} -> {now[0]}{tail}"
         if not any(isinstance(value, list) for value in before):
             moved = [f"{k}: {a} -> {b}" for k, (a, b) in enumerate(pairs, 1) if a != b]
-            return f"{', '.join(moved)} {unit}"
-    return f"{before} -> {now} {unit}"
+            return f"{', '.join(moved)}{tail}"
+    return f"{before} -> {now}{tail}"

@@ -113,12 +113,15 @@ class Screen:
                 best.append(Suspect(h, float(score[k]), sizes, k))
         return sorted(best, key=lambda suspect: -suspect.score)
 
-    def pairs(self, z: FloatArray, count: int) -> list[tuple[Suspect, Suspect]]:
+    def pairs(
+        self, z: FloatArray, count: int, amplitude: tuple[float, float] = AMPLITUDE
+    ) -> list[tuple[Suspect, Suspect]]:
         """The best pairs of hypotheses, by closed-form fit of every two signatures.
 
         Args:
             z: whitened residual about the bank's base.
             count: how many pairs, each pair of hypotheses once.
+            amplitude: how far each signature may be scaled.
         """
         match, g = self.match(z), self.gram
         p = self.power
@@ -126,7 +129,7 @@ class Screen:
         det = np.where(det < 1e-3 * p[:, None] * p, np.inf, det)
         a = (p * match[:, None] - g * match) / det
         score = a * match[:, None] + a.T * match
-        low, high = AMPLITUDE
+        low, high = amplitude
         bad = (a < low) | (a > high) | (self.bank.owner[:, None] == self.bank.owner)
         score = np.triu(np.where(bad | bad.T, -np.inf, score), 1)
         found: dict[tuple[int, int], tuple[Suspect, Suspect]] = {}

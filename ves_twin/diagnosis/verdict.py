@@ -15,6 +15,7 @@ from ves_twin.diagnosis.leftover import Leftover
 from ves_twin.diagnosis.lookalikes import Lookalike
 from ves_twin.diagnosis.rivals import Rival
 from ves_twin.quality.check import Check
+from ves_twin.units import unit_tail
 from ves_twin.whole_file import write_whole
 
 MANY = 6
@@ -56,7 +57,7 @@ class Estimate:
     def words(self) -> str:
         """The value with its unit, nominal and interval."""
         span = f"{self.low:.4g} to {self.high:.4g}"
-        return f"{self.value:.4g} {self.unit} (nominal {self.nominal:.4g}; {span})"
+        return f"{self.value:.4g}{unit_tail(self.unit)} (nominal {self.nominal:.4g}; {span})"
 
 
 @dataclass(frozen=True)

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, ClassVar
 from ves_twin.effects.magnitude import Magnitude
 from ves_twin.errors import InvalidInputError, UnknownNameError
 from ves_twin.types import FloatArray
+from ves_twin.units import unit_tail
 
 if TYPE_CHECKING:
     import mujoco
@@ -55,8 +56,8 @@ class Effect(ABC):
             if not number or not math.isfinite(value):
                 raise InvalidInputError(self._of(magnitude), value, "a finite number")
             if not magnitude.low <= value <= magnitude.high:
-                unit = "" if magnitude.unit in ("1", "dimensionless") else f" {magnitude.unit}"
-                bounds = f"{magnitude.low:g} to {magnitude.high:g}{unit}"
+                tail = unit_tail(magnitude.unit)
+                bounds = f"{magnitude.low:g} to {magnitude.high:g}{tail}"
                 raise InvalidInputError(self._of(magnitude), value, bounds)
 
     @property

@@ -12,7 +12,7 @@ import numpy as np
 from ves_twin.errors import InvalidInputError, UnknownNameError
 from ves_twin.toml_file import check_schema, read_toml
 from ves_twin.types import FloatArray
-from ves_twin.units import check_unit, to_si
+from ves_twin.units import check_unit, to_si, unit_tail
 
 SCHEMA = 1
 """Version of the plant file format."""
@@ -84,7 +84,7 @@ class Parameter:
     def checked(self, came: object) -> Parameter:
         """This parameter, if its value is within bounds; `came` is what a message shows."""
         if np.any(self.value < self.low) or np.any(self.value > self.high):
-            bounds = f"a value of at least {self.low:g} {self.unit}"
+            bounds = f"a value of at least {self.low:g}{unit_tail(self.unit)}"
             if np.isfinite(self.high):
                 bounds += f" and at most {self.high:g}"
             raise InvalidInputError(self.name, came, bounds)

@@ -4,10 +4,9 @@ from __future__ import annotations
 
 import math
 
-PREFIXES = ((1e9, "G"), (1e6, "M"), (1e3, "k"), (1.0, ""), (1e-3, "m"), (1e-6, "u"), (1e-9, "n"))
+from ves_twin.units import PLAIN
 
-PLAIN = frozenset({"1", "", "dimensionless"})
-"""Units that take no prefix and are not shown."""
+PREFIXES = ((1e9, "G"), (1e6, "M"), (1e3, "k"), (1.0, ""), (1e-3, "m"), (1e-6, "u"), (1e-9, "n"))
 
 UNSURE = "-"
 """What stands for a number that is not there."""
