@@ -6,7 +6,7 @@ from scipy.signal import lfilter
 
 from ves_twin.comparison.coherence import Companions
 from ves_twin.comparison.lag import find_lag
-from ves_twin.comparison.noise import Noise, NoiseSource, measured_noise
+from ves_twin.comparison.noise import Noise, NoiseSource, measured_noise, noise_of_difference
 from ves_twin.comparison.spectrum import Power
 
 STEP, ROWS = 0.0126, 1600
@@ -97,3 +97,16 @@ def test_a_standstill_tells_size_and_colour_and_a_silent_column_keeps_the_declar
     assert noise.sd == pytest.approx(0.3, rel=0.1)  # 1600 rows of colour 0.5: 2.3 %
     assert noise.colour[0] == pytest.approx(0.5, abs=0.08)
     assert measured_noise(np.full(ROWS, 2.0), WHITE, NoiseSource.STILL) is WHITE
+
+
+def test_powers_of_two_noises_add_band_by_band_in_a_difference():
+    loop = (1.0, 1.0, 1.0, 20.0, 1.0, 1.0, 1.0, 1.0)
+    shaking = Noise(1.0, (0.5, 0.2), 0.0, 1.0, 0.0, NoiseSource.STILL, loop)
+    quiet = Noise(2.0, (0.1,), 0.0, 1.0, 0.0, NoiseSource.STILL)
+    frequency = np.linspace(0.01, 0.49, 400)
+    power = {n: n.spectrum(frequency, 1.0) for n in (shaking, quiet)}
+    twice = noise_of_difference(shaking, shaking).spectrum(frequency, 1.0)
+    np.testing.assert_allclose(twice, 2.0 * power[shaking], rtol=1e-9)
+    both = noise_of_difference(quiet, shaking).spectrum(frequency, 1.0)
+    # within a band the shape is a mixture, which parts from the sum by an eighth at most here
+    np.testing.assert_allclose(both, power[shaking] + power[quiet], rtol=0.125)

@@ -10,7 +10,7 @@ import numpy as np
 from ves_twin.comparison.channel import ChannelComparison, Column, compare_column
 from ves_twin.comparison.coherence import Companions
 from ves_twin.comparison.emulation_cost import EmulationCost, emulation_cost
-from ves_twin.comparison.noise import Noise, NoiseSource
+from ves_twin.comparison.noise import Noise, NoiseSource, noise_of_difference
 from ves_twin.comparison.prepared import POSE, Prepared, noise_of_columns, prepare
 from ves_twin.comparison.programme import same_programme
 from ves_twin.comparison.result import Basis, Comparison, RecordingComparison, Traces
@@ -108,7 +108,9 @@ def _against(
     mine = noise_of_columns(one, told.noise)
     theirs = noise_of_columns(other, all_told.of(other.name).noise)
     noises = {
-        column: _both(noise, theirs[column]) for column, noise in mine.items() if column in theirs
+        column: noise_of_difference(noise, theirs[column])
+        for column, noise in mine.items()
+        if column in theirs
     }
     measured = {n: v[:count] for n, v in one.recording.signals.items()}
     before = {n: v[:count] for n, v in other.recording.signals.items() if n in (*common, POSE)}
@@ -217,22 +219,6 @@ def _cost(
     wrench = measured["sensor.wrench"] - expected["sensor.wrench"]
     known = np.where(np.isfinite(attitude), attitude, 0.0)[:, 3:]
     return emulation_cost(name, one.plant, time, wrench, known, pose)
-
-
-def _both(one: Noise, other: Noise) -> Noise:
-    """Noise of a difference."""
-    share = one.sd**2 / (one.sd**2 + other.sd**2)
-    count = max(len(one.colour), len(other.colour))
-    padded = [np.pad(np.array(n.colour, float), (0, count - len(n.colour))) for n in (one, other)]
-    colour = share * padded[0] + (1.0 - share) * padded[1]
-    return Noise(
-        sd=float(np.hypot(one.sd, other.sd)),
-        colour=tuple(map(float, colour)),
-        slow=float(np.hypot(one.slow, other.slow)),
-        slow_time=one.slow_time,
-        offset=float(np.hypot(one.offset, other.offset)),
-        source=one.source if one.source is other.source else NoiseSource.DECLARED,
-    )
 
 
 def _noise_note(noises: dict[str, Noise]) -> str:

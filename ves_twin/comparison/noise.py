@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from enum import StrEnum
 
 import numpy as np
@@ -19,6 +19,9 @@ SHORTEST = 2.0
 
 SILENT = 1e-3
 """Share of its declared power below which a standing column tells nothing (an encoder)."""
+
+BAND_POINTS = 48
+"""Frequencies in a band at which the powers of two noises are added."""
 
 
 class NoiseSource(StrEnum):
@@ -79,6 +82,32 @@ class Noise:
         """Sd of the mean of so many rows."""
         inflation = max(1.0 + 2.0 * sum(self.colour), 0.02)
         return float(np.sqrt(self.sd**2 * inflation / max(count, 1) + self.offset**2))
+
+
+def noise_of_difference(one: Noise, other: Noise) -> Noise:
+    """Noise of a column of one recording less that of another: powers add, band by band.
+
+    Args:
+        one: of one recording.
+        other: of the other, at rows of the same rate, independent.
+    """
+    share = one.sd**2 / (one.sd**2 + other.sd**2)
+    lags = max(len(one.colour), len(other.colour))
+    padded = [np.pad(np.array(n.colour, float), (0, lags - len(n.colour))) for n in (one, other)]
+    colour = tuple(map(float, share * padded[0] + (1.0 - share) * padded[1]))
+    both = Noise(
+        sd=float(np.hypot(one.sd, other.sd)),
+        colour=colour,
+        slow=float(np.hypot(one.slow, other.slow)),
+        slow_time=one.slow_time,
+        offset=float(np.hypot(one.offset, other.offset)),
+        source=one.source if one.source is other.source else NoiseSource.DECLARED,
+    )
+    bands = max(len(one.louder), len(other.louder))
+    frequency = (np.arange(BAND_POINTS * bands) + 0.5) / (2 * BAND_POINTS * bands)
+    fast = [replace(n, slow=0.0).spectrum(frequency, 1.0) for n in (one, other, both)]
+    power = [each.reshape(bands, BAND_POINTS).mean(axis=1) for each in fast]
+    return replace(both, louder=tuple(map(float, (power[0] + power[1]) / power[2])))
 
 
 def standing_rows(recording: Recording, drive: tuple[str, ...]) -> slice | None:
