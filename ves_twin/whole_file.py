@@ -24,7 +24,7 @@ def whole_file(path: Path) -> Iterator[Path]:
         raise FileAccessError(f"cannot write {path}: it is a folder")
     if path.exists() and not os.access(path, os.W_OK):
         raise FileAccessError(f"cannot write {path}: the file is read-only")
-    partial = path.with_name(f".{path.name}.partial")
+    partial = path.with_name(f".{path.name}.{os.getpid()}.partial")  # two programs may write it
     try:
         yield partial
         _to_disk(partial)

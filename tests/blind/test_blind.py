@@ -3,6 +3,7 @@
 import json
 import subprocess
 import sys
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -79,6 +80,21 @@ def test_a_suite_that_was_interrupted_goes_on_with_the_same_cases(suite):
     assert len(again) == len(load_recording(suite / "case-0001" / RECORDING))
 
 
+def test_a_suite_goes_on_by_the_recipe_that_it_was_begun_with(suite):
+    public = (suite / "suite.json").read_text()
+    key = suite.with_name("key")
+    make_suite(replace(RECIPE, seed=None), suite, key, silent)  # any seed: its own
+    assert (suite / "suite.json").read_text() == public
+    for other, told in ((replace(RECIPE, seed=4), "seed"), (replace(RECIPE, spread=2.0), "spread")):
+        with pytest.raises(InvalidInputError, match=told):
+            make_suite(other, suite, key, silent)
+    assert (suite / "suite.json").read_text() == public
+    (suite / "recipe.sealed").rename(suite / "away")
+    with pytest.raises(InvalidInputError, match="recipe"):
+        make_suite(RECIPE, suite, key, silent)
+    (suite / "away").rename(suite / "recipe.sealed")
+
+
 def test_a_folder_whose_key_is_gone_is_refused(suite, tmp_path):
     with pytest.raises(InvalidInputError, match="key"):
         make_suite(RECIPE, suite, tmp_path / "other", silent)
@@ -95,7 +111,7 @@ from ves_twin.blind.answer import answer_suite
 from ves_twin.diagnosis.settings import Settings
 folder = Path({str(suite)!r})
 answer_suite(folder, folder.with_name("answers.json"), Settings(nulls=12), lambda *a: None)
-for name in ("make", "draw", "bench", "benches", "play", "pendulum", "rig", "seal", "truth"):
+for name in ("make", "pinned", "draw", "bench", "benches", "play", "pendulum", "rig", "seal", "truth"):
     assert f"ves_twin.blind.{{name}}" not in sys.modules, name
 assert not any("sealed" in path or path.endswith("key") for path in opened), "looked at the truth"
 """

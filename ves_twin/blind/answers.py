@@ -9,6 +9,7 @@ from pathlib import Path
 
 from ves_twin.diagnosis.verdict import Verdict
 from ves_twin.errors import FileAccessError, InvalidInputError
+from ves_twin.whole_file import write_whole
 
 
 @dataclass(frozen=True)
@@ -97,9 +98,4 @@ def write_answers(found: Mapping[str, Answer], path: Path) -> None:
         FileAccessError: not writable.
     """
     content = {case: vars(answer) for case, answer in found.items()}
-    part = path.with_suffix(".part")
-    try:
-        part.write_text(json.dumps(content, indent=1) + "\n", encoding="utf-8")
-        part.replace(path)
-    except OSError as error:
-        raise FileAccessError(f"cannot write {path}: {error.strerror}") from None
+    write_whole(path, json.dumps(content, indent=1) + "\n")

@@ -6,11 +6,10 @@ from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 
-import numpy as np
-
 from ves_twin.blind.bench import BlindBench, BlindRig
 from ves_twin.blind.benches import bench_of
 from ves_twin.blind.draw import Loudness, draw_truths
+from ves_twin.blind.pinned import pinned_recipe
 from ves_twin.blind.recipe import Recipe
 from ves_twin.blind.save_bare import save_bare
 from ves_twin.blind.seal import new_key, seal
@@ -29,6 +28,7 @@ from ves_twin.diagnosis.linearise import linearise
 from ves_twin.diagnosis.observe import observe
 from ves_twin.diagnosis.whitening import whitening_declared
 from ves_twin.errors import FileAccessError, InvalidInputError
+from ves_twin.whole_file import whole_file
 from ves_twin.workers import Workers
 
 Progress = Callable[[float, str], None]
@@ -60,7 +60,8 @@ def make_suite(
     bench = bench_of(recipe.bench)
     recipe.check(bench)
     key = _key(folder, key_file)
-    root = np.random.default_rng([recipe.seed, 1])
+    recipe = pinned_recipe(recipe, folder, key)
+    root = recipe.rng(1)
     standstill = bench.record(BlindRig(bench.commissioned(root, recipe.spread)), "standstill", root)
     save_bare(standstill, folder / STANDSTILL)
     _commission(bench, recipe, folder)
@@ -70,7 +71,8 @@ def make_suite(
         sealed = folder / truth.case / "truth.sealed"
         if not sealed.is_file():
             whole = _record(bench, truth, recipe, folder, n)
-            sealed.write_bytes(seal(whole.to_json(), key))
+            with whole_file(sealed) as partial:
+                partial.write_bytes(seal(whole.to_json(), key))
     excluded = {
         t.case: tuple(c.label for c in t.causes)
         for t in truths
@@ -99,13 +101,13 @@ def _key(folder: Path, key_file: Path) -> str:
 def _commission(bench: BlindBench, recipe: Recipe, folder: Path) -> None:
     """Other rigs in order, each drawn for itself."""
     for k in range(recipe.commissioned):
-        rng = np.random.default_rng([recipe.seed, 3, k])
+        rng = recipe.rng(3, k)
         rig = BlindRig(bench.commissioned(rng, recipe.spread), background=recipe.background)
         save_bare(bench.record(rig, "train", rng), folder / commissioning_file(k + 1))
 
 
 def _truths(bench: BlindBench, recipe: Recipe, progress: Progress, workers: int) -> list[Truth]:
-    rng = np.random.default_rng([recipe.seed, 0])
+    rng = recipe.rng(0)
     nominal = bench.record(BlindRig(), recipe.programme, rng)
     with Workers(workers) as shared:
         runs = observe(bench.forward, [nominal], shared).runs
@@ -121,7 +123,7 @@ def _truths(bench: BlindBench, recipe: Recipe, progress: Progress, workers: int)
 
 def _record(bench: BlindBench, truth: Truth, recipe: Recipe, folder: Path, number: int) -> Truth:
     """Write the recordings of a case; its truth with every value of the rig."""
-    rng = np.random.default_rng([recipe.seed, 2, number])
+    rng = recipe.rng(2, number)
     usual = bench.commissioned(rng, truth.spread)
     nominal = {p.name: p.nominal for p in bench.forward.parameters}
     values = dict(usual)
@@ -132,12 +134,12 @@ def _record(bench: BlindBench, truth: Truth, recipe: Recipe, folder: Path, numbe
     rig = BlindRig(values, truth.outside, truth.outside_size, background=truth.background)
     healthy = BlindRig(usual, background=truth.background)
     place = folder / truth.case
-    lead = np.random.default_rng([recipe.seed, 4, number]).uniform(*LEAD) if recipe.cut else 0.0
+    lead = recipe.rng(4, number).uniform(*LEAD) if recipe.cut else 0.0
     save_bare(bench.record(rig, recipe.programme, rng, lead), place / RECORDING)
     held = healthy if recipe.repaired else rig
     save_bare(bench.record(held, "held_out", rng, lead), place / HELD_OUT)
     if recipe.baseline:
-        rng = np.random.default_rng([recipe.seed, 5, number])
+        rng = recipe.rng(5, number)
         before = bench.again(usual, rng, truth.spread, DRIFT * truth.spread)
         healthy = replace(healthy, values=before)
         save_bare(bench.record(healthy, recipe.programme, rng), place / BASELINE)

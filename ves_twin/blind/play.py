@@ -19,7 +19,8 @@ from ves_twin.blind.benches import bench_of
 from ves_twin.blind.save_bare import save_bare
 from ves_twin.blind.suite import load_suite, next_file
 from ves_twin.blind.truth import Truth
-from ves_twin.errors import FileAccessError, InvalidInputError, UnknownNameError
+from ves_twin.errors import InvalidInputError, UnknownNameError
+from ves_twin.whole_file import write_whole
 
 CHOICES = ("proposed", "random")
 """Which of the offered programmes: the likeliest to part the causes, or any."""
@@ -70,10 +71,7 @@ def play_next(
         rig = BlindRig(values, truth.outside, truth.outside_size, background=truth.background)
         save_bare(bench.play(rig, menu[name], rng), folder / truth.case / next_file(choice))
         played[truth.case] = name
-    try:
-        played_file(folder, choice).write_text(json.dumps(played, indent=1) + "\n")
-    except OSError as error:
-        raise FileAccessError(f"cannot write {error.filename}: {error.strerror}") from None
+    write_whole(played_file(folder, choice), json.dumps(played, indent=1) + "\n")
     return played
 
 

@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
+import numpy as np
+
 from ves_twin.blind.bench import BlindBench
 from ves_twin.blind.truth import Hidden
 from ves_twin.errors import InvalidInputError, UnknownNameError
@@ -17,7 +19,7 @@ class Recipe:
     Attributes:
         bench: a name of BENCHES.
         counts: cases of each sort.
-        seed: of everything drawn, and as secret as the key.
+        seed: of everything drawn, and as secret as the key; None for any.
         spread: commissioning errors, in declared sd.
         commissioned: other rigs in order, of the same spread, that are recorded beside the cases.
         background: kinds outside the library that every rig has, with their sizes.
@@ -29,7 +31,7 @@ class Recipe:
 
     bench: str
     counts: Mapping[Hidden, int]
-    seed: int
+    seed: int | None
     spread: float = 1.0
     commissioned: int = 0
     background: Mapping[str, float] = field(default_factory=dict)
@@ -42,6 +44,16 @@ class Recipe:
     def programme(self) -> str:
         """Of the first recording of a case."""
         return "poor" if self.poor else "train"
+
+    def rng(self, *part: int) -> np.random.Generator:
+        """Draws of one part of the suite.
+
+        Raises:
+            InvalidInputError: no seed yet.
+        """
+        if self.seed is None:
+            raise InvalidInputError("seed of a suite", None, "a number (`pinned_recipe` draws one)")
+        return np.random.default_rng([self.seed, *part])
 
     def check(self, bench: BlindBench) -> None:
         """Refuse what the plant cannot do.

@@ -8,6 +8,7 @@ from dataclasses import asdict, dataclass, field
 from pathlib import Path
 
 from ves_twin.errors import FileAccessError, InvalidInputError, UnknownNameError
+from ves_twin.whole_file import write_whole
 
 SCHEMA = 1
 """Version of suite.json."""
@@ -53,10 +54,7 @@ class Suite:
         Raises:
             FileAccessError: not writable.
         """
-        try:
-            (folder / FILE).write_text(json.dumps(asdict(self), indent=1) + "\n", encoding="utf-8")
-        except OSError as error:
-            raise FileAccessError(f"cannot write {folder / FILE}: {error.strerror}") from None
+        write_whole(folder / FILE, json.dumps(asdict(self), indent=1) + "\n")
 
 
 def load_suite(folder: Path) -> Suite:

@@ -123,8 +123,6 @@ def _make(arguments: argparse.Namespace, folder: Path, key: Path) -> int:
 
 
 def _recipe(arguments: argparse.Namespace) -> Recipe:
-    import secrets
-
     from ves_twin.blind.material import check_commissioned
     from ves_twin.blind.recipe import Recipe
     from ves_twin.blind.truth import Hidden
@@ -140,7 +138,7 @@ def _recipe(arguments: argparse.Namespace) -> Recipe:
     return Recipe(
         arguments.bench,
         asked,
-        secrets.randbelow(2**31) if arguments.seed is None else arguments.seed,
+        arguments.seed,
         arguments.spread,
         arguments.commissioned,
         dict(_background(text) for text in arguments.background),
