@@ -12,7 +12,7 @@ class Fidelity(StrEnum):
     """How much of the rig is modelled; the signals are the same.
 
     `full`: legs of two bodies that bend, closed chain, 39 degrees of freedom. `fast`: straight legs
-    without bodies (spatial tendons), 9 degrees of freedom; a rod's mass sits at its platform joint.
+    without bodies (spatial tendons), 9 degrees of freedom; a rod's mass is a point on the platform.
     """
 
     FULL = "full"

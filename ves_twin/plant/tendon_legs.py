@@ -16,9 +16,11 @@ def add_tendon_legs(
     """Six spatial tendons leg1 ... leg6 from base joints to platform joints, and the rods' masses.
 
     A force F on leg i acts on the platform as the wrench J_i' F, J the derivative of the length.
-    A rod moves along with its platform joint, so its mass is a point there: right along the leg,
-    where the oil feels it. Across the leg, rod and cylinder of VES II together swing like 1.8 kg
-    instead of 2.5 kg, and hang on the joint with 3.5 kg.
+    A rod moves along with its platform, its mass a point: right along the leg, where the oil feels
+    it. Across the leg, rod and cylinder of VES II together swing like 1.8 kg instead of 2.5 kg,
+    and hang on the joint with 3.5 kg. The point lies at twice the joint's distance from the
+    platform's origin, since MuJoCo fills an open `ipos` from `pos`: too much inertia in turning,
+    known and left as it was calibrated (docs/limits.md).
 
     Args:
         spec: rig without legs, whose platform has the sites platform/joint1 ... joint6.
