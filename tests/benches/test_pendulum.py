@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from blind import Outside, blind_record, programme_rows
 from rows import EXPECTED, ROWS, row_record
 
 from ves_twin.benches.pendulum import STEP, Pendulum, edited
+from ves_twin.blind.bench import BlindRig
+from ves_twin.blind.benches import bench_of
+from ves_twin.blind.pendulum import asked_torque
 from ves_twin.diagnosis.detectability import detectability
 from ves_twin.diagnosis.diagnose import diagnose
 from ves_twin.diagnosis.forward import Programme
@@ -17,10 +19,20 @@ from ves_twin.diagnosis.settings import Settings
 from ves_twin.diagnosis.verdict import Kind
 from ves_twin.diagnosis.whitening import whitening_declared
 
-TORQUE = programme_rows(1)
+TORQUE = asked_torque(1)
 TIME = STEP * np.arange(len(TORQUE))
 FED = Programme("multisine", TIME, {"joint.torque": TORQUE[:, None]})
 PLANT = Pendulum()
+BENCH = bench_of("pendulum")
+
+
+def blind_record(seed, hidden=None, outside="", size=0.0):
+    """A measured pendulum of the blind suites: every commissioning parameter drawn anew."""
+    rng = np.random.default_rng(seed)
+    values = BENCH.commissioned(rng)
+    for name, departure in (hidden or {}).items():
+        values[name] = values.get(name, 0.0) + departure
+    return BENCH.record(BlindRig(values, outside, size), "train", rng)
 
 
 @pytest.fixture(scope="module")
@@ -85,10 +97,7 @@ def test_five_causes_are_named_and_nothing_in_the_null(settings):
 
 @pytest.mark.slow
 def test_rigs_in_order_are_left_in_peace(settings):
-    said = [
-        diagnose(PLANT, [blind_record(np.random.default_rng(s), TORQUE)], settings=settings)
-        for s in range(12)
-    ]
+    said = [diagnose(PLANT, [blind_record(s)], settings=settings) for s in range(12)]
     assert sum(v.verdict is not Kind.NOTHING for v in said) <= 1
 
 
@@ -108,7 +117,7 @@ def test_a_cause_of_ten_sigma_is_named_and_with_it_left_out_nobody_is(effect, hi
     for i, axis in enumerate(runs.coordinates):
         shift[i] = hidden.get(axis.parameter.name, 0.0)
     assert detectability(local, whitening_declared(runs), shift) > 10.0
-    data = blind_record(np.random.default_rng(21), TORQUE, hidden)
+    data = blind_record(21, hidden)
     v = diagnose(PLANT, [data], settings=settings)
     assert (v.verdict, v.causes[0].effect) == (Kind.NAMED, effect)
     blindfold = diagnose(PLANT, [data], exclude=[effect], settings=settings)
@@ -117,15 +126,15 @@ def test_a_cause_of_ten_sigma_is_named_and_with_it_left_out_nobody_is(effect, hi
 
 @pytest.mark.slow
 def test_effects_outside_the_library_are_unknown(settings):
-    for outside in (Outside(drag=0.02), Outside(drift=0.05)):
-        data = blind_record(np.random.default_rng(5), TORQUE, outside=outside)
+    for kind, size in (("quadratic_drag", 0.02), ("late_drift", 0.05)):
+        data = blind_record(5, outside=kind, size=size)
         assert diagnose(PLANT, [data], settings=settings).verdict is Kind.UNKNOWN
 
 
 @pytest.mark.slow
 def test_where_a_delay_sits_cannot_be_told_from_rest_in_open_loop():
     plant = Pendulum.with_command_delay()
-    data = blind_record(np.random.default_rng(8), TORQUE, {"sensor.delay": 0.004})
+    data = blind_record(8, {"sensor.delay": 0.004})
     v = diagnose(plant, [data], settings=Settings(nulls=60))
     assert v.verdict is Kind.AMBIGUOUS
     assert {f"{c.effect}@{c.target}" for c in v.causes} == {"delay@sensor", "delay@command"}

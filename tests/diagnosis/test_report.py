@@ -16,7 +16,7 @@ from ves_twin.diagnosis.next_experiment import separations
 from ves_twin.diagnosis.observe import observe
 from ves_twin.diagnosis.refine import refine
 from ves_twin.diagnosis.report.page import diagnosis_page
-from ves_twin.diagnosis.report.words import headline, tone
+from ves_twin.diagnosis.report.words import headline, spoken, tone
 from ves_twin.diagnosis.rivals import Standing
 from ves_twin.diagnosis.settings import Settings
 from ves_twin.diagnosis.verdict import Kind
@@ -276,3 +276,15 @@ def test_the_menu_is_ranked_by_few_commissioning_errors_where_there_are_many(mon
     assert few[0].programme is every[0].programme is loud
     for one, other in zip(few, every, strict=True):
         assert one.chi2 >= 0.999 * other.chi2  # what is not marginalised cannot stand for a rival
+
+
+@pytest.mark.parametrize(
+    ("label", "said"),
+    [
+        ("sensor_cross_talk@sensor.my.fy", "sensor cross talk at sensor my from fy"),
+        ("anchor_position@leg.1.x", "anchor position at leg 1 x"),
+        ("coulomb_friction@joint", "Coulomb friction at joint"),
+    ],
+)
+def test_a_cause_is_said_so_that_its_place_can_be_found(label, said):
+    assert spoken(label) == said

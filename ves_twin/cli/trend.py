@@ -67,10 +67,11 @@ def execute(arguments: argparse.Namespace) -> int:
     from ves_twin.simulator.simulate import make_folder
 
     if not means_rig(arguments):
-        named = rig_name(arguments) or "none"
-        if named != "none":
+        named = rig_name(arguments)
+        if named:
             Plant.load(named)  # a name or file that does not exist is told as such
-        raise InvalidInputError("--plant", named, "a rig of two files; VES II is not followed")
+        expected = "a rig of two files; VES II is not followed"
+        raise InvalidInputError("--plant", named or "no such rig", expected)
     names = recordings_in(arguments.measured)
     given = rig_recordings(arguments, names)
     calendar = _calendar(names, given.measured, arguments.numbered)

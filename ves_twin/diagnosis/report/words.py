@@ -22,7 +22,10 @@ def spoken(label: str) -> str:
     """effect@target as a person says it: "Coulomb friction at leg 3"."""
     effect, _, target = label.partition("@")
     words = effect.replace("_", " ").replace("coulomb", "Coulomb")
-    return f"{words} at {target.replace('.', ' ')}" if target else words
+    places = target.split(".")
+    if places[0] == "sensor" and len(places) == 3:  # one axis reads a share of another
+        places.insert(2, "from")
+    return f"{words} at {' '.join(places)}" if target else words
 
 
 def name_of(cause: Cause) -> str:
