@@ -26,7 +26,7 @@ LADDER = 6.0
 SAME = 1e-2
 """Sd of one sample by which a kept prediction may be off: rounding of another processor."""
 
-SCHEMA = 4
+SCHEMA = 5
 """Version of the cached file; another one is built anew."""
 
 
@@ -175,10 +175,13 @@ def _column(runs: Runs, hypothesis: Hypothesis) -> IntArray | None:
 
 
 def _ladder(hypothesis: Hypothesis, sd: float) -> list[float]:
-    """Sizes in commissioning sd: one, or as many as a cause that is linear throughout needs."""
-    sizes = [STRAIGHT]
-    while hypothesis.linear and LADDER * sizes[-1] * sd <= hypothesis.largest[0]:
-        sizes.append(LADDER * sizes[-1])
+    """Sizes in commissioning sd: one, or of a cause linear throughout as many as reach its largest.
+
+    The last rung tells whether the recording would show even the largest size.
+    """
+    sizes, largest = [STRAIGHT], hypothesis.largest[0] / sd
+    while hypothesis.linear and sizes[-1] < largest:
+        sizes.append(min(LADDER * sizes[-1], largest))
     return sizes
 
 
