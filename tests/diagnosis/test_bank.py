@@ -2,15 +2,21 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
-from toy import CAUSES, Toy, programme
+from toy import CAUSES, GAIN, Toy, _cause, programme, record
 
 from ves_twin.diagnosis.bank import build_bank, cached_bank
+from ves_twin.diagnosis.findable import MARGIN, findable_sizes
 from ves_twin.diagnosis.forward import Hypothesis, check_forward
-from ves_twin.diagnosis.null import null_thresholds
+from ves_twin.diagnosis.null import cached_thresholds, null_thresholds
+from ves_twin.diagnosis.observe import observe
 from ves_twin.diagnosis.runs import Runs
 from ves_twin.diagnosis.screen import Screen
+from ves_twin.diagnosis.settings import Settings
+from ves_twin.diagnosis.tolerances import cached_scale, tolerance_scale
 from ves_twin.diagnosis.whitening import whitening_declared
 from ves_twin.errors import InvalidInputError, UnknownNameError
 from ves_twin.workers import Workers
@@ -66,6 +72,47 @@ def test_a_kept_bank_of_a_plant_whose_code_has_changed_is_built_anew(runs, tmp_p
     assert again is fresh
     read = cached_bank(runs, tmp_path, lambda: pytest.fail("built twice"))
     assert np.array_equal(read.base.prediction, fresh.base.prediction)
+
+
+def test_kept_thresholds_and_scales_of_changed_code_are_not_read(runs, tmp_path, monkeypatch):
+    settings = Settings(nulls=8, cache=tmp_path, simulated_nulls=False)
+    rng = np.random.default_rng(3)
+    rigs = [observe(Toy(), [record(rng, spread=2.0)]) for _ in range(3)]
+
+    def found():
+        bank = cached_bank(runs, tmp_path, lambda: build_bank(runs))
+        limits = cached_thresholds(bank, whitening_declared(runs), settings)
+        return limits.effects, cached_scale([(rig.runs, rig.measured) for rig in rigs], tmp_path)
+
+    old, again = found(), found()
+    assert np.array_equal(again[0], old[0])
+    assert again[1] == old[1]
+    before = Toy.simulate
+    monkeypatch.setattr(Toy, "simulate", lambda *a, **k: 1.02 * before(*a, **k))
+    kept = found()
+    fresh = null_thresholds(build_bank(runs), whitening_declared(runs), 8, 0.002, simulated=False)
+    assert not np.array_equal(kept[0], old[0])
+    assert np.array_equal(kept[0], fresh.effects)
+    assert kept[1] != old[1]
+    assert kept[1] == tolerance_scale([(rig.runs, rig.measured) for rig in rigs])
+
+
+class Straight(Toy):
+    """The gain is a cause that is linear throughout, 20 of its tolerances at most."""
+
+    @property
+    def hypotheses(self):
+        return (replace(GAIN, largest=(0.4,), linear=True), *map(_cause, self.causes))
+
+
+def test_a_linear_cause_of_few_tolerances_has_a_size_from_which_it_is_found():
+    bank = build_bank(Runs(Straight(), (programme(),), (0, 1)))
+    sizes = sorted(float(bank.sizes[k][0]) for k in bank.entries(0))
+    assert sizes == pytest.approx([-0.4, -0.08, 0.08, 0.4])  # 4 tolerances, and its largest
+    threshold = 19.1  # that of VES II: the root and MARGIN are 4.87 tolerances, beyond the first
+    found = findable_sizes(Screen(bank, whitening_declared(bank.base.runs)), threshold)
+    goal = np.sqrt(threshold) + MARGIN
+    assert found["gain@plant"] == pytest.approx(goal * 0.02, rel=1e-2)  # it shows fully, soon
 
 
 def test_processes_change_nothing(runs):

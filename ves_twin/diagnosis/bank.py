@@ -26,7 +26,7 @@ LADDER = 6.0
 SAME = 1e-2
 """Sd of one sample by which a kept prediction may be off: rounding of another processor."""
 
-SCHEMA = 3
+SCHEMA = 5
 """Version of the cached file; another one is built anew."""
 
 
@@ -175,10 +175,13 @@ def _column(runs: Runs, hypothesis: Hypothesis) -> IntArray | None:
 
 
 def _ladder(hypothesis: Hypothesis, sd: float) -> list[float]:
-    """Sizes in commissioning sd: one, or as many as a cause that is linear throughout needs."""
-    sizes = [STRAIGHT]
-    while hypothesis.linear and LADDER * sizes[-1] * sd <= hypothesis.largest[0]:
-        sizes.append(LADDER * sizes[-1])
+    """Sizes in commissioning sd: one, or of a cause linear throughout as many as reach its largest.
+
+    The last rung tells whether the recording would show even the largest size.
+    """
+    sizes, largest = [STRAIGHT], hypothesis.largest[0] / sd
+    while hypothesis.linear and sizes[-1] < largest:
+        sizes.append(min(LADDER * sizes[-1], largest))
     return sizes
 
 
@@ -192,7 +195,7 @@ def cached_bank(runs: Runs, folder: Path | None, build: Callable[[], Bank]) -> B
         return build()
     path = folder / f"bank-{bank_key(runs)}.npz"
     kept = _read(path, runs) if path.is_file() else None
-    if kept is not None and _holds(kept):
+    if kept is not None and still_predicts(runs, kept.base.prediction):
         return kept
     bank = build()
     write_arrays(
@@ -209,14 +212,17 @@ def cached_bank(runs: Runs, folder: Path | None, build: Callable[[], Bank]) -> B
     return bank
 
 
-def _holds(bank: Bank) -> bool:
-    """Whether the forward still predicts what it did when the bank was built.
+def still_predicts(runs: Runs, prediction: SingleArray) -> bool:
+    """Whether the forward still predicts what it did when a file was written.
 
     No key can know that a line of code has changed; one run of the nominal plant does.
+
+    Args:
+        runs: whose nominal prediction is made.
+        prediction: channels at no departure, as stored (rows, c).
     """
-    runs = bank.base.runs
     sds = np.array([runs.forward.channels[c].sd for c in runs.columns])
-    off = np.abs(runs.one(runs.origin) - bank.base.prediction) / sds
+    off = np.abs(runs.one(runs.origin) - prediction) / sds
     return bool(np.all(off < SAME))
 
 

@@ -157,13 +157,15 @@ class Tuned:
 
 def _usual(seen: Observed, baseline: Sequence[Recording]) -> tuple[SingleArray, int]:
     """Mean baseline of each programme (rows, c), and the fewest recordings of one."""
-    others = [observe(seen.runs.forward, [recording]) for recording in baseline]
+    runs = seen.runs
+    rate = runs.programmes[0].rate
+    others = [observe(runs.forward, [recording], runs.workers, rate) for recording in baseline]
     pieces, fewest = [], len(others)
-    for k, programme in enumerate(seen.runs.programmes):
+    for k, programme in enumerate(runs.programmes):
         same = [
             other.measured
             for other in others
-            if other.runs.columns == seen.runs.columns
+            if other.runs.columns == runs.columns
             and _alike(other.runs.programmes[0].drive, programme.drive)
         ]
         if not same:

@@ -180,6 +180,7 @@ def cached_thresholds(
     content = repr((labels, *asked)).encode()
     content += whitening.filters.tobytes() + whitening.mixing.tobytes()
     content += b"".join(bad.tobytes() for bad in bank.base.runs.holes if bad.any())
+    content += bank.base.prediction.tobytes()  # as stored: another one where the code has changed
     path = settings.cache / f"null-{bank_key(bank.base.runs, content)}.npz"
     if path.is_file():
         with np.load(path) as kept:

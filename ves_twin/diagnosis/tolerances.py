@@ -9,7 +9,7 @@ import numpy as np
 from scipy.optimize import brentq
 from scipy.stats import chi2, norm
 
-from ves_twin.diagnosis.bank import Bank, bank_key, write_arrays
+from ves_twin.diagnosis.bank import Bank, bank_key, still_predicts, write_arrays
 from ves_twin.diagnosis.evidence import Evidence
 from ves_twin.diagnosis.linearise import linearise
 from ves_twin.diagnosis.refine import bare_residual, refine, residual_about
@@ -54,7 +54,9 @@ def tolerance_scale(rigs: Sequence[tuple[Runs, SingleArray]]) -> float:
 
 
 def cached_scale(rigs: Sequence[tuple[Runs, SingleArray]], folder: Path | None) -> float:
-    """The scale from a file, computed and written where there is none: each rig costs a fit.
+    """The scale from a file, computed and written where none holds: each rig costs a fit.
+
+    It holds while the forward predicts what it did, as a bank does.
 
     Raises:
         FileAccessError: the folder cannot be written.
@@ -65,9 +67,16 @@ def cached_scale(rigs: Sequence[tuple[Runs, SingleArray]], folder: Path | None) 
     path = folder / f"scale-{bank_key(rigs[0][0], content.encode())}.npz"
     if path.is_file():
         with np.load(path) as kept:
-            return float(kept["scale"])
+            scale, told = float(kept["scale"]), kept["predictions"]
+        parts = np.split(told, np.cumsum([measured.size for _, measured in rigs])[:-1])
+        if all(
+            still_predicts(runs, part.reshape(measured.shape))
+            for (runs, measured), part in zip(rigs, parts, strict=True)
+        ):
+            return scale
     scale = tolerance_scale(rigs)
-    write_arrays(path, scale=np.array(scale))
+    told = np.concatenate([runs.one(runs.origin).ravel() for runs, _ in rigs])
+    write_arrays(path, scale=np.array(scale), predictions=told)
     return scale
 
 

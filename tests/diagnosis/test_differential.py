@@ -1,0 +1,28 @@
+"""A record against recordings of the same rig in order: what is compared, and what is said."""
+
+import numpy as np
+import pytest
+from toy import Toy, record
+
+from ves_twin.diagnosis.diagnose import diagnose
+from ves_twin.diagnosis.settings import Settings
+from ves_twin.diagnosis.verdict import Kind
+
+SETTINGS = Settings(nulls=40, simulated_nulls=False)
+USUAL = 0.03
+"""Ripple that the rig always has and the library, without it, lacks."""
+
+
+def rig(seed, size=0.0):
+    values = {"ripple.size": USUAL, "friction.size": size}
+    return record(np.random.default_rng(seed), values, spread=0.0)
+
+
+@pytest.mark.parametrize("rate", [40.0, 100.0])
+def test_the_baseline_is_on_the_grid_of_the_record(rate):
+    settings = Settings(nulls=40, simulated_nulls=False, rate=rate)
+    plant = Toy().without("ripple")
+    found = diagnose(plant, [rig(1, 0.1)], baseline=[rig(2), rig(3)], settings=settings)
+    assert (found.verdict, found.causes[0].effect) == (Kind.NAMED, "friction")
+    same = diagnose(plant, [rig(4)], baseline=[rig(2), rig(3)], settings=settings)
+    assert same.verdict is Kind.NOTHING
