@@ -70,6 +70,10 @@ class PluginError(VesTwinError):
     """An installed extension that cannot be used: a clash of names, or it does not load."""
 
 
+class EndedEarlyError(VesTwinError):
+    """A run that was needed to its end left the rig's limits, or diverged."""
+
+
 class ControllerError(VesTwinError):
     """A controller that raised or returned something that is not a finite command."""
 

@@ -32,6 +32,18 @@ def test_rigs_of_one_identity_answer_alike():
     assert np.array_equal(*(rig.simulate(fed, {}) for rig in rigs))
 
 
+def test_a_rig_that_leaves_its_limits_has_no_channels_instead_of_ending_the_diagnosis():
+    plant = vt.Plant.load("ves2_pressure_fast")
+    scenario = vt.Scenario.load("identify_fast", {"run.duration": 1.0})
+    made = vt.simulate(scenario, plant=plant, seed=1)
+    rig = RigForward(plant, replay_scenario(made, scenario))
+    fed = Programme.of(made, rig.drive)
+    assert np.all(np.isfinite(rig.simulate(fed, {})))
+    failed = rig.simulate(fed, {"length_offset@leg.1:offset": 0.02})
+    assert failed.shape == (len(made), len(rig.channels))
+    assert np.all(np.isnan(failed))
+
+
 def test_every_setting_of_the_computers_and_the_start_makes_another_rig():
     different = [
         identity(),

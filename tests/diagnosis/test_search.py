@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from toy import NUISANCES, QUICK, SD, Toy, programme, record, shape
 
+from ves_twin.diagnosis.bank import build_bank
 from ves_twin.diagnosis.diagnose import diagnose
 from ves_twin.diagnosis.evidence import Evidence
 from ves_twin.diagnosis.linearise import STEP_SD, linearise
@@ -17,6 +18,7 @@ from ves_twin.diagnosis.refine import refine, residual_about
 from ves_twin.diagnosis.runs import Runs
 from ves_twin.diagnosis.verdict import Kind
 from ves_twin.diagnosis.whitening import LEVEL_RANGE, whitening_declared
+from ves_twin.errors import InvalidInputError
 
 CHANCE = 0.02
 """Offset that the plant below answers with by chance: two sd of its first channel's noise."""
@@ -119,3 +121,35 @@ def test_the_floor_of_mean_z2_is_one_or_what_a_quiet_channel_leaves():
     assert own.floor(z) == pytest.approx(expected, abs=0.005)
     # four sd of the other channel's mean of 800 squares
     assert np.mean(z**2) == pytest.approx(expected, abs=4.0 * 0.5 * np.sqrt(2.0 / 800.0))
+
+
+class Fragile(Toy):
+    """It fails beyond a slope: there are no channels there."""
+
+    def simulate(self, programme, values, refined=False):
+        rows = super().simulate(programme, values, refined)
+        return np.full_like(rows, np.nan) if values.get("plant.slope", 0.0) > 0.02 else rows
+
+
+def test_a_plant_that_fails_to_one_side_is_fitted_from_the_other():
+    fed, plant = programme(), Fragile()
+    runs = Runs(plant, (fed,), (0, 1))
+    base, sound = linearise(runs, runs.origin), linearise(Runs(Toy(), (fed,), (0, 1)), runs.origin)
+    # the toy is linear: one side tells as much as both, but for single precision
+    np.testing.assert_allclose(base.columns, sound.columns, rtol=1e-3, atol=1e-5)
+    rows = plant.simulate(fed, {"plant.slope": 0.015, "friction.size": 0.05})
+    rows = rows + np.random.default_rng(4).standard_normal(rows.shape) * SD
+    evidence = Evidence(runs, rows.astype(np.float32), whitening_declared(runs))
+    friction = next(h for h in plant.hypotheses if h.effect == "friction")
+    fit = refine(evidence, (friction,), runs.origin, base)
+    assert np.isfinite(fit.chi2)
+    assert abs(fit.sizes[0] - 0.05) < 4.0 * np.sqrt(fit.covariance[0, 0])
+
+
+def test_a_plant_that_fails_at_its_nominal_numbers_is_told_as_such():
+    class Broken(Toy):
+        def simulate(self, programme, values, refined=False):
+            return np.full_like(super().simulate(programme, values, refined), np.nan)
+
+    with pytest.raises(InvalidInputError, match="nominal plant"):
+        build_bank(Runs(Broken(), (programme(),), (0, 1)))

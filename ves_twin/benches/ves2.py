@@ -24,6 +24,7 @@ from ves_twin.benches.ves2_library import (
     with_departures,
 )
 from ves_twin.diagnosis.forward import Channel, Hypothesis, Parameter, Programme
+from ves_twin.errors import EndedEarlyError, UnreachableError
 from ves_twin.plant.known_weight import hang_weight
 from ves_twin.plant.plant import Plant
 from ves_twin.recording.recording import Recording, RecordingInfo
@@ -178,7 +179,7 @@ class LastRun:
         return LastRun, ()  # other processes run for themselves
 
     def run(self, plant: Plant, programme: Programme, scenario: Scenario) -> FloatArray:
-        """Compared channels (n, channels) of a plant, not to be written to."""
+        """Compared channels (n, channels) of a plant, not to be written to; NaN if it fails."""
         asked = plant.hash
         kept = self._kept.get(programme.identity)
         if kept is not None and kept[0] == asked and kept[1] == scenario:
@@ -186,8 +187,12 @@ class LastRun:
         info = RecordingInfo("measured")
         fed = {name: programme.drive[name] for name in DRIVE}
         recording = Recording(programme.time - programme.time[0], fed, info)
-        answer = predict(recording, plant, scenario, DRIVE, COMPARED)
-        rows = np.concatenate([answer[name] for name in COMPARED], axis=1)
+        try:
+            answer = predict(recording, plant, scenario, DRIVE, COMPARED)
+            rows = np.concatenate([answer[name] for name in COMPARED], axis=1)
+        except (EndedEarlyError, UnreachableError):
+            width = sum(len(SIGNALS[name].columns) for name in COMPARED)
+            rows = np.full((len(programme.time), width), np.nan)
         self._kept[programme.identity] = (asked, scenario, rows)
         return rows
 

@@ -14,7 +14,7 @@ import numpy as np
 from ves_twin.diagnosis.forward import Hypothesis
 from ves_twin.diagnosis.linearise import Linearisation, linearise, with_bends
 from ves_twin.diagnosis.runs import Progress, Runs, silent
-from ves_twin.errors import FileAccessError
+from ves_twin.errors import FileAccessError, InvalidInputError
 from ves_twin.types import FloatArray, IntArray, SingleArray
 
 STRAIGHT = 4.0
@@ -104,11 +104,17 @@ def build_bank(
 
     Returns:
         The bank, without entries that bounds leave near the starting point or that diverge.
+
+    Raises:
+        InvalidInputError: the plant fails at the starting point itself.
     """
     start = runs.origin if point is None else point
     library = runs.forward.hypotheses if hypotheses is None else hypotheses
     if base is None:
         base = with_bends(linearise(runs, start, progress), progress)
+    if not np.all(np.isfinite(base.prediction)):
+        came = "set-points at which the plant leaves its limits"
+        raise InvalidInputError("programme", came, "one that the nominal plant carries out")
     shifts, owner, sizes = [], [], []
     for h, hypothesis in enumerate(library):
         if hypothesis.linear and _column(runs, hypothesis) is not None:

@@ -209,7 +209,7 @@ class Forward(Protocol):
     def simulate(
         self, programme: Programme, values: Mapping[str, float], refined: bool = False
     ) -> FloatArray:
-        """Noise-free channels (n, channels) at the programme's rows.
+        """Noise-free channels (n, channels) at the programme's rows; NaN if the plant fails there.
 
         Args:
             programme: what is fed in.

@@ -77,9 +77,21 @@ def linearise(
     far = stacks[1:] if forward_step is not None else stacks[1::2]
     near = prediction[None] if forward_step is not None else stacks[2::2]
     columns = list((far - near) * np.array(weights, np.float32)[:, None, None])
+    for k in np.flatnonzero(~np.all(np.isfinite(columns), axis=(1, 2))):
+        columns[k] = _one_sided(far[k], near[k % len(near)], prediction, np.float32(weights[k]))
     columns.append(np.float32(STEP_SD) * (runs.one(point, refined=True) - prediction))
     found = np.stack(columns)
     return Linearisation(runs, point, prediction, found, GUESS * _sizes(runs, found))
+
+
+def _one_sided(
+    far: SingleArray, near: SingleArray, middle: SingleArray, weight: np.float32
+) -> SingleArray:
+    """The column from the side on which the plant did not fail; nothing if it did on both."""
+    for change in (far - middle, middle - near):
+        if np.all(np.isfinite(change)):
+            return np.asarray(np.float32(2.0) * weight * change)
+    return np.zeros_like(middle) if np.all(np.isfinite(middle)) else middle
 
 
 def with_bends(base: Linearisation, progress: Progress = silent) -> Linearisation:

@@ -158,7 +158,10 @@ class Search:
         for n, i in enumerate(self.free):
             ends = self._ends(point.shift, int(i))
             stacks = [self.runs.one(end) for end in ends]
-            self.unit[n] = 0.5 * (ends[1][i] - ends[0][i])
+            for side, stack in enumerate(stacks):
+                if not np.all(np.isfinite(stack)):  # the plant fails there: from the other side
+                    ends[side], stacks[side] = point.shift, point.prediction
+            self.unit[n] = 0.5 * (ends[1][i] - ends[0][i]) or 1.0
             raw.append(np.float32(0.5) * (stacks[1] - stacks[0]))
             columns.append(self.evidence.whitening.apply(raw[-1]))
         self.raw = np.array(raw, np.float32).reshape(-1, *point.prediction.shape)
@@ -166,14 +169,14 @@ class Search:
         self.bends[: len(self.free)] = GUESS * np.linalg.norm(free, axis=0)
         return np.concatenate([free, self.columns], axis=1)
 
-    def _ends(self, shift: FloatArray, axis: int) -> tuple[FloatArray, FloatArray]:
+    def _ends(self, shift: FloatArray, axis: int) -> list[FloatArray]:
         """To either side, as far as bounds let: a short step would see chance, not slope."""
         reach = max(SECANT * abs(shift[axis]), 0.3 * self.runs.sd[axis])
         reach = max(reach, 1e-5 * (self.high[axis] - self.low[axis]))
         below, above = shift.copy(), shift.copy()
         below[axis] = max(shift[axis] - reach, self.low[axis])
         above[axis] = min(shift[axis] + reach, self.high[axis])
-        return below, above
+        return [below, above]
 
     def hessian(self, jacobian: FloatArray, weight: float = 1.0) -> FloatArray:
         """J'J and the priors, which causes have none of."""

@@ -39,7 +39,7 @@ def predict(
         compare: signals that come back.
 
     Raises:
-        VesTwinError: as `replay`.
+        EndedEarlyError: as `replay`.
     """
     clock = Clock.of(scenario, plant.parameters)
     tick, cycle = clock.tick, clock.admittance * clock.tick

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from ves_twin.control.played import PlayedJoints, PlayedPoses, PlayedWrench, Script, spline_points
-from ves_twin.errors import InvalidInputError, UnknownNameError, VesTwinError
+from ves_twin.errors import EndedEarlyError, InvalidInputError, UnknownNameError
 from ves_twin.kinematics.stewart import StewartGeometry
 from ves_twin.plant.plant import Plant
 from ves_twin.recording.recording import Recording
@@ -60,7 +60,7 @@ def replay(
     Raises:
         UnknownNameError: a signal that cannot be fed in or compared, or that is missing.
         InvalidInputError: no set-points for the legs, or no scenario to go by.
-        VesTwinError: the run ended early; says how.
+        EndedEarlyError: the run ended early; says how.
     """
     for name in drive:
         if name not in DRIVABLE:
@@ -174,7 +174,7 @@ def _collected(sim: Simulator, recording: Recording, compare: Sequence[str]) -> 
     time, signals = sink.collect() if isinstance(sink, MemorySink) else (np.zeros(0), {})
     if len(time) < len(recording):
         why = sim.events[-1].message if sim.events else "no event"
-        raise VesTwinError(
+        raise EndedEarlyError(
             f"the replay ended after {len(time)} of {len(recording)} rows ({sim.outcome}: {why})"
         )
     kept = {name: signals[name][: len(recording)] for name in compare}
