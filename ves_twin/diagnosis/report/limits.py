@@ -61,7 +61,10 @@ def limit_sentences(verdict: Verdict) -> tuple[str, ...]:
             " would look like a cause; names below that are called provisional."
         )
     if verdict.unseen:
-        said.append(f"Not recorded, so nothing is known of it: {', '.join(verdict.unseen)}.")
+        said.append(
+            "Not recorded, or with holes all over, so nothing is known of it:"
+            f" {', '.join(verdict.unseen)}."
+        )
     if verdict.holes:
         told = ", ".join(f"{name} {percent(share)}" for name, share in verdict.holes.items())
         said.append(f"Rows without a value, which were left out: {told}.")
