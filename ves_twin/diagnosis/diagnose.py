@@ -9,7 +9,7 @@ from ves_twin.diagnosis.assess import assess, pull_limit
 from ves_twin.diagnosis.bank import Bank, build_bank, cached_bank
 from ves_twin.diagnosis.both_views import both_views, is_firm
 from ves_twin.diagnosis.compose import Findings, compose
-from ves_twin.diagnosis.conclude import HeldOut, conclude, whitening_of
+from ves_twin.diagnosis.conclude import HeldOut, conclude
 from ves_twin.diagnosis.differential import differential
 from ves_twin.diagnosis.disagreement import Alone, disagreement
 from ves_twin.diagnosis.explain import Desk, Explanation, explain
@@ -22,7 +22,7 @@ from ves_twin.diagnosis.runs import Progress, Runs, silent
 from ves_twin.diagnosis.settings import Settings
 from ves_twin.diagnosis.tolerances import FEWEST, cached_scale, naming_limit
 from ves_twin.diagnosis.verdict import Basis, Kind, Proposal, Verdict
-from ves_twin.diagnosis.whitening import Whitening
+from ves_twin.diagnosis.whitening import Whitening, whitening_of
 from ves_twin.diagnosis.widened import Widened, widening
 from ves_twin.errors import UnknownNameError
 from ves_twin.recording.recording import Recording
@@ -168,7 +168,7 @@ class _View:
         held_out, still, workers = material.held_out, material.standstill, seen.runs.workers
         own = seen.runs.forward  # tuned to this rig where there is a baseline
         held = HeldOut.of(own, held_out, still, chosen, workers) if held_out else None
-        end = conclude(desk, self.forward, (*material.recordings, *held_out), held)
+        end = conclude(desk, own, (*material.recordings, *held_out), held, still)
         found, kind = end.found, end.kind
         ambiguous = kind is Kind.AMBIGUOUS
         proposals = _next(seen.runs, found, material.next_programmes) if ambiguous else ()

@@ -189,6 +189,11 @@ class Whitening:
         return np.asarray((white[..., 1:, :] - self.colour[k] * white[..., :-1, :]) / self.level[k])
 
 
+def whitening_of(runs: Runs, standstill: Recording | None) -> Whitening:
+    """Noise as a standstill recording tells it, else as declared."""
+    return whitening_declared(runs) if standstill is None else whitening_measured(runs, standstill)
+
+
 def whole(bad: BoolArray, memory: int) -> BoolArray:
     """Samples that rest on measurements alone (rows - memory, c).
 
