@@ -126,6 +126,12 @@ def test_a_standstill_that_mixes_channels_with_holes_side_by_side_is_refused(set
         diagnose(Toy(), [holed], standstill=standstill, settings=settings)
 
 
+def test_too_few_rigs_in_order_are_refused_and_not_dropped_without_a_word(settings):
+    rigs = [record(np.random.default_rng(s)) for s in range(3)]
+    with pytest.raises(InvalidInputError, match="commissioned rigs.*3.*at least 5"):
+        diagnose(Toy(), rigs[:1], commissioning=rigs, settings=settings)
+
+
 def test_set_points_with_holes_are_refused(settings):
     data = record(np.random.default_rng(1))
     fed = data["drive.u"].copy()
