@@ -118,8 +118,8 @@ def test_a_standstill_that_mixes_channels_with_holes_side_by_side_is_refused(set
     time, info = PERIOD * np.arange(len(still)), RecordingInfo("measured")
     standstill = Recording(time, {"drive.u": 0.0 * still[:, :1], "out": still}, info)
     values = data["out"].copy()
-    values[5:400:15, 0] = np.nan
-    values[405::15, 1] = np.nan
+    values[5:400:10, 0] = np.nan
+    values[405::10, 1] = np.nan
     holed = with_out(data, values)
     diagnose(Toy(), [holed], settings=settings)
     with pytest.raises(InvalidInputError, match="holes of all channels"):
@@ -128,7 +128,7 @@ def test_a_standstill_that_mixes_channels_with_holes_side_by_side_is_refused(set
 
 def test_too_few_rigs_in_order_are_refused_and_not_dropped_without_a_word(settings):
     rigs = [record(np.random.default_rng(s)) for s in range(3)]
-    with pytest.raises(InvalidInputError, match="commissioned rigs.*3.*at least 5"):
+    with pytest.raises(InvalidInputError, match=r"commissioned rigs.*3.*at least 5"):
         diagnose(Toy(), rigs[:1], commissioning=rigs, settings=settings)
 
 
