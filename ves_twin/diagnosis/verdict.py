@@ -44,7 +44,8 @@ class Kind(StrEnum):
 class Estimate:
     """A parameter's value and interval; the interval is of the fault's share of the departure.
 
-    `nominal` is the model's value; value - nominal holds the commissioning error too.
+    `nominal` is where the departure counts from: the model's value, so that value - nominal holds
+    the commissioning error too; with a baseline, what this rig had then.
     """
 
     value: float
@@ -56,8 +57,12 @@ class Estimate:
     @property
     def words(self) -> str:
         """The value with its unit, nominal and interval."""
+        return self.told("nominal")
+
+    def told(self, origin: str) -> str:
+        """The same; `origin` says what the departure counts from."""
         span = f"{self.low:.4g} to {self.high:.4g}"
-        return f"{self.value:.4g}{unit_tail(self.unit)} (nominal {self.nominal:.4g}; {span})"
+        return f"{self.value:.4g}{unit_tail(self.unit)} ({origin} {self.nominal:.4g}; {span})"
 
 
 @dataclass(frozen=True)
@@ -69,7 +74,8 @@ class Cause:
         parameters: name -> estimate.
         probability: given the library and that one of its causes, or pairs, is at work.
         firm: False where a commissioning error of `sigmas` declared sd is not excluded.
-        sigmas: largest departure in declared sd; None if it is no commissioning parameter.
+        sigmas: largest departure in declared sd, with a baseline in sd of what a rig in order may
+            change by since then; None if it is no commissioning parameter.
     """
 
     effect: str
@@ -245,8 +251,14 @@ class Verdict:
         shown = list(cause.largest.items())
         many = len(cause.parameters)
         told = f"{many} numbers, the largest " if many > MANY else ""
-        sizes = ", ".join(f"{name} = {p.words}" for name, p in (shown[:1] if told else shown))
+        changed = self.basis.baseline == "measured"
+        origin = "at the baseline" if changed else "nominal"
+        sizes = ", ".join(
+            f"{name} = {p.told(origin)}" for name, p in (shown[:1] if told else shown)
+        )
         text = f"{cause.effect} at {cause.target}: {told}{sizes}"
         if cause.firm:
             return text
+        if changed:
+            return f"{text}, {cause.sigmas:.1f} sigmas of a change since then: fault or drift"
         return f"{text}, {cause.sigmas:.1f} declared sigmas off: fault or commissioning error"

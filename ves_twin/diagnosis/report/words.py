@@ -103,6 +103,11 @@ def _doubt(verdict: Verdict) -> str:
         which = "It is" if len(verdict.causes) == 1 else f"{name_of(loose[0])} is"
         which = "Each is" if len(loose) == len(verdict.causes) > 1 else capital(which)
         upto = "up to " if len(loose) > 1 else ""
+        if verdict.basis.baseline == "measured":
+            return (
+                f" {which} off by {upto}{most:.1f} times what a rig in order may change by since its"
+                " baseline: a fault, or a change that large."
+            )
         return (
             f" {which} {upto}{most:.1f} declared tolerances off: a fault, or an error of"
             " commissioning that large."
@@ -188,7 +193,7 @@ def strangers(verdict: Verdict) -> list[str]:
     ]
 
 
-def size_words(estimate: Estimate) -> str:
+def size_words(estimate: Estimate, origin: str = "nominal") -> str:
     """Size of a departure: "12.4 mN m", or "1.04 kg, 39 g above nominal"."""
     value = quantity(estimate.value, estimate.unit, _figures(estimate))
     if estimate.nominal == 0.0:
@@ -198,15 +203,15 @@ def size_words(estimate: Estimate) -> str:
         part = percent(abs(change / estimate.nominal))
     else:
         part = quantity(abs(change), estimate.unit)
-    return f"{value}, {part} {'above' if change > 0.0 else 'below'} nominal"
+    return f"{value}, {part} {'above' if change > 0.0 else 'below'} {origin}"
 
 
-def interval_words(estimate: Estimate) -> str:
+def interval_words(estimate: Estimate, origin: str = "nominal") -> str:
     """The interval of a size, as long as its digits need."""
     low, high = estimate.low, estimate.high
     if estimate.nominal and estimate.unit != "1":
         there = [quantity(end - estimate.nominal, estimate.unit) for end in (low, high)]
-        return f"{there[0]} to {there[1]} from nominal"
+        return f"{there[0]} to {there[1]} from {origin}"
     ends = [quantity(end, estimate.unit, _figures(estimate)) for end in (low, high)]
     return f"{ends[0]} to {ends[1]}"
 
@@ -248,7 +253,10 @@ def basis_sentences(verdict: Verdict) -> tuple[str, ...]:
         "measured": "Noise: measured at a standstill.",
         "declared": "Noise: as the plant's numbers declare it; no standstill recording was given.",
     }
-    beyond = f" A fault is what is {limit:.1f} declared tolerances off." if limit else ""
+    unit = "declared tolerances off"
+    if basis.baseline == "measured":
+        unit = "times as far off as a rig in order may change since its baseline"
+    beyond = f" A fault is what is {limit:.1f} {unit}." if limit else ""
     scale = verdict.statistics.tolerance_scale or 0.0
     tolerances = {
         "measured": "Tolerances: measured on commissioning recordings,"
