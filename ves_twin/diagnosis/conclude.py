@@ -130,11 +130,11 @@ def conclude(
     found = _probed(found)
     limit = pull_limit(desk.first.screen.bank, desk.settings.alpha)
     together = grown and len(found.best.causes) > 1
-    least = MOST if together else ALMOST
+    least = MOST if together else ALMOST  # causes together were proved one by one
     gains = held.gains(found, limit, least) if held else []
-    kind = _kind(found, gains, least)
+    kind = _kind(found, gains, together)
     ahead = None
-    if _names(kind) and any(cause.transient for cause in found.best.causes):
+    if kind.names_causes and any(cause.transient for cause in found.best.causes):
         workers = desk.first.screen.bank.base.runs.workers
         ahead = forecast(forward, recordings, found.best, desk.settings, standstill, workers)
     return Conclusion(found, kind, gains[0] if gains else None, ahead)
@@ -152,24 +152,20 @@ def _probed(found: Explanation) -> Explanation:
     return replace(found, chosen=chosen, fits=fits)
 
 
-def _names(kind: Kind) -> bool:
-    return kind not in (Kind.NOTHING, Kind.UNKNOWN)
-
-
-def _kind(found: Explanation, gains: Sequence[Gain], least: float) -> Kind:
+def _kind(found: Explanation, gains: Sequence[Gain], proved: bool) -> Kind:
     if not found.adequate:
-        return Kind.PARTIAL if _beats(found, gains, least) else Kind.UNKNOWN
+        return Kind.PARTIAL if _beats(found, gains, proved) else Kind.UNKNOWN
     if len(found.chosen) > 1:
         return Kind.AMBIGUOUS
     return Kind.NAMED if len(found.best.causes) == 1 else Kind.SEVERAL
 
 
-def _beats(found: Explanation, gains: Sequence[Gain], least: float) -> bool:
+def _beats(found: Explanation, gains: Sequence[Gain], proved: bool) -> bool:
     """Whether the causes take most of the held-out excess away, and no rival nearly as much.
 
-    Of causes together each was proved against its rivals already.
+    Of causes that were `proved` one by one each has stood against its rivals already.
     """
     if len(found.chosen) > 1 or not gains or gains[0].low is None:
         return False
-    rivals = [] if least == MOST else [gain.share or 0.0 for gain in gains[1:]]
-    return gains[0].low > max([least, *rivals])
+    rivals = [] if proved else [gain.share or 0.0 for gain in gains[1:]]
+    return gains[0].low > max([MOST if proved else ALMOST, *rivals])

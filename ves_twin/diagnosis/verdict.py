@@ -39,6 +39,16 @@ class Kind(StrEnum):
     PARTIAL = "partial"
     UNKNOWN = "unknown"
 
+    @property
+    def names_a_plant(self) -> bool:
+        """Whether its causes, all together, are meant: they make an extended plant."""
+        return self in (Kind.NAMED, Kind.SEVERAL, Kind.PARTIAL)
+
+    @property
+    def names_causes(self) -> bool:
+        """Whether it names causes at all, rivals of one another too."""
+        return self.names_a_plant or self is Kind.AMBIGUOUS
+
 
 @dataclass(frozen=True)
 class Estimate:
@@ -84,6 +94,12 @@ class Cause:
     probability: float
     firm: bool
     sigmas: float | None
+
+    @property
+    def shortened(self) -> Cause:
+        """With sizes as an effect calls them: "null" for "valve_null@leg.3:null"."""
+        short = {name.rpartition(":")[2]: value for name, value in self.parameters.items()}
+        return replace(self, parameters=short)
 
     @property
     def largest(self) -> dict[str, Estimate]:

@@ -105,8 +105,8 @@ def _doubt(verdict: Verdict) -> str:
         upto = "up to " if len(loose) > 1 else ""
         if verdict.basis.baseline == "measured":
             return (
-                f" {which} off by {upto}{most:.1f} times what a rig in order may change by since its"
-                " baseline: a fault, or a change that large."
+                f" {which} off by {upto}{most:.1f} times what a rig in order may change by"
+                " since its baseline: a fault, or a change that large."
             )
         return (
             f" {which} {upto}{most:.1f} declared tolerances off: a fault, or an error of"
