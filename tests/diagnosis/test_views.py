@@ -11,6 +11,7 @@ from ves_twin.diagnosis.both_views import both_views
 from ves_twin.diagnosis.forward import Programme
 from ves_twin.diagnosis.gain import Gain
 from ves_twin.diagnosis.refusal import refusal
+from ves_twin.diagnosis.report.words import headline
 from ves_twin.diagnosis.verdict import Basis, Cause, Kind, Statistics, Verdict
 from ves_twin.diagnosis.widened import LEAST, Widened, widening
 
@@ -85,3 +86,14 @@ def test_an_extension_that_cannot_be_carried_on_is_a_candidate_on_every_rig():
     assert refusal(replace(proven, forecast=held)) == ""
     assert "held-out" in refusal(FIRM)
     assert "not beyond their end" in diagnose_rig._refused(replace(proven, forecast=lost))
+
+
+@pytest.mark.parametrize(
+    ("kind", "begin"), [(Kind.PARTIAL, "Part of it is"), (Kind.SEVERAL, "three causes together:")]
+)
+def test_page_and_terminal_name_every_one_of_several_causes(kind, begin):
+    verdict = said(kind, "a", "b", "c")
+    assert f"{begin} a at x and b at x and c at x." in headline(verdict)
+    terminal = verdict.words.lower()
+    assert begin.lower() in terminal
+    assert all(f"{name} at x" in terminal for name in "abc")

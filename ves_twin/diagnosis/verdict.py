@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass, field, replace
 from enum import StrEnum
 from pathlib import Path
@@ -20,6 +20,9 @@ from ves_twin.whole_file import write_whole
 
 MANY = 6
 """Parameters of a cause that are told one by one."""
+
+COUNTS = {2: "two", 3: "three", 4: "four"}
+"""Numbers of causes as words."""
 
 SCHEMA = 1
 """Version of verdict.json; fields are added without a new one, never changed."""
@@ -236,15 +239,31 @@ class Verdict:
             case Kind.UNKNOWN:
                 hint = f"; the nearest of its causes is {self.suspect}" if self.suspect else ""
                 return f"Something is wrong that the library does not explain{hint}."
-            case Kind.AMBIGUOUS:
-                names = [" with ".join(self._name(i) for i in a) for a in self.alternatives]
-                return f"One of these, and this recording cannot tell which: {'; '.join(names)}."
-            case Kind.PARTIAL:
-                verb = "are" if len(self.causes) > 1 else "is"
-                rest = "something more stays unexplained."
-                return f"{self._all()} {verb} part of it; {rest}{self.limit}"
             case _:
-                return f"{self._all()}.{self.limit}"
+                limit = "" if self.verdict is Kind.AMBIGUOUS else self.limit
+                return self.naming([self._name(i) for i in range(len(self.causes))]) + limit
+
+    def naming(self, names: Sequence[str], begin: str = "") -> str:
+        """The sentence of a verdict that names causes.
+
+        Args:
+            names: of its causes, one each.
+            begin: words before what explains the record; none if empty.
+        """
+        every, begin = " and ".join(names), f"{begin} " if begin else ""
+        match self.verdict:
+            case Kind.AMBIGUOUS:
+                groups = [" with ".join(names[i] for i in a) for a in self.alternatives]
+                listed = "; ".join(groups)
+                return f"One of these {len(groups)}, and the recording cannot tell which: {listed}."
+            case Kind.PARTIAL:
+                return f"Part of it is {every}. Something more stays unexplained."
+            case Kind.SEVERAL:
+                count = COUNTS.get(len(names), str(len(names)))
+                count = count if begin else count.capitalize()
+                return f"{begin}{count} causes together: {every}."
+            case _:
+                return f"{begin}{every}."
 
     @property
     def limit(self) -> str:
@@ -258,9 +277,6 @@ class Verdict:
             " It fills in between the recordings and cannot be carried on beyond them: ahead in"
             f" time {name} is {after:.3g} {unit} off with it, {before:.3g} {unit} without."
         )
-
-    def _all(self) -> str:
-        return " and ".join(self._name(i) for i in range(len(self.causes)))
 
     def _name(self, number: int) -> str:
         cause = self.causes[number]

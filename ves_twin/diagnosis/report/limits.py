@@ -41,7 +41,7 @@ def limit_sentences(verdict: Verdict) -> tuple[str, ...]:
     """What the verdict does not prove."""
     count = len(verdict.smallest_findable)
     said = [
-        f"The library has {count} causes of one number. What it lacks is never named; at best"
+        f"The library has {count} causes. What it lacks is never named; at best"
         " something is said to be left."
     ]
     if verdict.excluded:

@@ -41,17 +41,10 @@ def headline(verdict: Verdict) -> str:
             return _nothing(verdict)
         case Kind.UNKNOWN:
             return _unknown(verdict)
-        case Kind.AMBIGUOUS:
-            groups = [" with ".join(names[i] for i in a) for a in verdict.alternatives]
-            listed = "; ".join(groups)
-            said = f"One of these {len(groups)}, and the recording cannot tell which: {listed}."
-            return said + _doubt(verdict)
-        case Kind.PARTIAL:
-            return f"Part of it is {names[0]}. Something more stays unexplained.{_doubt(verdict)}"
-        case Kind.SEVERAL:
-            return f"{_begin(verdict)} two causes together: {' and '.join(names)}.{_doubt(verdict)}"
-        case Kind.NAMED:
-            return f"{_begin(verdict)} {names[0]}.{_doubt(verdict)}"
+        case Kind.AMBIGUOUS | Kind.PARTIAL:
+            return verdict.naming(names) + _doubt(verdict)
+        case _:
+            return verdict.naming(names, _begin(verdict)) + _doubt(verdict)
 
 
 def tone(verdict: Verdict) -> str:
