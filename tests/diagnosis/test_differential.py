@@ -22,9 +22,10 @@ def rig(seed, size=0.0):
 
 
 def test_a_departure_from_the_baseline_is_told_as_a_change_since_then():
-    values = {"plant.gain": 0.03, "ripple.size": USUAL}
+    values = {"plant.gain": 0.06, "ripple.size": USUAL}
     changed = record(np.random.default_rng(5), values, spread=0.0)
-    found = diagnose(Toy(), [changed], baseline=[rig(2), rig(3)], settings=SETTINGS)
+    plant = Toy().without("ripple")
+    found = diagnose(plant, [changed], baseline=[rig(2), rig(3)], settings=SETTINGS)
     size = found.causes[0].parameters["plant.gain"]
     assert found.causes[0].sigmas == pytest.approx((size.value - size.nominal) / (0.3 * 0.02))
     assert "(at the baseline " in found.words
