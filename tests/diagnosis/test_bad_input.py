@@ -2,20 +2,21 @@
 
 import numpy as np
 import pytest
-from toy import QUICK, Toy, programme, record
+from toy import PERIOD, QUICK, SD, Toy, programme, record
 
 from ves_twin.diagnosis import observe
 from ves_twin.diagnosis.bank import build_bank
 from ves_twin.diagnosis.diagnose import diagnose
 from ves_twin.diagnosis.forward import Programme
 from ves_twin.diagnosis.grid import AnalysisGrid
+from ves_twin.diagnosis.report.limits import limit_sentences
 from ves_twin.diagnosis.report.words import alone_sentences, headline
 from ves_twin.diagnosis.runs import Runs
 from ves_twin.diagnosis.settings import Settings
 from ves_twin.diagnosis.slices import of_channels, of_recording, of_time
 from ves_twin.diagnosis.verdict import Kind
 from ves_twin.errors import InvalidInputError
-from ves_twin.recording.recording import Recording
+from ves_twin.recording.recording import Recording, RecordingInfo
 
 FRICTION = {"friction.size": 0.03}
 
@@ -85,6 +86,50 @@ def test_an_empty_channel_counts_as_not_recorded(settings):
     values[:500, 1] = np.nan
     v = diagnose(Toy(), [with_out(data, values)], settings=settings)
     assert v.unseen == ("out.1",)
+
+
+def dropping(data, share, channels, seed=0):
+    """Every value lost with a probability of its own."""
+    values = data["out"].copy()
+    lost = np.random.default_rng(seed).random(values.shape) < share
+    lost[:, [c for c in range(2) if c not in channels]] = False
+    values[lost] = np.nan
+    return with_out(data, values)
+
+
+def test_a_channel_that_drops_out_all_over_counts_as_not_recorded(settings):
+    data = record(np.random.default_rng(1), FRICTION)
+    v = diagnose(Toy(), [dropping(data, 0.25, (0,))], settings=settings)
+    assert v.unseen == ("out.0",)  # a quarter of 800 rows, and none of 10 in a row without a hole
+    assert v.holes["out.0"] == pytest.approx(0.25, abs=0.05)
+    assert (v.verdict, v.causes[0].effect) == (Kind.NAMED, "friction")
+    assert any("holes all over" in said for said in limit_sentences(v))
+
+
+def test_channels_that_all_drop_out_are_refused(settings):
+    data = record(np.random.default_rng(1), FRICTION)
+    with pytest.raises(InvalidInputError, match="samples between the holes"):
+        diagnose(Toy(), [dropping(data, 0.25, (0, 1))], settings=settings)
+
+
+def test_a_standstill_that_mixes_channels_with_holes_side_by_side_is_refused(settings):
+    data, still = record(np.random.default_rng(1)), np.zeros((3000, 2))
+    still += np.random.default_rng(2).standard_normal(still.shape) * SD
+    time, info = PERIOD * np.arange(len(still)), RecordingInfo("measured")
+    standstill = Recording(time, {"drive.u": 0.0 * still[:, :1], "out": still}, info)
+    values = data["out"].copy()
+    values[5:400:10, 0] = np.nan
+    values[405::10, 1] = np.nan
+    holed = with_out(data, values)
+    diagnose(Toy(), [holed], settings=settings)
+    with pytest.raises(InvalidInputError, match="holes of all channels"):
+        diagnose(Toy(), [holed], standstill=standstill, settings=settings)
+
+
+def test_too_few_rigs_in_order_are_refused_and_not_dropped_without_a_word(settings):
+    rigs = [record(np.random.default_rng(s)) for s in range(3)]
+    with pytest.raises(InvalidInputError, match=r"commissioned rigs.*3.*at least 5"):
+        diagnose(Toy(), rigs[:1], commissioning=rigs, settings=settings)
 
 
 def test_set_points_with_holes_are_refused(settings):

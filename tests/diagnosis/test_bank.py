@@ -115,6 +115,14 @@ def test_a_linear_cause_of_few_tolerances_has_a_size_from_which_it_is_found():
     assert found["gain@plant"] == pytest.approx(goal * 0.02, rel=1e-2)  # it shows fully, soon
 
 
+def test_a_bank_without_causes_is_kept_too(tmp_path):
+    bare = Runs(Toy(causes=(), with_gain=False), (programme(),), (0, 1))
+    for _ in range(2):
+        bank = cached_bank(bare, tmp_path, lambda: build_bank(bare))
+        assert (bank.sizes, len(bank.owner), bank.bent.shape[0]) == ((), 0, 0)
+    assert len(list(tmp_path.iterdir())) == 1
+
+
 def test_processes_change_nothing(runs):
     two = Runs(Toy(), (programme(),), (0, 1), Workers(2))
     assert np.array_equal(build_bank(two).bent, build_bank(runs).bent)

@@ -1,10 +1,13 @@
 """A record against recordings of the same rig in order: what is compared, and what is said."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from toy import Toy, record
 
 from ves_twin.diagnosis.diagnose import diagnose
+from ves_twin.diagnosis.report.words import basis_sentences, headline
 from ves_twin.diagnosis.settings import Settings
 from ves_twin.diagnosis.verdict import Kind
 
@@ -16,6 +19,23 @@ USUAL = 0.03
 def rig(seed, size=0.0):
     values = {"ripple.size": USUAL, "friction.size": size}
     return record(np.random.default_rng(seed), values, spread=0.0)
+
+
+def test_a_departure_from_the_baseline_is_told_as_a_change_since_then():
+    values = {"plant.gain": 0.06, "ripple.size": USUAL}
+    changed = record(np.random.default_rng(5), values, spread=0.0)
+    plant = Toy().without("ripple")
+    found = diagnose(plant, [changed], baseline=[rig(2), rig(3)], settings=SETTINGS)
+    size = found.causes[0].parameters["plant.gain"]
+    assert found.causes[0].sigmas == pytest.approx((size.value - size.nominal) / (0.3 * 0.02))
+    assert "(at the baseline " in found.words
+    loose = replace(found, causes=(replace(found.causes[0], firm=False),))
+    assert "sigmas of a change since then" in loose.words
+    page = headline(loose) + " ".join(basis_sentences(loose))
+    assert "since its baseline" in page
+    for said in (found.words, loose.words, page):
+        assert "declared sigmas" not in said
+        assert "declared tolerances off" not in said
 
 
 @pytest.mark.parametrize("rate", [40.0, 100.0])

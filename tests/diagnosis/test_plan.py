@@ -1,6 +1,7 @@
 """Plans: what they promise is what diagnoses then find, and confuse."""
 
 import json
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -66,6 +67,13 @@ def test_fewer_channels_find_less_and_a_shorter_time_too(settings):
     for less, more in zip(short.prospects, quick.prospects, strict=True):
         assert less.smallest is None or less.smallest > more.smallest
     assert quick.threshold <= whole.threshold
+
+
+def test_a_shorter_time_of_another_rate_is_planned_on_that_rate(settings):
+    fed = replace(programme(), rate=50.0)
+    short = plan_recording(Toy(), fed, seconds=5.0, quick=True, settings=settings)
+    assert short.seconds == pytest.approx(5.0)
+    assert next(p.smallest for p in short.prospects if p.effect == "friction") is not None
 
 
 def vars_of(one, whole):

@@ -15,6 +15,7 @@ from ves_twin.diagnosis.metric import Metric
 from ves_twin.diagnosis.report.trend_page import trend_page
 from ves_twin.diagnosis.report.trend_words import trend_headline
 from ves_twin.diagnosis.settings import Settings
+from ves_twin.diagnosis.trend import trend as trend_module
 from ves_twin.diagnosis.trend.calendar import Calendar
 from ves_twin.diagnosis.trend.change import Course, change_of
 from ves_twin.diagnosis.trend.day import Telling
@@ -232,6 +233,16 @@ def test_a_change_within_the_tolerance_of_commissioning_is_seen_since_days_share
     change = found.change
     assert change.after.value - change.before.value == pytest.approx(0.01, abs=0.002)
     assert found.cause.firm
+
+
+@pytest.mark.slow
+def test_nothing_beside_the_followed_cause_is_said_even_where_the_screen_saw_two_machines(
+    settings, monkeypatch
+):
+    """What the screen laid to several machines, the fits may lay to noise: they are finer."""
+    monkeypatch.setattr(trend_module, "_kind", lambda *_: Answer.NOTHING)
+    found = followed(settings, [0.0] * 6, other=(1, 4), seed=8)
+    assert found.answer is Answer.NOTHING
 
 
 @pytest.mark.slow

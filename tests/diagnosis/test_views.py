@@ -1,11 +1,17 @@
 """Tolerances as declared and as rigs in order show them: which verdict is said."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
+from ves_twin.benches import diagnose_rig
 from ves_twin.benches.pendulum import STEP, Pendulum
 from ves_twin.diagnosis.both_views import both_views
 from ves_twin.diagnosis.forward import Programme
+from ves_twin.diagnosis.gain import Gain
+from ves_twin.diagnosis.refusal import refusal
+from ves_twin.diagnosis.report.words import headline
 from ves_twin.diagnosis.verdict import Basis, Cause, Kind, Statistics, Verdict
 from ves_twin.diagnosis.widened import LEAST, Widened, widening
 
@@ -58,3 +64,36 @@ def test_tolerances_are_widened_on_a_ladder_and_only_where_five_rigs_can_tell():
     assert widening(None) == 1.0
     assert widening(LEAST - 0.01) == 1.0
     assert widening(2.5) == widening(2.6) == pytest.approx(2.5, rel=0.1)
+
+
+def test_kinds_that_name_a_plant_are_those_that_name_causes_and_no_rivals():
+    assert {kind for kind in Kind if kind.names_a_plant} == {
+        Kind.NAMED,
+        Kind.SEVERAL,
+        Kind.PARTIAL,
+    }
+    assert {kind for kind in Kind if kind.names_causes and not kind.names_a_plant} == {
+        Kind.AMBIGUOUS
+    }
+
+
+def test_an_extension_that_cannot_be_carried_on_is_a_candidate_on_every_rig():
+    held = Gain(0.9, 0.8, 1.0, 2.0, 1.1)
+    lost = Gain(-0.5, -0.9, -0.1, 2.0, 2.5)
+    proven = replace(FIRM, gain=held)
+    assert refusal(proven) == ""
+    assert "not beyond their end" in refusal(replace(proven, forecast=lost))
+    assert refusal(replace(proven, forecast=held)) == ""
+    assert "held-out" in refusal(FIRM)
+    assert "not beyond their end" in diagnose_rig._refused(replace(proven, forecast=lost))
+
+
+@pytest.mark.parametrize(
+    ("kind", "begin"), [(Kind.PARTIAL, "Part of it is"), (Kind.SEVERAL, "three causes together:")]
+)
+def test_page_and_terminal_name_every_one_of_several_causes(kind, begin):
+    verdict = said(kind, "a", "b", "c")
+    assert f"{begin} a at x and b at x and c at x." in headline(verdict)
+    terminal = verdict.words.lower()
+    assert begin.lower() in terminal
+    assert all(f"{name} at x" in terminal for name in "abc")

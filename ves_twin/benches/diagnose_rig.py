@@ -14,9 +14,10 @@ from ves_twin.benches.ves2_input import prepare_inputs
 from ves_twin.benches.ves2_menu import offered_programmes
 from ves_twin.diagnosis.diagnose import diagnose
 from ves_twin.diagnosis.forward import Programme
+from ves_twin.diagnosis.refusal import refusal
 from ves_twin.diagnosis.runs import Progress, silent
 from ves_twin.diagnosis.settings import Settings
-from ves_twin.diagnosis.verdict import Cause, Kind, Verdict
+from ves_twin.diagnosis.verdict import Cause, Verdict
 from ves_twin.effects.effect import Effect
 from ves_twin.effects.registry import build_effect
 from ves_twin.errors import InvalidInputError
@@ -24,9 +25,6 @@ from ves_twin.plant.plant import Plant
 from ves_twin.recording.recording import Recording
 from ves_twin.scenario.schema import Scenario
 from ves_twin.simulator.replay import replay_scenario
-
-NAMES_A_PLANT = frozenset({Kind.NAMED, Kind.SEVERAL, Kind.PARTIAL})
-"""Verdicts whose causes, all together, make an extended plant."""
 
 
 @dataclass(frozen=True)
@@ -115,8 +113,8 @@ def diagnose_rig(
         progress=progress,
     )
     flaws = (*measured.flaws, *others.flaws, *rigs.flaws, *usual.flaws)
-    verdict = replace(verdict, causes=tuple(map(_shortened, verdict.causes)), quality=flaws)
-    if verdict.verdict not in NAMES_A_PLANT:
+    verdict = replace(verdict, causes=tuple(c.shortened for c in verdict.causes), quality=flaws)
+    if not verdict.verdict.names_a_plant:
         best = verdict.next_experiment[0].programme if verdict.next_experiment else ""
         chosen = next((p for p in offered if p.name == best), None)
         why = f"the verdict is {verdict.verdict.value}"
@@ -144,7 +142,7 @@ def effects_of(verdict: Verdict) -> tuple[Effect, ...]:
 
     A filter at another place is no part of a plant: that is the scenario's `legs.filter`.
     """
-    if verdict.verdict not in NAMES_A_PLANT:
+    if not verdict.verdict.names_a_plant:
         return ()
     return tuple(effect_of(c) for c in verdict.causes if c.effect != FILTER_PLACE)
 
@@ -155,24 +153,11 @@ def effect_of(cause: Cause) -> Effect:
     return build_effect(cause.effect, cause.target, sizes)
 
 
-def _shortened(cause: Cause) -> Cause:
-    """Magnitudes as an effect calls them: "null" for "valve_null@leg.3:null"."""
-    short = {name.rpartition(":")[2]: value for name, value in cause.parameters.items()}
-    return replace(cause, parameters=short)
-
-
 def _refused(verdict: Verdict) -> str:
     places = [cause.target for cause in verdict.causes if cause.effect == FILTER_PLACE]
     if places:
         return f'no plant has the leg program: run scenarios with legs.filter = "{places[0]}"'
-    gain = verdict.gain
-    if gain is None:
-        return "there were no held-out recordings to prove it on"
-    if gain.share is None:
-        return "the held-out recordings show nothing that it could improve"
-    if not gain.passed:
-        return f"its gain on held-out recordings is not clear of zero (from {gain.low:.2f})"
-    return ""
+    return refusal(verdict)
 
 
 def one_step(scenario: Scenario) -> Scenario:

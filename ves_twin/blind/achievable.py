@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from ves_twin.diagnosis.conclude import whitening_of
 from ves_twin.diagnosis.forward import Forward
 from ves_twin.diagnosis.metric import Metric
 from ves_twin.diagnosis.observe import observe
+from ves_twin.diagnosis.whitening import whitening_of
 from ves_twin.recording.recording import Recording
 
 

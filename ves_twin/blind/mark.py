@@ -13,9 +13,10 @@ from ves_twin.blind.rate import Rate
 from ves_twin.blind.seal import unseal
 from ves_twin.blind.suite import load_suite
 from ves_twin.blind.truth import Hidden, Truth
+from ves_twin.diagnosis.verdict import Kind
 from ves_twin.errors import FileAccessError, InvalidInputError
 
-NAMES = frozenset({"named", "several", "partial"})
+NAMES = frozenset(kind.value for kind in Kind if kind.names_a_plant)
 """Verdicts that name causes for good."""
 
 Pair = tuple[Truth, Answer]

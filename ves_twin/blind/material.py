@@ -14,7 +14,6 @@ from ves_twin.blind.suite import (
     commissioning_file,
     next_file,
 )
-from ves_twin.errors import InvalidInputError
 from ves_twin.recording.files import load_recording
 from ves_twin.recording.recording import Recording
 
@@ -65,14 +64,3 @@ class Material:
             tuple(load_recording(folder / commissioning_file(k + 1)) for k in range(count)),
             (load_recording(place / BASELINE),) if has_baseline else (),
         )
-
-
-def check_commissioned(count: int, fewest: int) -> None:
-    """Refuse rigs in order that are too few to tell the tolerances.
-
-    Raises:
-        InvalidInputError: some, but fewer.
-    """
-    if 0 < count < fewest:
-        expected = f"none, or at least {fewest}: fewer do not tell the tolerances"
-        raise InvalidInputError("commissioned rigs", count, expected)

@@ -123,10 +123,9 @@ def _make(arguments: argparse.Namespace, folder: Path, key: Path) -> int:
 
 
 def _recipe(arguments: argparse.Namespace) -> Recipe:
-    from ves_twin.blind.material import check_commissioned
     from ves_twin.blind.recipe import Recipe
     from ves_twin.blind.truth import Hidden
-    from ves_twin.diagnosis.tolerances import FEWEST
+    from ves_twin.diagnosis.tolerances import FEWEST, check_commissioned
 
     counts = {sort: getattr(arguments, sort) for sort in QUICK}
     if arguments.cases is not None:

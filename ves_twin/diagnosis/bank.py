@@ -210,7 +210,7 @@ def cached_bank(runs: Runs, folder: Path | None, build: Callable[[], Bank]) -> B
         columns=bank.base.columns,
         bends=bank.base.bends,
         owner=bank.owner,
-        sizes=np.concatenate(bank.sizes),
+        sizes=np.concatenate([*bank.sizes, np.zeros(0)]),
         shape=bank.shape,
         factor=bank.factor,
         bent=bank.bent,
@@ -258,7 +258,7 @@ def _read(path: Path, runs: Runs) -> Bank:
     with np.load(path) as content:
         owner = content["owner"]
         widths = [len(runs.forward.hypotheses[i].parameters) for i in owner]
-        sizes = tuple(np.split(content["sizes"], np.cumsum(widths)[:-1]))
+        sizes = tuple(np.split(content["sizes"], np.cumsum(widths)[:-1])) if widths else ()
         parts = (content[name] for name in ("prediction", "columns", "bends"))
         base = Linearisation(runs, runs.origin, *parts)
         shape, factor, bent = (content[name] for name in ("shape", "factor", "bent"))

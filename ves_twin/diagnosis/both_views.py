@@ -4,9 +4,6 @@ from __future__ import annotations
 
 from ves_twin.diagnosis.verdict import Kind, Verdict
 
-FIRM_KINDS = frozenset({Kind.NAMED, Kind.SEVERAL, Kind.PARTIAL})
-"""Verdicts that name causes for good."""
-
 
 def both_views(declared: Verdict, measured: Verdict) -> Verdict:
     """Which of the two is said.
@@ -31,13 +28,12 @@ def both_views(declared: Verdict, measured: Verdict) -> Verdict:
 
 def is_firm(verdict: Verdict) -> bool:
     """Whether every cause that it names is a fault for sure, and it names some for good."""
-    named = verdict.verdict in FIRM_KINDS
-    return named and all(cause.firm for cause in verdict.causes)
+    return verdict.verdict.names_a_plant and all(cause.firm for cause in verdict.causes)
 
 
 def _firm_rival(declared: Verdict, measured: Verdict) -> bool:
     """Whether the wider view explains the record by something else."""
-    if measured.verdict not in (*FIRM_KINDS, Kind.AMBIGUOUS):
+    if not measured.verdict.names_causes:
         return False
     names = {(c.effect, c.target) for c in declared.causes}
     return not names <= {(c.effect, c.target) for c in measured.causes}

@@ -75,7 +75,7 @@ def compose(
 ) -> Verdict:
     """The verdict; causes only where the kind names some."""
     first, found, limits = findings.first, findings.found, findings.limits
-    named = found is not None and kind not in (Kind.NOTHING, Kind.UNKNOWN)
+    named = found is not None and kind.names_causes
     causes, alternatives = _causes(findings, found) if named and found else ((), ())
     exhibit = exhibit_of(findings.seen, first, found)
     sizes = findable_sizes(first.screen, limits.effect)

@@ -15,10 +15,9 @@ from ves_twin.diagnosis.forward import Forward
 from ves_twin.diagnosis.gain import Gain, held_out_gain
 from ves_twin.diagnosis.observe import Observed, observe
 from ves_twin.diagnosis.refine import Fit, refine
-from ves_twin.diagnosis.runs import Runs
 from ves_twin.diagnosis.settings import Settings
 from ves_twin.diagnosis.verdict import Kind
-from ves_twin.diagnosis.whitening import Whitening, whitening_declared, whitening_measured
+from ves_twin.diagnosis.whitening import Whitening, whitening_of
 from ves_twin.recording.recording import Recording
 from ves_twin.workers import Workers
 
@@ -106,21 +105,21 @@ class HeldOut:
         return [first, *(self.gain(before, fit) for fit in rivals)]
 
 
-def whitening_of(runs: Runs, standstill: Recording | None) -> Whitening:
-    """Noise as a standstill recording tells it, else as declared."""
-    return whitening_declared(runs) if standstill is None else whitening_measured(runs, standstill)
-
-
 def conclude(
-    desk: Desk, forward: Forward, recordings: Sequence[Recording], held: HeldOut | None
+    desk: Desk,
+    forward: Forward,
+    recordings: Sequence[Recording],
+    held: HeldOut | None,
+    standstill: Recording | None = None,
 ) -> Conclusion:
     """Explain a record, and see what the explanation is worth elsewhere.
 
     Args:
         desk: the record before any cause, over a threshold.
-        forward: the plant.
+        forward: the plant, tuned to its rig where there is a baseline.
         recordings: all, fitted and held out.
         held: those held out.
+        standstill: tells the noise; the declared one is taken without it.
     """
     found = explain(desk.first, desk.thresholds, desk.settings, desk.progress)
     if found is None:
@@ -131,10 +130,13 @@ def conclude(
     found = _probed(found)
     limit = pull_limit(desk.first.screen.bank, desk.settings.alpha)
     together = grown and len(found.best.causes) > 1
-    least = MOST if together else ALMOST
+    least = MOST if together else ALMOST  # causes together were proved one by one
     gains = held.gains(found, limit, least) if held else []
-    kind = _kind(found, gains, least)
-    ahead = _forecast(forward, recordings, found, desk.settings) if _names(kind) else None
+    kind = _kind(found, gains, together)
+    ahead = None
+    if kind.names_causes and any(cause.transient for cause in found.best.causes):
+        workers = desk.first.screen.bank.base.runs.workers
+        ahead = forecast(forward, recordings, found.best, desk.settings, standstill, workers)
     return Conclusion(found, kind, gains[0] if gains else None, ahead)
 
 
@@ -150,33 +152,20 @@ def _probed(found: Explanation) -> Explanation:
     return replace(found, chosen=chosen, fits=fits)
 
 
-def _names(kind: Kind) -> bool:
-    return kind not in (Kind.NOTHING, Kind.UNKNOWN)
-
-
-def _kind(found: Explanation, gains: Sequence[Gain], least: float) -> Kind:
+def _kind(found: Explanation, gains: Sequence[Gain], proved: bool) -> Kind:
     if not found.adequate:
-        return Kind.PARTIAL if _beats(found, gains, least) else Kind.UNKNOWN
+        return Kind.PARTIAL if _beats(found, gains, proved) else Kind.UNKNOWN
     if len(found.chosen) > 1:
         return Kind.AMBIGUOUS
     return Kind.NAMED if len(found.best.causes) == 1 else Kind.SEVERAL
 
 
-def _beats(found: Explanation, gains: Sequence[Gain], least: float) -> bool:
+def _beats(found: Explanation, gains: Sequence[Gain], proved: bool) -> bool:
     """Whether the causes take most of the held-out excess away, and no rival nearly as much.
 
-    Of causes together each was proved against its rivals already.
+    Of causes that were `proved` one by one each has stood against its rivals already.
     """
     if len(found.chosen) > 1 or not gains or gains[0].low is None:
         return False
-    rivals = [] if least == MOST else [gain.share or 0.0 for gain in gains[1:]]
-    return gains[0].low > max([least, *rivals])
-
-
-def _forecast(
-    forward: Forward, recordings: Sequence[Recording], found: Explanation, settings: Settings
-) -> Gain | None:
-    """Gain ahead in time, of causes whose sizes belong to the recorded stretch of it."""
-    if not any(cause.transient for cause in found.best.causes):
-        return None
-    return forecast(forward, recordings, found.best, settings)
+    rivals = [] if proved else [gain.share or 0.0 for gain in gains[1:]]
+    return gains[0].low > max([MOST if proved else ALMOST, *rivals])

@@ -9,7 +9,7 @@ from ves_twin.diagnosis.assess import assess, pull_limit
 from ves_twin.diagnosis.bank import Bank, build_bank, cached_bank
 from ves_twin.diagnosis.both_views import both_views, is_firm
 from ves_twin.diagnosis.compose import Findings, compose
-from ves_twin.diagnosis.conclude import HeldOut, conclude, whitening_of
+from ves_twin.diagnosis.conclude import HeldOut, conclude
 from ves_twin.diagnosis.differential import differential
 from ves_twin.diagnosis.disagreement import Alone, disagreement
 from ves_twin.diagnosis.explain import Desk, Explanation, explain
@@ -20,9 +20,9 @@ from ves_twin.diagnosis.null import cached_thresholds
 from ves_twin.diagnosis.observe import Observed, observe
 from ves_twin.diagnosis.runs import Progress, Runs, silent
 from ves_twin.diagnosis.settings import Settings
-from ves_twin.diagnosis.tolerances import FEWEST, cached_scale, naming_limit
+from ves_twin.diagnosis.tolerances import cached_scale, check_commissioned, naming_limit
 from ves_twin.diagnosis.verdict import Basis, Kind, Proposal, Verdict
-from ves_twin.diagnosis.whitening import Whitening
+from ves_twin.diagnosis.whitening import Whitening, whitening_of
 from ves_twin.diagnosis.widened import Widened, widening
 from ves_twin.errors import UnknownNameError
 from ves_twin.recording.recording import Recording
@@ -63,12 +63,13 @@ def diagnose(
         progress: told what is being done.
 
     Raises:
-        InvalidInputError: recordings that cannot be compared, or columns that look swapped, turned
-            or in other units.
+        InvalidInputError: recordings that cannot be compared, columns that look swapped, turned
+            or in other units, or too few rigs in order to tell the tolerances.
         UnknownNameError: a signal that is not recorded, or an unknown cause in `exclude`.
     """
     chosen = settings or Settings()
     _check_causes(forward, exclude)
+    check_commissioned(len(commissioning))
     with Workers(chosen.workers) as workers:
         scale = _scale(forward, commissioning, workers, chosen)
         material = _Material(
@@ -168,7 +169,7 @@ class _View:
         held_out, still, workers = material.held_out, material.standstill, seen.runs.workers
         own = seen.runs.forward  # tuned to this rig where there is a baseline
         held = HeldOut.of(own, held_out, still, chosen, workers) if held_out else None
-        end = conclude(desk, self.forward, (*material.recordings, *held_out), held)
+        end = conclude(desk, own, (*material.recordings, *held_out), held, still)
         found, kind = end.found, end.kind
         ambiguous = kind is Kind.AMBIGUOUS
         proposals = _next(seen.runs, found, material.next_programmes) if ambiguous else ()
@@ -240,7 +241,7 @@ def _basis(material: _Material) -> Basis:
 def _scale(
     forward: Forward, commissioning: Sequence[Recording], workers: Workers, chosen: Settings
 ) -> float | None:
-    if len(commissioning) < FEWEST:
+    if not commissioning:
         return None
     rigs = [observe(forward, [recording], workers, chosen.rate) for recording in commissioning]
     return cached_scale([(rig.runs, rig.measured) for rig in rigs], chosen.cache)

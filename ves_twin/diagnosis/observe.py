@@ -10,6 +10,7 @@ import numpy as np
 from ves_twin.diagnosis.forward import Channel, Forward, Programme, check_forward
 from ves_twin.diagnosis.grid import RATE
 from ves_twin.diagnosis.runs import Runs
+from ves_twin.diagnosis.whitening import FEWEST, ORDER, whole
 from ves_twin.errors import InvalidInputError, UnknownNameError
 from ves_twin.recording.recording import Recording
 from ves_twin.types import BoolArray, FloatArray, SingleArray
@@ -35,7 +36,7 @@ class Observed:
     Attributes:
         runs: predictions of all recordings.
         measured: channels on the grid (rows, c).
-        unseen: channels of the plant that are not in every recording.
+        unseen: channels of the plant that are not in every recording, or have holes all over.
         holes: share of the rows without a value, of each channel that has some.
     """
 
@@ -61,8 +62,8 @@ def observe(
 
     Raises:
         UnknownNameError: a drive signal that is not recorded, or no channel of the plant at all.
-        InvalidInputError: no recording, rows that are missing, set-points without a value, or too
-            short a recording.
+        InvalidInputError: no recording, rows that are missing, set-points without a value, too
+            short a recording, or holes all over every channel.
     """
     check_forward(forward)
     if not recordings:
@@ -75,32 +76,69 @@ def observe(
     if not columns:
         wanted = forward.channels[0].signal
         raise UnknownNameError("signal in the recordings", wanted, recordings[0].signals)
-    channels = [forward.channels[c] for c in columns]
     programmes, rows = [], []
     for k, recording in enumerate(recordings):
         name = recording.info.scenario or f"recording {k + 1}"
         _check_drive(recording, forward.drive, name)
         programmes.append(Programme.of(recording, forward.drive, name, rate))
-        rows.append(np.stack([recording[c.signal][:, c.column] for c in channels], axis=1))
+        rows.append(_rows(recording, [forward.channels[c] for c in columns]))
     runs = Runs(forward, tuple(programmes), columns, workers or Workers())
+    _check_length(runs)
     empty = [~np.isfinite(piece) for piece in rows]
-    marked = [
-        grid.touched(bad) | _settling(runs, k, channels)
-        for k, (grid, bad) in enumerate(zip(runs.grids, empty, strict=True))
-    ]
-    if any(bad.any() for bad in marked):
-        runs = replace(runs, holes=tuple(marked))
-    for programme, time in zip(programmes, runs.times, strict=True):
+    lost = np.mean(np.concatenate(empty), axis=0)
+    names = [forward.channels[c].name for c in columns]
+    holes = {name: float(share) for name, share in zip(names, lost, strict=True) if share > 0.0}
+    marked = _marked(runs, empty)
+    sound = _sound(runs, marked)
+    runs = replace(runs, columns=tuple(np.array(columns)[sound].tolist()))
+    if any(bad[:, sound].any() for bad in marked):
+        runs = replace(runs, holes=tuple(bad[:, sound] for bad in marked))
+    pairs = zip(runs.grids, rows, strict=True)
+    stacks = [grid.reduce(_bridged(piece[:, sound])) for grid, piece in pairs]
+    unseen = [channel.name for c, channel in enumerate(forward.channels) if c not in runs.columns]
+    return Observed(runs, np.concatenate(stacks), tuple(unseen), holes)
+
+
+def _rows(recording: Recording, channels: Sequence[Channel]) -> FloatArray:
+    return np.stack([recording[c.signal][:, c.column] for c in channels], axis=1)
+
+
+def _check_length(runs: Runs) -> None:
+    """Refuse a recording in which bands and stretches of time mean nothing."""
+    for programme, time in zip(runs.programmes, runs.times, strict=True):
         fewest = FEWEST_POSES if programme.poses else FEWEST_ROWS
         if len(time) < fewest:
             raise InvalidInputError(
                 f"rows of {programme.name} on the grid", len(time), f"at least {fewest}"
             )
-    stacks = [grid.reduce(_bridged(piece)) for grid, piece in zip(runs.grids, rows, strict=True)]
-    lost = np.mean(np.concatenate(empty), axis=0)
-    holes = {c.name: float(share) for c, share in zip(channels, lost, strict=True) if share > 0.0}
-    unseen = [channel.name for c, channel in enumerate(forward.channels) if c not in columns]
-    return Observed(runs, np.concatenate(stacks), tuple(unseen), holes)
+
+
+def _marked(runs: Runs, empty: Sequence[BoolArray]) -> list[BoolArray]:
+    """Rows of the grid (m, c) of each recording that tell nothing: of holes, or too early."""
+    channels = [runs.forward.channels[c] for c in runs.columns]
+    return [
+        grid.touched(bad) | _settling(runs, k, channels)
+        for k, (grid, bad) in enumerate(zip(runs.grids, empty, strict=True))
+    ]
+
+
+def _sound(runs: Runs, marked: Sequence[BoolArray]) -> BoolArray:
+    """Channels (c,) of which every recording has enough samples that no hole reaches."""
+    counts = [
+        np.sum(whole(bad, ORDER + 1), axis=0)
+        for programme, bad in zip(runs.programmes, marked, strict=True)
+        if not programme.poses
+    ]
+    if not counts:
+        return np.ones(len(runs.columns), bool)
+    fewest = np.min(counts, axis=0)
+    if np.all(fewest < FEWEST):
+        raise InvalidInputError(
+            "samples between the holes of the recordings",
+            int(np.max(fewest)),
+            f"at least {FEWEST} of one channel: a missing row takes the rows about it with it",
+        )
+    return np.asarray(fewest >= FEWEST)
 
 
 def _settling(runs: Runs, recording: int, channels: Sequence[Channel]) -> BoolArray:

@@ -8,7 +8,6 @@ from dataclasses import replace
 import numpy as np
 
 from ves_twin.diagnosis.bank import Bank
-from ves_twin.diagnosis.forward import Programme
 from ves_twin.diagnosis.linearise import Linearisation
 from ves_twin.diagnosis.runs import Runs
 from ves_twin.types import IntArray
@@ -60,7 +59,7 @@ def of_time(bank: Bank, seconds: float) -> Bank:
     fed = runs.programmes[0]
     count = int(np.searchsorted(fed.time, fed.time[0] + seconds + 0.5 * fed.period))
     drive = {name: values[:count] for name, values in fed.drive.items()}
-    part = replace(runs, programmes=(Programme(fed.name, fed.time[:count], drive),))
+    part = replace(runs, programmes=(replace(fed, time=fed.time[:count], drive=drive),))
     every = range(len(bank.base.columns))
     return _part(bank, part, list(every), np.arange(len(part.times[0])))
 

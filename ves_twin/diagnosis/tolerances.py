@@ -15,6 +15,7 @@ from ves_twin.diagnosis.linearise import linearise
 from ves_twin.diagnosis.refine import bare_residual, refine, residual_about
 from ves_twin.diagnosis.runs import Runs
 from ves_twin.diagnosis.whitening import whitening_declared
+from ves_twin.errors import InvalidInputError
 from ves_twin.types import FloatArray, SingleArray
 
 VISIBLE = 3.0
@@ -28,6 +29,17 @@ FEWEST = 5
 
 ALPHA = 0.01
 """Probability that any of the tolerances of a rig in order passes kappa."""
+
+
+def check_commissioned(count: int, fewest: int = FEWEST) -> None:
+    """Refuse rigs in order that are too few to tell the tolerances.
+
+    Raises:
+        InvalidInputError: some, but fewer.
+    """
+    if 0 < count < fewest:
+        expected = f"none, or at least {fewest}: fewer do not tell the tolerances"
+        raise InvalidInputError("commissioned rigs", count, expected)
 
 
 def tolerance_scale(rigs: Sequence[tuple[Runs, SingleArray]]) -> float:

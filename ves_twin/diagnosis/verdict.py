@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass, field, replace
 from enum import StrEnum
 from pathlib import Path
@@ -20,6 +20,9 @@ from ves_twin.whole_file import write_whole
 
 MANY = 6
 """Parameters of a cause that are told one by one."""
+
+COUNTS = {2: "two", 3: "three", 4: "four"}
+"""Numbers of causes as words."""
 
 SCHEMA = 1
 """Version of verdict.json; fields are added without a new one, never changed."""
@@ -39,12 +42,23 @@ class Kind(StrEnum):
     PARTIAL = "partial"
     UNKNOWN = "unknown"
 
+    @property
+    def names_a_plant(self) -> bool:
+        """Whether its causes, all together, are meant: they make an extended plant."""
+        return self in (Kind.NAMED, Kind.SEVERAL, Kind.PARTIAL)
+
+    @property
+    def names_causes(self) -> bool:
+        """Whether it names causes at all, rivals of one another too."""
+        return self.names_a_plant or self is Kind.AMBIGUOUS
+
 
 @dataclass(frozen=True)
 class Estimate:
     """A parameter's value and interval; the interval is of the fault's share of the departure.
 
-    `nominal` is the model's value; value - nominal holds the commissioning error too.
+    `nominal` is where the departure counts from: the model's value, so that value - nominal holds
+    the commissioning error too; with a baseline, what this rig had then.
     """
 
     value: float
@@ -56,8 +70,12 @@ class Estimate:
     @property
     def words(self) -> str:
         """The value with its unit, nominal and interval."""
+        return self.told("nominal")
+
+    def told(self, origin: str) -> str:
+        """The same; `origin` says what the departure counts from."""
         span = f"{self.low:.4g} to {self.high:.4g}"
-        return f"{self.value:.4g}{unit_tail(self.unit)} (nominal {self.nominal:.4g}; {span})"
+        return f"{self.value:.4g}{unit_tail(self.unit)} ({origin} {self.nominal:.4g}; {span})"
 
 
 @dataclass(frozen=True)
@@ -69,7 +87,8 @@ class Cause:
         parameters: name -> estimate.
         probability: given the library and that one of its causes, or pairs, is at work.
         firm: False where a commissioning error of `sigmas` declared sd is not excluded.
-        sigmas: largest departure in declared sd; None if it is no commissioning parameter.
+        sigmas: largest departure in declared sd, with a baseline in sd of what a rig in order may
+            change by since then; None if it is no commissioning parameter.
     """
 
     effect: str
@@ -78,6 +97,12 @@ class Cause:
     probability: float
     firm: bool
     sigmas: float | None
+
+    @property
+    def shortened(self) -> Cause:
+        """With sizes as an effect calls them: "null" for "valve_null@leg.3:null"."""
+        short = {name.rpartition(":")[2]: value for name, value in self.parameters.items()}
+        return replace(self, parameters=short)
 
     @property
     def largest(self) -> dict[str, Estimate]:
@@ -214,15 +239,31 @@ class Verdict:
             case Kind.UNKNOWN:
                 hint = f"; the nearest of its causes is {self.suspect}" if self.suspect else ""
                 return f"Something is wrong that the library does not explain{hint}."
-            case Kind.AMBIGUOUS:
-                names = [" with ".join(self._name(i) for i in a) for a in self.alternatives]
-                return f"One of these, and this recording cannot tell which: {'; '.join(names)}."
-            case Kind.PARTIAL:
-                verb = "are" if len(self.causes) > 1 else "is"
-                rest = "something more stays unexplained."
-                return f"{self._all()} {verb} part of it; {rest}{self.limit}"
             case _:
-                return f"{self._all()}.{self.limit}"
+                limit = "" if self.verdict is Kind.AMBIGUOUS else self.limit
+                return self.naming([self._name(i) for i in range(len(self.causes))]) + limit
+
+    def naming(self, names: Sequence[str], begin: str = "") -> str:
+        """The sentence of a verdict that names causes.
+
+        Args:
+            names: of its causes, one each.
+            begin: words before what explains the record; none if empty.
+        """
+        every, begin = " and ".join(names), f"{begin} " if begin else ""
+        match self.verdict:
+            case Kind.AMBIGUOUS:
+                groups = [" with ".join(names[i] for i in a) for a in self.alternatives]
+                listed = "; ".join(groups)
+                return f"One of these {len(groups)}, and the recording cannot tell which: {listed}."
+            case Kind.PARTIAL:
+                return f"Part of it is {every}. Something more stays unexplained."
+            case Kind.SEVERAL:
+                count = COUNTS.get(len(names), str(len(names)))
+                count = count if begin else count.capitalize()
+                return f"{begin}{count} causes together: {every}."
+            case _:
+                return f"{begin}{every}."
 
     @property
     def limit(self) -> str:
@@ -237,16 +278,19 @@ class Verdict:
             f" time {name} is {after:.3g} {unit} off with it, {before:.3g} {unit} without."
         )
 
-    def _all(self) -> str:
-        return " and ".join(self._name(i) for i in range(len(self.causes)))
-
     def _name(self, number: int) -> str:
         cause = self.causes[number]
         shown = list(cause.largest.items())
         many = len(cause.parameters)
         told = f"{many} numbers, the largest " if many > MANY else ""
-        sizes = ", ".join(f"{name} = {p.words}" for name, p in (shown[:1] if told else shown))
+        changed = self.basis.baseline == "measured"
+        origin = "at the baseline" if changed else "nominal"
+        sizes = ", ".join(
+            f"{name} = {p.told(origin)}" for name, p in (shown[:1] if told else shown)
+        )
         text = f"{cause.effect} at {cause.target}: {told}{sizes}"
         if cause.firm:
             return text
+        if changed:
+            return f"{text}, {cause.sigmas:.1f} sigmas of a change since then: fault or drift"
         return f"{text}, {cause.sigmas:.1f} declared sigmas off: fault or commissioning error"

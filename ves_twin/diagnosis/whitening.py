@@ -13,7 +13,7 @@ from scipy.signal import lfilter
 from ves_twin.diagnosis.runs import Runs
 from ves_twin.errors import InvalidInputError
 from ves_twin.recording.recording import Recording
-from ves_twin.types import FloatArray, SingleArray
+from ves_twin.types import BoolArray, FloatArray, SingleArray
 
 ORDER = 8
 """Order of the autoregression, as in the study behind the method (AR(8))."""
@@ -26,6 +26,9 @@ FLOOR_FROM = 0.3
 
 LEVEL_RANGE = (0.4, 2.5)
 """Limits of the noise power that a record may claim for itself, against the declared one."""
+
+FEWEST = 70
+"""Whitened samples of a channel between its holes below which its noise cannot be told."""
 
 COLOURS = np.linspace(-0.3, 0.45, 31)
 """Lag-one colours that are tried when a record's own noise is fitted."""
@@ -86,9 +89,7 @@ class Whitening:
         for k, (bad, mixing) in enumerate(zip(self.runs.holes, self.mixing, strict=True)):
             mixed = np.count_nonzero(mixing - np.diag(np.diag(mixing))) > 0
             each = np.repeat(bad.any(axis=1, keepdims=True), bad.shape[1], 1) if mixed else bad
-            first = self.lost(k)
-            lost = [each[j : len(each) - first + j] for j in range(first + 1)]
-            parts.append(1.0 - np.any(lost, axis=0).astype(float).ravel())
+            parts.append(whole(each, self.lost(k)).astype(float).ravel())
         return np.concatenate(parts)
 
     @cached_property
@@ -188,6 +189,22 @@ class Whitening:
         return np.asarray((white[..., 1:, :] - self.colour[k] * white[..., :-1, :]) / self.level[k])
 
 
+def whitening_of(runs: Runs, standstill: Recording | None) -> Whitening:
+    """Noise as a standstill recording tells it, else as declared."""
+    return whitening_declared(runs) if standstill is None else whitening_measured(runs, standstill)
+
+
+def whole(bad: BoolArray, memory: int) -> BoolArray:
+    """Samples that rest on measurements alone (rows - memory, c).
+
+    Args:
+        bad: rows of the grid without a measurement (rows, c).
+        memory: earlier rows that a sample rests on.
+    """
+    lost = [bad[j : len(bad) - memory + j] for j in range(memory + 1)]
+    return np.asarray(~np.any(lost, axis=0))
+
+
 def whitening_declared(runs: Runs) -> Whitening:
     """Whitening from the declared noise of each channel, as the analysis grid shapes it."""
     channels = [runs.forward.channels[c] for c in runs.columns]
@@ -232,7 +249,16 @@ def whitening_measured(runs: Runs, standstill: Recording) -> Whitening:
     inner = np.stack([lfilter(a, [1.0], noise[:, c])[ORDER:] for c, a in enumerate(filters)])
     correlation = np.atleast_2d(np.corrcoef(inner))
     copies = len(runs.grids)
-    return replace(_whitening(runs, [covariance] * copies, [correlation] * copies), measured=True)
+    found = _whitening(runs, [covariance] * copies, [correlation] * copies)
+    for programme, kept in zip(runs.programmes, found.blocks(found.freedom), strict=True):
+        count = int(np.min(np.sum(kept, axis=0)))
+        if count < FEWEST and not programme.poses:
+            raise InvalidInputError(
+                f"samples of {programme.name} between the holes of all channels",
+                count,
+                f"at least {FEWEST}: a standstill mixes the channels; leave the holed ones out",
+            )
+    return replace(found, measured=True)
 
 
 def _whitening(

@@ -8,17 +8,14 @@ from time import perf_counter
 
 from ves_twin.diagnosis.diagnose import diagnose
 from ves_twin.diagnosis.forward import Programme
+from ves_twin.diagnosis.refusal import refusal
 from ves_twin.diagnosis.runs import Progress, silent
 from ves_twin.diagnosis.settings import Settings
-from ves_twin.diagnosis.verdict import Cause, Kind, Verdict
+from ves_twin.diagnosis.verdict import Verdict
 from ves_twin.recording.recording import Recording
 from ves_twin.rigs.extend import extended
 from ves_twin.rigs.forward import MjcfForward
 from ves_twin.rigs.rig import Rig
-
-NAMES = frozenset({Kind.NAMED, Kind.SEVERAL, Kind.PARTIAL})
-"""Verdicts whose causes, all together, make an extended rig."""
-
 
 WORTH_A_PROCESS = 0.3
 """Time of one prediction [s] from which other processes, which take seconds to begin, pay."""
@@ -85,11 +82,11 @@ def diagnose_mjcf(
         settings=chosen,
         progress=progress,
     )
-    new = extended(rig, verdict) if verdict.verdict in NAMES else None
-    verdict = replace(verdict, causes=tuple(map(_shortened, verdict.causes)))
+    new = extended(rig, verdict) if verdict.verdict.names_a_plant else None
+    verdict = replace(verdict, causes=tuple(c.shortened for c in verdict.causes))
     if new is None:
         return MjcfDiagnosis(verdict, None, f"the verdict is {verdict.verdict.value}")
-    return MjcfDiagnosis(verdict, new, _refused(verdict))
+    return MjcfDiagnosis(verdict, new, refusal(verdict))
 
 
 def is_quick(forward: MjcfForward, recording: Recording, rate: float) -> bool:
@@ -98,22 +95,3 @@ def is_quick(forward: MjcfForward, recording: Recording, rate: float) -> bool:
     begin = perf_counter()
     forward.simulate(programme, {})
     return perf_counter() - begin < WORTH_A_PROCESS
-
-
-def _shortened(cause: Cause) -> Cause:
-    """Sizes as an effect calls them: "damping" for "viscous_friction@axis:damping"."""
-    short = {name.rpartition(":")[2]: value for name, value in cause.parameters.items()}
-    return replace(cause, parameters=short)
-
-
-def _refused(verdict: Verdict) -> str:
-    gain, ahead = verdict.gain, verdict.forecast
-    if gain is None:
-        return "there were no held-out recordings to prove it on"
-    if gain.share is None:
-        return "the held-out recordings show nothing that it could improve"
-    if not gain.passed:
-        return f"its gain on held-out recordings is not clear of zero (from {gain.low:.2f})"
-    if ahead is not None and not ahead.carries_on:
-        return "it holds between the recordings it was fitted to and not beyond their end"
-    return ""

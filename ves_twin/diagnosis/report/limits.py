@@ -41,7 +41,7 @@ def limit_sentences(verdict: Verdict) -> tuple[str, ...]:
     """What the verdict does not prove."""
     count = len(verdict.smallest_findable)
     said = [
-        f"The library has {count} causes of one number. What it lacks is never named; at best"
+        f"The library has {count} causes. What it lacks is never named; at best"
         " something is said to be left."
     ]
     if verdict.excluded:
@@ -61,7 +61,10 @@ def limit_sentences(verdict: Verdict) -> tuple[str, ...]:
             " would look like a cause; names below that are called provisional."
         )
     if verdict.unseen:
-        said.append(f"Not recorded, so nothing is known of it: {', '.join(verdict.unseen)}.")
+        said.append(
+            "Not recorded, or with holes all over, so nothing is known of it:"
+            f" {', '.join(verdict.unseen)}."
+        )
     if verdict.holes:
         told = ", ".join(f"{name} {percent(share)}" for name, share in verdict.holes.items())
         said.append(f"Rows without a value, which were left out: {told}.")

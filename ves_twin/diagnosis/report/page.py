@@ -66,7 +66,7 @@ def _answer(verdict: Verdict, plant: str) -> Html:
     """The first screen: verdict, cause, size, gain, basis."""
     parts = [paragraph(headline(verdict), f"lead {tone(verdict)}")]
     if verdict.causes:
-        head = ("cause", "size", "90 % interval", "nominal", "probability", "standing")
+        head = ("cause", "size", "90 % interval", _origin(verdict), "probability", "standing")
         parts.append(table(head, [row for c in verdict.causes for row in _cause(c, verdict)]))
         parts += [
             paragraph(
@@ -92,6 +92,11 @@ def _answer(verdict: Verdict, plant: str) -> Html:
     return joined(parts)
 
 
+def _origin(verdict: Verdict) -> str:
+    """What departures count from."""
+    return "the baseline" if verdict.basis.baseline == "measured" else "nominal"
+
+
 def _cause(cause: Cause, verdict: Verdict) -> list[tuple[str, ...]]:
     standing = "firm" if cause.firm else f"provisional, {cause.sigmas or 0.0:.1f} tolerances off"
     if verdict.verdict is Kind.AMBIGUOUS:
@@ -99,8 +104,8 @@ def _cause(cause: Cause, verdict: Verdict) -> list[tuple[str, ...]]:
     return [
         (
             name_of(cause) if len(cause.parameters) == 1 else f"{name_of(cause)}: {name}",
-            size_words(estimate),
-            interval_words(estimate),
+            size_words(estimate, _origin(verdict)),
+            interval_words(estimate, _origin(verdict)),
             quantity(estimate.nominal, estimate.unit),
             f"{100.0 * cause.probability:.0f} %",
             standing,

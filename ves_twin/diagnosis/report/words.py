@@ -41,17 +41,10 @@ def headline(verdict: Verdict) -> str:
             return _nothing(verdict)
         case Kind.UNKNOWN:
             return _unknown(verdict)
-        case Kind.AMBIGUOUS:
-            groups = [" with ".join(names[i] for i in a) for a in verdict.alternatives]
-            listed = "; ".join(groups)
-            said = f"One of these {len(groups)}, and the recording cannot tell which: {listed}."
-            return said + _doubt(verdict)
-        case Kind.PARTIAL:
-            return f"Part of it is {names[0]}. Something more stays unexplained.{_doubt(verdict)}"
-        case Kind.SEVERAL:
-            return f"{_begin(verdict)} two causes together: {' and '.join(names)}.{_doubt(verdict)}"
-        case Kind.NAMED:
-            return f"{_begin(verdict)} {names[0]}.{_doubt(verdict)}"
+        case Kind.AMBIGUOUS | Kind.PARTIAL:
+            return verdict.naming(names) + _doubt(verdict)
+        case _:
+            return verdict.naming(names, _begin(verdict)) + _doubt(verdict)
 
 
 def tone(verdict: Verdict) -> str:
@@ -103,6 +96,11 @@ def _doubt(verdict: Verdict) -> str:
         which = "It is" if len(verdict.causes) == 1 else f"{name_of(loose[0])} is"
         which = "Each is" if len(loose) == len(verdict.causes) > 1 else capital(which)
         upto = "up to " if len(loose) > 1 else ""
+        if verdict.basis.baseline == "measured":
+            return (
+                f" {which} off by {upto}{most:.1f} times what a rig in order may change by"
+                " since its baseline: a fault, or a change that large."
+            )
         return (
             f" {which} {upto}{most:.1f} declared tolerances off: a fault, or an error of"
             " commissioning that large."
@@ -188,7 +186,7 @@ def strangers(verdict: Verdict) -> list[str]:
     ]
 
 
-def size_words(estimate: Estimate) -> str:
+def size_words(estimate: Estimate, origin: str = "nominal") -> str:
     """Size of a departure: "12.4 mN m", or "1.04 kg, 39 g above nominal"."""
     value = quantity(estimate.value, estimate.unit, _figures(estimate))
     if estimate.nominal == 0.0:
@@ -198,15 +196,15 @@ def size_words(estimate: Estimate) -> str:
         part = percent(abs(change / estimate.nominal))
     else:
         part = quantity(abs(change), estimate.unit)
-    return f"{value}, {part} {'above' if change > 0.0 else 'below'} nominal"
+    return f"{value}, {part} {'above' if change > 0.0 else 'below'} {origin}"
 
 
-def interval_words(estimate: Estimate) -> str:
+def interval_words(estimate: Estimate, origin: str = "nominal") -> str:
     """The interval of a size, as long as its digits need."""
     low, high = estimate.low, estimate.high
     if estimate.nominal and estimate.unit != "1":
         there = [quantity(end - estimate.nominal, estimate.unit) for end in (low, high)]
-        return f"{there[0]} to {there[1]} from nominal"
+        return f"{there[0]} to {there[1]} from {origin}"
     ends = [quantity(end, estimate.unit, _figures(estimate)) for end in (low, high)]
     return f"{ends[0]} to {ends[1]}"
 
@@ -248,7 +246,10 @@ def basis_sentences(verdict: Verdict) -> tuple[str, ...]:
         "measured": "Noise: measured at a standstill.",
         "declared": "Noise: as the plant's numbers declare it; no standstill recording was given.",
     }
-    beyond = f" A fault is what is {limit:.1f} declared tolerances off." if limit else ""
+    unit = "declared tolerances off"
+    if basis.baseline == "measured":
+        unit = "times as far off as a rig in order may change since its baseline"
+    beyond = f" A fault is what is {limit:.1f} {unit}." if limit else ""
     scale = verdict.statistics.tolerance_scale or 0.0
     tolerances = {
         "measured": "Tolerances: measured on commissioning recordings,"

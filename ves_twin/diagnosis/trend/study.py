@@ -9,7 +9,6 @@ import numpy as np
 
 from ves_twin.diagnosis.assess import assess, pull_limit
 from ves_twin.diagnosis.bank import Bank, bank_key, build_bank, cached_bank
-from ves_twin.diagnosis.conclude import whitening_of
 from ves_twin.diagnosis.forward import Forward, Hypothesis
 from ves_twin.diagnosis.likeness import check_likeness
 from ves_twin.diagnosis.null import Thresholds, cached_thresholds
@@ -17,6 +16,7 @@ from ves_twin.diagnosis.observe import Observed, observe
 from ves_twin.diagnosis.runs import Progress, silent
 from ves_twin.diagnosis.settings import Settings
 from ves_twin.diagnosis.trend.day import Day
+from ves_twin.diagnosis.whitening import whitening_of
 from ves_twin.errors import InvalidInputError
 from ves_twin.recording.recording import Recording
 from ves_twin.workers import Workers

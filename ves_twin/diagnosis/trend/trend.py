@@ -149,7 +149,7 @@ def _concluded(
         rig = series.rig  # with the followed parameter among those that differ
     told = replace(bare, one_rig=rig, cause=cause, sizes=sizes, change=change, unexplained=left)
     if answer is Answer.NOTHING:
-        return replace(bare, one_rig=rig)
+        return replace(bare, answer=answer, one_rig=rig)
     return replace(told, answer=answer)
 
 
