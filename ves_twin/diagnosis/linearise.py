@@ -77,8 +77,9 @@ def linearise(
     far = stacks[1:] if forward_step is not None else stacks[1::2]
     near = prediction[None] if forward_step is not None else stacks[2::2]
     columns = list((far - near) * np.array(weights, np.float32)[:, None, None])
-    for k in np.flatnonzero(~np.all(np.isfinite(columns), axis=(1, 2))):
-        columns[k] = _one_sided(far[k], near[k % len(near)], prediction, np.float32(weights[k]))
+    for k, column in enumerate(columns):
+        if not np.all(np.isfinite(column)):
+            columns[k] = _one_sided(far[k], near[k % len(near)], prediction, np.float32(weights[k]))
     columns.append(np.float32(STEP_SD) * (runs.one(point, refined=True) - prediction))
     found = np.stack(columns)
     return Linearisation(runs, point, prediction, found, GUESS * _sizes(runs, found))
