@@ -40,6 +40,10 @@ LOG = "t,f,m,set,x,a,fx,fy,fz\n" + "\n".join(
         ('mode = "control"', 'mode = "contrl"', "'motion', 'control' or 'reference'"),
         ("schema = 1", "schema = 9", "schema version 9"),
         ('speed = "0.5 m/s"', "", "typical.joint.rail.speed"),
+        ('columns = ["fx", "fy", "fz"]', 'columns = ["fx", "fy"]', "3, as sensor load has it"),
+        ('columns = ["x"]', 'columns = ["x", "y"]', "1, as joint rail has it"),
+        ('columns = ["set"]', 'columns = ["f", "set"]', "1, as controllers.drive has it"),
+        ("noise = 0.05", "noise = [0.05, 0.05]", "one number, or 3 as it has columns"),
     ],
 )
 def test_a_wrong_file_is_answered_with_one_line(tmp_path, capsys, old, new, words):

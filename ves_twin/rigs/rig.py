@@ -13,7 +13,8 @@ import mujoco
 from ves_twin.diagnosis.forward import Hypothesis, Parameter
 from ves_twin.effects.magnitude import Magnitude, Sign
 from ves_twin.errors import FileAccessError, InvalidInputError, UnknownNameError, one_line
-from ves_twin.rigs.description import Allowed, Mode, RigDescription, Setting, load_description
+from ves_twin.rigs.check_description import check_description
+from ves_twin.rigs.description import Allowed, RigDescription, Setting, load_description
 from ves_twin.rigs.effect import RigEffect
 from ves_twin.rigs.element import Element
 from ves_twin.rigs.place import Place
@@ -184,41 +185,8 @@ class Rig:
                 yield effect, entry.place
 
     def check(self) -> None:
-        """Raise UnknownNameError or InvalidInputError on names that do not fit together."""
-        told = self.description
-        signals = told.signals
-        for where, name in (
-            *(("drive.joints", s) for s in told.drive.joints.values()),
-            *(("drive.actuators", s) for s in told.drive.actuators.values()),
-            *(("compare", s) for s in told.compare),
-            *((f"controllers.{k}", c.reference) for k, c in told.controllers.items()),
-        ):
-            if name not in signals:
-                raise UnknownNameError(f"signal in {where}", name, signals)
-        if told.drive.mode is Mode.REFERENCE and not told.controllers:
-            raise InvalidInputError("controllers", "none", "one where drive.mode is 'reference'")
-        for names, known, what in (
-            (
-                [*told.drive.joints, *told.start, *(c.joint for c in told.compare.values())],
-                "jnt",
-                "joint",
-            ),
-            (
-                [*told.drive.actuators, *told.controllers]
-                + [c.actuator for c in told.compare.values()],
-                "actuator",
-                "actuator",
-            ),
-            ([c.sensor for c in told.compare.values()], "sensor", "sensor"),
-        ):
-            there = _names(self.model, known)
-            for name in filter(None, names):
-                if name not in there:
-                    raise UnknownNameError(f"{what} in {told.model}", name, there)
-        positions = {c.joint for c in told.compare.values() if c.of == "position"}
-        for joint, start in told.start.items():
-            if start.position == "measured" and joint not in {*positions, *told.drive.joints}:
-                raise InvalidInputError(f"start.{joint}", "measured", "a signal of its position")
+        """Raise UnknownNameError or InvalidInputError where the two files do not fit together."""
+        check_description(self.description, self.model)
         _ = self.hypotheses, self.parameters
 
     def _loaded(self, path: Path) -> mujoco.MjModel:
@@ -275,12 +243,6 @@ class Rig:
             centres = {f"centre_{axis}" for axis in "xyz"} if element is Element.BODY else set()
             raise UnknownNameError(f"attribute of {element} {name}", attribute, {*known, *centres})
         return known[attribute], name
-
-
-def _names(model: mujoco.MjModel, kind: str) -> set[str]:
-    count = getattr(model, {"jnt": "njnt", "actuator": "nu", "sensor": "nsensor"}[kind])
-    access = {"jnt": model.joint, "actuator": model.actuator, "sensor": model.sensor}[kind]
-    return {access(i).name for i in range(count)}
 
 
 def _sized(m: Magnitude, allowed: Allowed, setting: Setting | None, what: str) -> Magnitude:
