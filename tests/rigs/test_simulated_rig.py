@@ -4,12 +4,16 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from two_link import TIME, programme, rig
+from two_link import TIME, programme, rig, write_files
 
 from ves_twin.diagnosis.forward import Programme
+from ves_twin.recording.recording import Recording, RecordingInfo
 from ves_twin.rigs.description import Mode
 from ves_twin.rigs.effect import play
+from ves_twin.rigs.experiment import RigExperiment
 from ves_twin.rigs.forward import MjcfForward
+from ves_twin.rigs.rig import Rig
+from ves_twin.rigs.tell import tell
 
 INNER = slice(200, -200)
 """Rows that the ends of a zero-phase filter do not reach."""
@@ -82,6 +86,27 @@ def test_halving_the_step_changes_little_and_the_difference_falls_with_it(machin
     change = np.max(np.abs(coarse - fine)[:, at])
     # a first-order step of 1 ms on a motion of 0.1 m
     assert 1e-7 < change < 2e-3
+
+
+@pytest.mark.parametrize("state", ["measured", "estimated"])
+def test_a_measured_start_is_the_first_row_also_of_a_signal_that_reads_the_other_way(
+    tmp_path, state
+):
+    """Cart at +0.3 m by a position that counts backwards: -0.3 m of the joint, moving."""
+    path = write_files(tmp_path, more='\n[start.swing]\nposition = "measured"\n')
+    text = path.read_text().replace('joint = "rail"', 'joint = "rail"\nsign = -1', 1)
+    path.write_text(text.replace("[start.rail]", '[start.rail]\nposition = "measured"'))
+    machine = Rig.load(str(path))
+    fed = {**programme().drive, "cart.position": (0.3 + 0.2 * TIME)[:, None]}
+    if state == "estimated":
+        moved = Recording(TIME, fed, RecordingInfo("measured", scenario="a"))
+        machine = tell({"a": moved}, RigExperiment(start={"state": state}), machine).rig
+    forward = MjcfForward.of(machine)
+    rows = forward.simulate(Programme("backwards", TIME, fed), {})
+    x = rows[:, [c.name for c in forward.channels].index("cart.position")]
+    assert x[0] == pytest.approx(0.3, abs=1e-12)
+    # the ends of a zero-phase filter and 4 ms of motion: per cents of 0.2 m/s
+    assert (x[2] - x[0]) / (TIME[2] - TIME[0]) == pytest.approx(0.2, rel=0.1)
 
 
 def test_a_gap_is_crossed_before_the_driven_side_follows():

@@ -56,19 +56,19 @@ def _measured_start(work: Work, joint: str) -> tuple[float, float]:
     start = told.start[joint]
     if start.position != "measured":
         return float(start.position), float(start.speed)
-    signal = position_signal(work, joint)
-    column = work.programme.drive[signal][:, 0]
+    signal, sign = position_signal(work, joint)
+    column = sign * work.programme.drive[signal][:, 0]
     smooth = smoothed(column, work.programme.period, told.drive.smoothing)
     speed = (smooth[1] - smooth[0]) / work.programme.period
     return float(column[0]), float(speed)
 
 
-def position_signal(work: Work, joint: str) -> str:
-    """The signal that measures a joint's position."""
+def position_signal(work: Work, joint: str) -> tuple[str, int]:
+    """The signal that measures a joint's position, and its sign."""
     for name, compared in work.rig.description.compare.items():
         if compared.joint == joint and compared.of == "position":
-            return name
-    return work.rig.description.drive.joints[joint]
+            return name, compared.sign
+    return work.rig.description.drive.joints[joint], 1
 
 
 def _resisted(work: Work) -> bool:
