@@ -53,6 +53,39 @@ def test_every_parameter_moves_a_signal_in_some_mode(forwards):
     assert not still
 
 
+LARGE = """
+[[effects]]
+kind = "body_mass"
+on = ["arm"]
+largest = "6 kg"
+
+[[effects]]
+kind = "body_inertia"
+on = ["cart"]
+largest = 3
+"""
+
+
+def test_no_bound_asks_for_a_body_without_mass_or_inertia(tmp_path):
+    """An arm of 1 kg that may be off by 6 kg is no arm of -5 kg."""
+    forward = MjcfForward.of(rig(tmp_path, more=LARGE))
+    found = {p.name: p for p in forward.parameters}
+    mass, share = found["body_mass@arm:mass"], found["body_inertia@cart:share"]
+    assert (mass.low, mass.high) == pytest.approx((0.01, 7.0))
+    assert (share.low, share.high) == pytest.approx((-0.99, 3.0))
+    assert all(p.low >= 0.0 for p in forward.parameters if "friction" in p.name)
+    for name in (mass.name, share.name):
+        assert np.all(np.isfinite(forward.simulate(FED, {name: found[name].low})))
+
+
+@pytest.mark.parametrize("mode", [Mode.CONTROL, Mode.REFERENCE])
+@pytest.mark.parametrize("more", [{}, {"force_offset@rail:offset": 1.0}])
+def test_a_run_that_mujoco_had_to_reset_is_none(forwards, mode, more, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)  # MuJoCo writes its log where it runs
+    found = forwards[mode].simulate(FED, {"body_mass@arm:mass": -0.5, **more})
+    assert np.isnan(found).all()
+
+
 def test_the_smallest_size_of_interest_is_below_the_largest_and_both_are_positive(forwards):
     for hypothesis in forwards[Mode.MOTION].hypotheses:
         pairs = zip(hypothesis.smallest, hypothesis.largest, strict=True)

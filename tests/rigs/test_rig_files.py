@@ -43,6 +43,14 @@ LOG = "t,f,m,set,x,a,fx,fy,fz\n" + "\n".join(
         ('columns = ["fx", "fy", "fz"]', 'columns = ["fx", "fy"]', "3, as sensor load has it"),
         ('columns = ["x"]', 'columns = ["x", "y"]', "1, as joint rail has it"),
         ('columns = ["set"]', 'columns = ["f", "set"]', "1, as controllers.drive has it"),
+        ('value = "3.1 kg"', 'value = "-3.1 kg"', "more than zero"),
+        ('attribute = "mass"\nvalue = "3.1 kg"', 'attribute = "mass"\nvalue = 0', "more than zero"),
+        (
+            'body = "cart"\nattribute = "mass"\nvalue = "3.1 kg"\nsd = "0.05 kg"',
+            'joint = "rail"\nattribute = "damping"\nvalue = -4',
+            "zero or more",
+        ),
+        ("[drift]", "[present.body_inertia.arm]\nshare = -1.5\n\n[drift]", "at least -0.99"),
         ("noise = 0.05", "noise = [0.05, 0.05]", "one number, or 3 as it has columns"),
     ],
 )

@@ -72,6 +72,10 @@ class RigEffect(ABC):
         """Whether every size is zero."""
         return not any(self.sizes.values())
 
+    def least(self, nominal: float) -> float:
+        """Smallest value of a size beside its nominal one; below it no machine can be."""
+        return -math.inf
+
     def present(self, model: mujoco.MjModel) -> float:
         """What the model has of its attribute; sizes are departures from that."""
         return 0.0

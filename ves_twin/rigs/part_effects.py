@@ -15,6 +15,10 @@ from ves_twin.types import FloatArray
 if TYPE_CHECKING:
     import mujoco
 
+LEFT = 0.01
+"""Share of a body's mass and inertia that is left at least: MuJoCo takes neither at zero or below,
+and a body next to nothing needs steps next to nothing."""
+
 DELAY = Size("delay", "s", 0.05, 1e-4, Sign.POSITIVE)
 """Up to 50 ms: assumed, a slow fieldbus and its filters."""
 
@@ -72,9 +76,15 @@ class BodyMass(ModelNumber):
     size: ClassVar[Size] = Size("mass", "kg", lambda p: 0.5 * p.mass, lambda p: 0.001 * p.mass)
     source: ClassVar[str] = "assumed: up to half of the body"
 
+    def least(self, nominal: float) -> float:
+        """A hundredth of the body."""
+        return LEFT * nominal
+
     def edit_model(self, model: mujoco.MjModel) -> None:
-        """Scale the inertia, add to the mass."""
-        model.body_inertia[self.entry(model)] *= 1.0 + self.mass / self.present(model)
+        """Scale the inertia, if the body has any mass, and add to the mass."""
+        before = self.present(model)
+        if before > 0.0:
+            model.body_inertia[self.entry(model)] *= 1.0 + self.mass / before
         super().edit_model(model)
 
 
@@ -109,6 +119,10 @@ class BodyInertia(RigEffect):
     element: ClassVar[Element] = Element.BODY
     size: ClassVar[Size] = Size("share", "1", 0.5, 0.002)
     source: ClassVar[str] = "assumed: up to half"
+
+    def least(self, nominal: float) -> float:
+        """All but a hundredth of the inertia gone."""
+        return LEFT - 1.0
 
     def edit_model(self, model: mujoco.MjModel) -> None:
         """Scale the inertia about the centre of mass."""

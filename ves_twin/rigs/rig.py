@@ -105,8 +105,9 @@ class Rig:
             if setting.value is not None:
                 effect, place = self._effect_of(setting, model)
                 (magnitude,) = effect.magnitudes(place)
-                value = to_si(setting.value, magnitude.unit, setting.attribute)
-                change = {magnitude.name: value - effect.present(model)}
+                change = {
+                    magnitude.name: _value(setting, effect, magnitude) - effect.present(model)
+                }
                 effect.sized(change).edit_model(model)
         mujoco.mj_setConst(model, mujoco.MjData(model))
         return model
@@ -139,7 +140,8 @@ class Rig:
         for entry in self.entries:
             for m, nominal in zip(entry.magnitudes, entry.nominal, strict=True):
                 low = 0.0 if m.sign is Sign.POSITIVE else nominal - m.largest
-                low, high = min(low, nominal), nominal + m.largest
+                low = min(max(low, entry.effect.least(nominal)), nominal)
+                high = nominal + m.largest
                 name = entry.name(m)
                 one = entry.per_recording
                 found.append(Parameter(name, m.unit, nominal, low, high, m.sd, one))
@@ -217,6 +219,10 @@ class Rig:
             nominal: tuple[float, ...] = (effect.present(self.model),)
         else:
             nominal = tuple(float(told.get(m.name, 0.0)) for m in magnitudes)
+            for m, value in zip(magnitudes, nominal, strict=True):
+                if value < effect.least(0.0):
+                    what = f"present.{allowed.kind}.{target}.{m.name}"
+                    raise InvalidInputError(what, value, f"at least {effect.least(0.0):g}")
         source = allowed.source or (setting.source if setting else "") or effect.source
         return Entry(
             effect, place, magnitudes, nominal, allowed.cause, allowed.per_recording, source
@@ -243,6 +249,17 @@ class Rig:
             centres = {f"centre_{axis}" for axis in "xyz"} if element is Element.BODY else set()
             raise UnknownNameError(f"attribute of {element} {name}", attribute, {*known, *centres})
         return known[attribute], name
+
+
+def _value(setting: Setting, effect: RigEffect, m: Magnitude) -> float:
+    """What a setting makes of its attribute: a mass above zero, friction and springs not below."""
+    what = f"{setting.attribute} of {effect.target}"
+    value = to_si(setting.value, m.unit, what)
+    if m.sign is Sign.POSITIVE and value < 0.0:
+        raise InvalidInputError(what, setting.value, "zero or more")
+    if value <= effect.least(0.0):
+        raise InvalidInputError(what, setting.value, "more than zero")
+    return value
 
 
 def _sized(m: Magnitude, allowed: Allowed, setting: Setting | None, what: str) -> Magnitude:

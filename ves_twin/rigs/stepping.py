@@ -15,6 +15,14 @@ from ves_twin.rigs.inverse import smoothed
 from ves_twin.rigs.work import Work, sensor_rows
 from ves_twin.types import FloatArray
 
+FAILED = (
+    mujoco.mjtWarning.mjWARN_BADQPOS,
+    mujoco.mjtWarning.mjWARN_BADQVEL,
+    mujoco.mjtWarning.mjWARN_BADQACC,
+    mujoco.mjtWarning.mjWARN_BADCTRL,
+)
+"""After these MuJoCo goes on from its reference state, or without commands: not what was asked."""
+
 
 def motion_of_drive(work: Work, mode: Mode, refined: bool = False) -> dict[str, FloatArray]:
     """Signals (n, w) that the rig's description compares, by forward simulation.
@@ -26,6 +34,9 @@ def motion_of_drive(work: Work, mode: Mode, refined: bool = False) -> dict[str, 
         work: what is simulated.
         mode: CONTROL feeds recorded commands, REFERENCE set-points of the controllers.
         refined: with half the step.
+
+    Returns:
+        Signals; NaN throughout where the motion diverged and MuJoCo had to start it anew.
     """
     model, period = work.model, work.programme.period
     steps = max(1, round(period / model.opt.timestep)) * (2 if refined else 1)
@@ -36,7 +47,14 @@ def motion_of_drive(work: Work, mode: Mode, refined: bool = False) -> dict[str, 
         path, sensed, commands = _open(work, state, steps)
     else:
         path, sensed, commands = _stepped(work, state, steps, closed)
+    if _failed(state):
+        path, sensed = np.full_like(path, np.nan), np.full_like(sensed, np.nan)
+        commands = np.full_like(commands, np.nan)
     return _signals(work, path, sensed, commands)
+
+
+def _failed(data: mujoco.MjData) -> bool:
+    return any(data.warning[kind].number for kind in FAILED)
 
 
 def _start(work: Work) -> mujoco.MjData:
@@ -148,6 +166,8 @@ def _stepped(
             mujoco.mj_step(model, data)
             if n == 0:
                 sensed[k] = data.sensordata
+        if _failed(data):
+            break
     return path, sensed, asked
 
 
