@@ -86,6 +86,19 @@ def test_a_wrong_log_is_answered_with_one_line(tmp_path, capsys, old, new, words
     assert "\n" not in error
 
 
+@pytest.mark.parametrize("noise", ["", "noise = 0", "noise = -1e-5"])
+def test_a_diagnosis_asks_for_the_noise_of_what_it_weighs_and_a_comparison_does_not(
+    tmp_path, capsys, noise
+):
+    path = write_files(tmp_path)
+    path.write_text(path.read_text().replace("noise = 1e-5", noise, 1))
+    (tmp_path / "log.csv").write_text(LOG)
+    words = [str(tmp_path / "log.csv"), "--plant", str(path), "--out", str(tmp_path / "out")]
+    assert main(["compare", *words]) == 0
+    assert main(["diagnose", *words]) == 2
+    assert "signals.cart.position.noise" in capsys.readouterr().err
+
+
 def test_options_that_a_rig_does_not_have_are_refused(tmp_path, capsys):
     path = write_files(tmp_path)
     (tmp_path / "log.csv").write_text(LOG)

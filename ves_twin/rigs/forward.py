@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Container, Mapping
 from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
 
 from ves_twin.diagnosis.forward import Channel, Hypothesis, Parameter, Programme
+from ves_twin.errors import InvalidInputError
 from ves_twin.rigs.description import Compared, Mode
 from ves_twin.rigs.inverse import efforts_of_motion
 from ves_twin.rigs.rig import Rig
@@ -93,6 +94,16 @@ class MjcfForward:
     def hypotheses(self) -> tuple[Hypothesis, ...]:
         """The library of causes that the file allows."""
         return self.rig.hypotheses
+
+    def check_noise(self, recorded: Container[str]) -> None:
+        """Raise InvalidInputError where a signal that is to be diagnosed has no noise.
+
+        A comparison does without; a diagnosis weighs each row by it.
+        """
+        for channel in self.channels:
+            if channel.signal in recorded and not channel.sd > 0.0:
+                expected = f"the sd of one row in {channel.unit}, above zero"
+                raise InvalidInputError(f"signals.{channel.signal}.noise", channel.sd, expected)
 
     def simulate(
         self, programme: Programme, values: Mapping[str, float], refined: bool = False
