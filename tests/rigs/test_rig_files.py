@@ -43,6 +43,8 @@ LOG = "t,f,m,set,x,a,fx,fy,fz\n" + "\n".join(
         ('columns = ["fx", "fy", "fz"]', 'columns = ["fx", "fy"]', "3, as sensor load has it"),
         ('columns = ["x"]', 'columns = ["x", "y"]', "1, as joint rail has it"),
         ('columns = ["set"]', 'columns = ["f", "set"]', "1, as controllers.drive has it"),
+        ("[start.rail]", '[start.rail]\nposition = "mesured"', "start.rail.position"),
+        ("[start.rail]", '[start.rail]\nspeed = "3 deg/s"', "a finite quantity in m/s"),
         ('value = "3.1 kg"', 'value = "-3.1 kg"', "more than zero"),
         ('attribute = "mass"\nvalue = "3.1 kg"', 'attribute = "mass"\nvalue = 0', "more than zero"),
         (

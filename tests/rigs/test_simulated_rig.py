@@ -88,6 +88,16 @@ def test_halving_the_step_changes_little_and_the_difference_falls_with_it(machin
     assert 1e-7 < change < 2e-3
 
 
+def test_a_start_may_be_a_text_with_a_unit(tmp_path):
+    told = '\n[start.swing]\nposition = "10 deg"\nspeed = "-20 deg/s"\n'
+    forward = MjcfForward.of(rig(tmp_path, more=told))
+    rows = forward.simulate(programme(), {})
+    angle = rows[:, [c.name for c in forward.channels].index("arm.angle")]
+    assert angle[0] == pytest.approx(np.radians(10.0), abs=1e-12)
+    # gravity and the torque change it by up to 10 % in 2 ms
+    assert (angle[1] - angle[0]) / TIME[1] == pytest.approx(np.radians(-20.0), rel=0.2)
+
+
 @pytest.mark.parametrize("state", ["measured", "estimated"])
 def test_a_measured_start_is_the_first_row_also_of_a_signal_that_reads_the_other_way(
     tmp_path, state

@@ -6,6 +6,8 @@ import mujoco
 
 from ves_twin.errors import InvalidInputError, UnknownNameError
 from ves_twin.rigs.description import Compared, Mode, RigDescription
+from ves_twin.rigs.joint_units import joint_units
+from ves_twin.units import to_si
 
 FREE = int(mujoco.mjtJoint.mjJNT_FREE)
 
@@ -21,7 +23,7 @@ def check_description(told: RigDescription, model: mujoco.MjModel) -> None:
     _signals(told)
     _parts(told, model)
     _widths(told, model)
-    _starts(told)
+    _starts(told, model)
 
 
 def _signals(told: RigDescription) -> None:
@@ -84,8 +86,12 @@ def _width(compared: Compared, model: mujoco.MjModel) -> tuple[int, str]:
     return 1, f"joint {compared.joint}"
 
 
-def _starts(told: RigDescription) -> None:
+def _starts(told: RigDescription, model: mujoco.MjModel) -> None:
     positions = {c.joint for c in told.compare.values() if c.of == "position"}
     for joint, start in told.start.items():
         if start.position == "measured" and joint not in {*positions, *told.drive.joints}:
             raise InvalidInputError(f"start.{joint}", "measured", "a signal of its position")
+        place, speed = joint_units(model, joint)
+        if start.position != "measured":
+            to_si(start.position, place, f"start.{joint}.position")
+        to_si(start.speed, speed, f"start.{joint}.speed")

@@ -12,6 +12,7 @@ from ves_twin.diagnosis.forward import Channel, Hypothesis, Parameter, Programme
 from ves_twin.errors import InvalidInputError
 from ves_twin.rigs.description import Compared, Mode
 from ves_twin.rigs.inverse import efforts_of_motion
+from ves_twin.rigs.joint_units import joint_units
 from ves_twin.rigs.rig import Rig
 from ves_twin.rigs.stepping import motion_of_drive
 from ves_twin.rigs.work import Work
@@ -119,8 +120,7 @@ class MjcfForward:
     def _starts(self) -> tuple[Parameter, ...]:
         found = []
         for joint, start in self.rig.description.start.items():
-            hinge = bool(self.rig.model.jnt_type[self.rig.model.joint(joint).id] == 3)
-            units = ("rad", "rad/s") if hinge else ("m", "m/s")
+            units = joint_units(self.rig.model, joint)
             sds = (start.sd, start.speed_sd)
             for what, unit, told in zip(("position", "speed"), units, sds, strict=True):
                 sd = to_si(told, unit, f"start.{joint}")

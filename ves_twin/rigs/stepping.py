@@ -12,8 +12,10 @@ from ves_twin.rigs.description import Controller, Mode
 from ves_twin.rigs.effect import RigEffect
 from ves_twin.rigs.element import Element
 from ves_twin.rigs.inverse import smoothed
+from ves_twin.rigs.joint_units import joint_units
 from ves_twin.rigs.work import Work, sensor_rows
 from ves_twin.types import FloatArray
+from ves_twin.units import to_si
 
 FAILED = (
     mujoco.mjtWarning.mjWARN_BADQPOS,
@@ -73,7 +75,9 @@ def _measured_start(work: Work, joint: str) -> tuple[float, float]:
     told = work.rig.description
     start = told.start[joint]
     if start.position != "measured":
-        return float(start.position), float(start.speed)
+        units, what = joint_units(work.model, joint), f"start.{joint}"
+        at = to_si(start.position, units[0], f"{what}.position")
+        return at, to_si(start.speed, units[1], f"{what}.speed")
     signal, sign = position_signal(work, joint)
     column = sign * work.programme.drive[signal][:, 0]
     smooth = smoothed(column, work.programme.period, told.drive.smoothing)
