@@ -7,7 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from two_link import write_files
+from two_link import programme, write_files
 
 from ves_twin.cli.main import main
 from ves_twin.diagnosis.verdict import Basis, Cause, Estimate, Kind, Statistics, Verdict
@@ -18,6 +18,7 @@ from ves_twin.rigs.columns import read_rig_recording
 from ves_twin.rigs.data_folder import find_data
 from ves_twin.rigs.description import is_rig, shipped_rigs
 from ves_twin.rigs.extend import extended, write_rig
+from ves_twin.rigs.forward import MjcfForward
 from ves_twin.rigs.rig import Rig
 
 LOG = "t,f,m,set,x,a,fx,fy,fz\n" + "\n".join(
@@ -99,6 +100,18 @@ def test_a_diagnosis_asks_for_the_noise_of_what_it_weighs_and_a_comparison_does_
     assert main(["compare", *words]) == 0
     assert main(["diagnose", *words]) == 2
     assert "signals.cart.position.noise" in capsys.readouterr().err
+
+
+def test_dry_friction_of_a_given_motion_asks_for_the_typical_speed_when_the_rig_is_read(tmp_path):
+    path = write_files(tmp_path, "motion", kinds={})
+    begin, end = "[typical.joint.rail]", "[typical.joint.swing]"
+    head, _, tail = path.read_text().partition(begin)
+    path.write_text(head + end + tail.partition(end)[2])
+    with pytest.raises(VesTwinError, match=r"typical\.joint\.rail\.speed"):
+        Rig.load(str(path))
+    # the speed alone will do
+    path.write_text(head + begin + '\nspeed = "0.5 m/s"\n' + end + tail.partition(end)[2])
+    assert np.isfinite(MjcfForward.of(Rig.load(str(path))).simulate(programme(), {})).all()
 
 
 def test_options_that_a_rig_does_not_have_are_refused(tmp_path, capsys):

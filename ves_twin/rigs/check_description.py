@@ -7,6 +7,7 @@ import mujoco
 from ves_twin.errors import InvalidInputError, UnknownNameError
 from ves_twin.rigs.description import Compared, Mode, RigDescription
 from ves_twin.rigs.joint_units import joint_units
+from ves_twin.rigs.places import typical_speed
 from ves_twin.units import to_si
 
 FREE = int(mujoco.mjtJoint.mjJNT_FREE)
@@ -17,13 +18,15 @@ def check_description(told: RigDescription, model: mujoco.MjModel) -> None:
 
     Raises:
         UnknownNameError: a signal, joint, actuator or sensor that is not there.
-        InvalidInputError: no controller to follow set-points, a start that nothing measures, or
-            columns or noise of a signal that are not as many as the model has of it.
+        InvalidInputError: no controller to follow set-points, a start that nothing measures,
+            columns or noise of a signal that are not as many as the model has of it, a start in
+            other units, or no typical speed of a joint with dry friction whose motion is given.
     """
     _signals(told)
     _parts(told, model)
     _widths(told, model)
     _starts(told, model)
+    _friction(told, model)
 
 
 def _signals(told: RigDescription) -> None:
@@ -84,6 +87,17 @@ def _width(compared: Compared, model: mujoco.MjModel) -> tuple[int, str]:
     if compared.actuator:
         return 1, f"actuator {compared.actuator}"
     return 1, f"joint {compared.joint}"
+
+
+def _friction(told: RigDescription, model: mujoco.MjModel) -> None:
+    """Dry friction of a given motion turns its sign round over a share of the typical speed."""
+    if told.drive.mode is not Mode.MOTION:
+        return
+    for compared in told.compare.values():
+        if compared.actuator:
+            joint = model.joint(int(model.actuator(compared.actuator).trnid[0]))
+            if model.dof_frictionloss[joint.dofadr[0]] > 0.0:
+                typical_speed(joint.name, told, model)
 
 
 def _starts(told: RigDescription, model: mujoco.MjModel) -> None:
