@@ -46,6 +46,16 @@ LOG = "t,f,m,set,x,a,fx,fy,fz\n" + "\n".join(
         ('columns = ["set"]', 'columns = ["f", "set"]', "1, as controllers.drive has it"),
         ("[start.rail]", '[start.rail]\nposition = "mesured"', "start.rail.position"),
         ("[start.rail]", '[start.rail]\nspeed = "3 deg/s"', "a finite quantity in m/s"),
+        (
+            "[drift]",
+            "[present.body_mass.arm]\nmass = 1\n[drift]",
+            'body = "arm", attribute = "mass"',
+        ),
+        (
+            "[drift]",
+            '[present.mass_centre."arm.x"]\nshift = 0.1\n[drift]',
+            'body = "arm", attribute = "centre_x"',
+        ),
         ('value = "3.1 kg"', 'value = "-3.1 kg"', "more than zero"),
         ('attribute = "mass"\nvalue = "3.1 kg"', 'attribute = "mass"\nvalue = 0', "more than zero"),
         (

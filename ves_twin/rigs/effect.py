@@ -106,6 +106,14 @@ class RigEffect(ABC):
         return reading
 
     @property
+    def setting(self) -> tuple[str, str]:
+        """Element and attribute that stand for it in [[parameters]]: "tool", "centre_x"."""
+        if self.attribute != "centre":
+            return self.target, self.attribute
+        name, _, axis = self.target.rpartition(".")
+        return name, f"centre_{axis}"
+
+    @property
     def column(self) -> int:
         """Column of a signal, from 0: the last number of the target."""
         return int(self.target.rpartition(".")[2]) - 1

@@ -1,4 +1,4 @@
-"""place_of and typical_speed: a target's name as a place in model or signals, with typical sizes."""
+"""place_of and typical_speed: a target as a place in model or signals, with typical sizes."""
 
 from __future__ import annotations
 

@@ -209,6 +209,11 @@ class Rig:
         effect = build_rig_effect(allowed.kind, target, {})
         place = place_of(effect.element, target, self.description, self.model, effect.kind)
         told = self.description.present.get(allowed.kind, {}).get(target, {})
+        if told and effect.attribute:
+            name, attribute = effect.setting
+            expected = f'[[parameters]] with {effect.element} = "{name}", attribute = "{attribute}"'
+            came = f"present.{allowed.kind}.{target}"
+            raise InvalidInputError(came, told, f"{expected} and value")
         if set(told) - set(effect.sizes):
             build_rig_effect(allowed.kind, target, told)
         magnitudes = tuple(
