@@ -6,11 +6,13 @@ from typing import get_type_hints
 
 import numpy as np
 import pytest
-from two_link import TARGETS, programme, rig
+from two_link import TARGETS, programme, rig, write_files
 
+from ves_twin.errors import VesTwinError
 from ves_twin.rigs.description import Mode
 from ves_twin.rigs.forward import MjcfForward
 from ves_twin.rigs.registry import RIG_EFFECTS
+from ves_twin.rigs.rig import Rig
 
 FED = programme()
 MODES = tuple(Mode)
@@ -76,6 +78,22 @@ def test_no_bound_asks_for_a_body_without_mass_or_inertia(tmp_path):
     assert all(p.low >= 0.0 for p in forward.parameters if "friction" in p.name)
     for name in (mass.name, share.name):
         assert np.all(np.isfinite(forward.simulate(FED, {name: found[name].low})))
+
+
+def test_bounds_are_those_of_the_file_where_it_has_them(tmp_path):
+    told = """
+[[parameters]]
+joint = "rail"
+attribute = "damping"
+low = 2
+high = "5 N*s/m"
+"""
+    found = {p.name: p for p in rig(tmp_path, more=told).parameters}
+    damping = found["viscous_friction@rail:damping"]
+    assert (damping.low, damping.nominal, damping.high) == (2.0, 4.0, 5.0)
+    path = write_files(tmp_path, more=told.replace("low = 2", "low = 4.5"))
+    with pytest.raises(VesTwinError, match=r"viscous_friction of rail.*expected 4 within them"):
+        Rig.load(str(path))
 
 
 @pytest.mark.parametrize("mode", [Mode.CONTROL, Mode.REFERENCE])

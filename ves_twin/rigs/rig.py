@@ -45,6 +45,11 @@ class Entry:
     per_recording: bool
     source: str
 
+    @property
+    def key(self) -> tuple[str, str]:
+        """Kind and target."""
+        return self.effect.kind, self.effect.target
+
     def name(self, magnitude: Magnitude) -> str:
         """Of a parameter: kind@target:magnitude."""
         return f"{self.effect.kind}@{self.effect.target}:{magnitude.name}"
@@ -137,11 +142,10 @@ class Rig:
     def parameters(self) -> tuple[Parameter, ...]:
         """Of all entries."""
         found = []
+        settings = {self._key(s): s for s in self.description.parameters}
         for entry in self.entries:
             for m, nominal in zip(entry.magnitudes, entry.nominal, strict=True):
-                low = 0.0 if m.sign is Sign.POSITIVE else nominal - m.largest
-                low = min(max(low, entry.effect.least(nominal)), nominal)
-                high = nominal + m.largest
+                low, high = _bounds(entry, m, nominal, settings.get(entry.key))
                 name = entry.name(m)
                 one = entry.per_recording
                 found.append(Parameter(name, m.unit, nominal, low, high, m.sd, one))
@@ -254,6 +258,24 @@ class Rig:
             centres = {f"centre_{axis}" for axis in "xyz"} if element is Element.BODY else set()
             raise UnknownNameError(f"attribute of {element} {name}", attribute, {*known, *centres})
         return known[attribute], name
+
+
+def _bounds(
+    entry: Entry, m: Magnitude, nominal: float, setting: Setting | None
+) -> tuple[float, float]:
+    """Of a parameter: what the file says, else the largest departure; never what cannot be."""
+    one_sided = m.sign is Sign.POSITIVE
+    low, high = 0.0 if one_sided else nominal - m.largest, nominal + m.largest
+    least = 0.0 if one_sided else entry.effect.least(nominal)
+    what = f"{entry.effect.kind} of {entry.effect.target}"
+    if setting and setting.low is not None:
+        low = to_si(setting.low, m.unit, f"low of {what}")
+    if setting and setting.high is not None:
+        high = to_si(setting.high, m.unit, f"high of {what}")
+    told = setting is not None and (setting.low, setting.high) != (None, None)
+    if told and not low <= nominal <= high:
+        raise InvalidInputError(f"low, high of {what}", (low, high), f"{nominal:g} within them")
+    return min(max(low, least), nominal), high
 
 
 def _value(setting: Setting, effect: RigEffect, m: Magnitude) -> float:
