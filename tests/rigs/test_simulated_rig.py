@@ -2,18 +2,26 @@
 
 from __future__ import annotations
 
+import copy
+from dataclasses import dataclass, replace
+from typing import ClassVar, final
+
 import numpy as np
 import pytest
 from two_link import TIME, programme, rig, write_files
 
 from ves_twin.diagnosis.forward import Programme
 from ves_twin.recording.recording import Recording, RecordingInfo
+from ves_twin.rigs import inverse
 from ves_twin.rigs.description import Mode
-from ves_twin.rigs.effect import play
+from ves_twin.rigs.effect import RigEffect, play
+from ves_twin.rigs.element import Element
 from ves_twin.rigs.experiment import RigExperiment
 from ves_twin.rigs.forward import MjcfForward
+from ves_twin.rigs.inverse import efforts_of_motion
 from ves_twin.rigs.rig import Rig
 from ves_twin.rigs.tell import tell
+from ves_twin.rigs.work import Work
 
 INNER = slice(200, -200)
 """Rows that the ends of a zero-phase filter do not reach."""
@@ -86,6 +94,33 @@ def test_halving_the_step_changes_little_and_the_difference_falls_with_it(machin
     change = np.max(np.abs(coarse - fine)[:, at])
     # a first-order step of 1 ms on a motion of 0.1 m
     assert 1e-7 < change < 2e-3
+
+
+@final
+@dataclass(frozen=True)
+class LongerArm(RigEffect):
+    """An effect of another package: the arm hangs lower on its cart."""
+
+    shift: float = 0.0
+
+    kind: ClassVar[str] = "longer_arm"
+    element: ClassVar[Element] = Element.BODY
+
+    def edit_model(self, model):
+        model.jnt_pos[model.joint("swing").id, 2] += self.shift
+
+
+def test_an_effect_that_edits_any_number_of_the_model_changes_the_efforts(machine):
+    """Through what is kept of earlier motions: as with nothing kept."""
+    fed = programme()
+    begun = Work.begin(machine, fed, {})
+    plain = efforts_of_motion(begun)["drive.force"]
+    model = copy.copy(begun.model)
+    LongerArm("arm", shift=0.2).edit_model(model)
+    found = efforts_of_motion(replace(begun, model=model))["drive.force"]
+    inverse._moved.cache_clear()
+    assert np.array_equal(found, efforts_of_motion(replace(begun, model=model))["drive.force"])
+    assert np.max(np.abs(found - plain)) > 0.1
 
 
 def test_a_start_may_be_a_text_with_a_unit(tmp_path):
