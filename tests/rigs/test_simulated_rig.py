@@ -19,7 +19,9 @@ from ves_twin.rigs.element import Element
 from ves_twin.rigs.experiment import RigExperiment
 from ves_twin.rigs.forward import MjcfForward
 from ves_twin.rigs.inverse import efforts_of_motion
+from ves_twin.rigs.part_effects import ActuatorDelay
 from ves_twin.rigs.rig import Rig
+from ves_twin.rigs.stepping import motion_of_drive
 from ves_twin.rigs.tell import tell
 from ves_twin.rigs.work import Work
 
@@ -121,6 +123,44 @@ def test_an_effect_that_edits_any_number_of_the_model_changes_the_efforts(machin
     inverse._moved.cache_clear()
     assert np.array_equal(found, efforts_of_motion(replace(begun, model=model))["drive.force"])
     assert np.max(np.abs(found - plain)) > 0.1
+
+
+@final
+@dataclass(frozen=True)
+class Limit(RigEffect):
+    """An effect of another package: an amplifier gives no more than this."""
+
+    most: float = 0.0
+
+    kind: ClassVar[str] = "limit"
+    element: ClassVar[Element] = Element.ACTUATOR
+
+    def edit_command(self, command, time):
+        return np.clip(command, -self.most, self.most)
+
+
+def test_an_effect_on_an_actuator_is_at_work_in_closed_loop_too(machine):
+    """A limit below the controller's own is that limit; effects follow one another."""
+    fed = replace(programme(), time=TIME[:300])
+    fed = replace(fed, drive={n: v[:300] for n, v in fed.drive.items()})
+    place = machine.entries[0].place
+    limit, late = Limit("drive", most=3.0), ActuatorDelay("drive", delay=0.005)
+    controller = machine.description.controllers["drive"]
+    told = machine.description.model_copy(
+        update={"controllers": {"drive": controller.model_copy(update={"limit": 3.0})}}
+    )
+    limited = replace(machine, description=told)
+
+    def cart(rig, *effects):
+        work = replace(Work.begin(rig, fed, {}), effects=tuple((e, place) for e in effects))
+        return motion_of_drive(work, Mode.REFERENCE)["cart.position"]
+
+    assert not np.array_equal(cart(machine), cart(limited))
+    assert np.array_equal(cart(machine, limit), cart(limited))
+    assert np.array_equal(cart(machine, limit, late), cart(limited, late))
+    # the delay's own short way against what every effect has
+    general = RigEffect.edit_row(late, np.sin(TIME), TIME, 700)
+    assert late.edit_row(np.sin(TIME), TIME, 700) == pytest.approx(general, abs=1e-12)
 
 
 def test_a_start_may_be_a_text_with_a_unit(tmp_path):

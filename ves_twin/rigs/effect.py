@@ -95,6 +95,20 @@ class RigEffect(ABC):
         """What an actuator gives of its command (n,)."""
         return command
 
+    def edit_row(self, command: FloatArray, time: FloatArray, row: int) -> float:
+        """What an actuator gives in one row of a closed loop, which knows no later commands.
+
+        By `edit_command` of all up to there; an effect that knows a shorter way has its own.
+
+        Args:
+            command: to the actuator (n,), filled up to the row.
+            time: of the rows [s] (n,).
+            row: which one.
+        """
+        if type(self).edit_command is RigEffect.edit_command:
+            return float(command[row])
+        return float(self.edit_command(command[: row + 1], time[: row + 1])[row])
+
     def edit_required(self, effort: FloatArray, time: FloatArray) -> FloatArray:
         """The command (n,) that an actuator needs to give an effort."""
         return effort

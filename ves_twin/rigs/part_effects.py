@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, ClassVar, final
 
@@ -56,6 +57,14 @@ class ActuatorDelay(RigEffect):
     def edit_command(self, command: FloatArray, time: FloatArray) -> FloatArray:
         """That of a delay ago."""
         return shifted(command, time, self.delay)
+
+    def edit_row(self, command: FloatArray, time: FloatArray, row: int) -> float:
+        """That of a delay ago, between the two rows about it."""
+        late = row - self.delay * (len(time) - 1) / float(time[-1] - time[0])
+        below = math.floor(late)
+        share = late - below
+        ends = command[max(below, 0)], command[min(max(below + 1, 0), row)]
+        return float((1.0 - share) * ends[0] + share * ends[1])
 
     def edit_required(self, effort: FloatArray, time: FloatArray) -> FloatArray:
         """That of a delay ahead."""

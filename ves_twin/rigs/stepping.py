@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import math
-
 import mujoco
 import numpy as np
 from mujoco import rollout
@@ -157,12 +155,12 @@ def _stepped(
         for name in {e.target for e, _ in work.effects if e.element is Element.JOINT}
     ]
     path, sensed = np.zeros((rows, model.nq + model.nv)), np.zeros((rows, model.nsensordata))
-    speed = np.zeros(1)
+    speed, reach = np.zeros(1), _Reach(work)
     for k in range(rows):
         path[k, : model.nq], path[k, model.nq :] = data.qpos, data.qvel
         for loop in loops:
             asked[k, loop.actuator] = loop.command(k, data)
-        data.ctrl[:] = _late(work, asked, k) if closed else asked[k]
+        data.ctrl[:] = reach.at(asked[k], k) if closed else asked[k]
         for n in range(steps):
             for name, dof in resisted:
                 speed[0] = data.qvel[dof]
@@ -175,18 +173,23 @@ def _stepped(
     return path, sensed, asked
 
 
-def _late(work: Work, asked: FloatArray, row: int) -> FloatArray:
-    """Commands of a row as they reach the actuators, which may be late."""
-    reach = asked[row].copy()
-    for effect, _ in work.effects:
-        if effect.element is Element.ACTUATOR and "delay" in effect.sizes:
-            i = work.model.actuator(effect.target).id
-            late = row - effect.sizes["delay"] / work.programme.period
-            below = math.floor(late)
-            share = late - below
-            ends = asked[max(below, 0), i], asked[min(max(below + 1, 0), row), i]
-            reach[i] = (1.0 - share) * ends[0] + share * ends[1]
-    return np.asarray(reach)
+class _Reach:
+    """Commands of a closed loop as they reach the actuators, row by row, effect after effect."""
+
+    def __init__(self, work: Work) -> None:
+        self.time = work.programme.time
+        self.chain = [
+            (effect, work.model.actuator(effect.target).id, np.zeros(len(self.time)))
+            for effect, _ in work.effects
+            if effect.element is Element.ACTUATOR
+        ]
+
+    def at(self, asked: FloatArray, row: int) -> FloatArray:
+        reach = asked.copy()
+        for effect, i, given in self.chain:
+            given[row] = reach[i]
+            reach[i] = effect.edit_row(given, self.time, row)
+        return reach
 
 
 def _signals(
