@@ -7,7 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from two_link import write_files
+from two_link import programme, write_files
 
 from ves_twin.cli.main import main
 from ves_twin.diagnosis.verdict import Basis, Cause, Estimate, Kind, Statistics, Verdict
@@ -18,6 +18,7 @@ from ves_twin.rigs.columns import read_rig_recording
 from ves_twin.rigs.data_folder import find_data
 from ves_twin.rigs.description import is_rig, shipped_rigs
 from ves_twin.rigs.extend import extended, write_rig
+from ves_twin.rigs.forward import MjcfForward
 from ves_twin.rigs.rig import Rig
 
 LOG = "t,f,m,set,x,a,fx,fy,fz\n" + "\n".join(
@@ -40,6 +41,30 @@ LOG = "t,f,m,set,x,a,fx,fy,fz\n" + "\n".join(
         ('mode = "control"', 'mode = "contrl"', "'motion', 'control' or 'reference'"),
         ("schema = 1", "schema = 9", "schema version 9"),
         ('speed = "0.5 m/s"', "", "typical.joint.rail.speed"),
+        ('columns = ["fx", "fy", "fz"]', 'columns = ["fx", "fy"]', "3, as sensor load has it"),
+        ('columns = ["x"]', 'columns = ["x", "y"]', "1, as joint rail has it"),
+        ('columns = ["set"]', 'columns = ["f", "set"]', "1, as controllers.drive has it"),
+        ("[start.rail]", '[start.rail]\nposition = "mesured"', "start.rail.position"),
+        ("[start.rail]", '[start.rail]\nspeed = "3 deg/s"', "a finite quantity in m/s"),
+        (
+            "[drift]",
+            "[present.body_mass.arm]\nmass = 1\n[drift]",
+            'body = "arm", attribute = "mass"',
+        ),
+        (
+            "[drift]",
+            '[present.mass_centre."arm.x"]\nshift = 0.1\n[drift]',
+            'body = "arm", attribute = "centre_x"',
+        ),
+        ('value = "3.1 kg"', 'value = "-3.1 kg"', "more than zero"),
+        ('attribute = "mass"\nvalue = "3.1 kg"', 'attribute = "mass"\nvalue = 0', "more than zero"),
+        (
+            'body = "cart"\nattribute = "mass"\nvalue = "3.1 kg"\nsd = "0.05 kg"',
+            'joint = "rail"\nattribute = "damping"\nvalue = -4',
+            "zero or more",
+        ),
+        ("[drift]", "[present.body_inertia.arm]\nshare = -1.5\n\n[drift]", "at least -0.99"),
+        ("noise = 0.05", "noise = [0.05, 0.05]", "one number, or 3 as it has columns"),
     ],
 )
 def test_a_wrong_file_is_answered_with_one_line(tmp_path, capsys, old, new, words):
@@ -72,6 +97,31 @@ def test_a_wrong_log_is_answered_with_one_line(tmp_path, capsys, old, new, words
     error = capsys.readouterr().err.strip()
     assert words in error
     assert "\n" not in error
+
+
+@pytest.mark.parametrize("noise", ["", "noise = 0", "noise = -1e-5"])
+def test_a_diagnosis_asks_for_the_noise_of_what_it_weighs_and_a_comparison_does_not(
+    tmp_path, capsys, noise
+):
+    path = write_files(tmp_path)
+    path.write_text(path.read_text().replace("noise = 1e-5", noise, 1))
+    (tmp_path / "log.csv").write_text(LOG)
+    words = [str(tmp_path / "log.csv"), "--plant", str(path), "--out", str(tmp_path / "out")]
+    assert main(["compare", *words]) == 0
+    assert main(["diagnose", *words]) == 2
+    assert "signals.cart.position.noise" in capsys.readouterr().err
+
+
+def test_dry_friction_of_a_given_motion_asks_for_the_typical_speed_when_the_rig_is_read(tmp_path):
+    path = write_files(tmp_path, "motion", kinds={})
+    begin, end = "[typical.joint.rail]", "[typical.joint.swing]"
+    head, _, tail = path.read_text().partition(begin)
+    path.write_text(head + end + tail.partition(end)[2])
+    with pytest.raises(VesTwinError, match=r"typical\.joint\.rail\.speed"):
+        Rig.load(str(path))
+    # the speed alone will do
+    path.write_text(head + begin + '\nspeed = "0.5 m/s"\n' + end + tail.partition(end)[2])
+    assert np.isfinite(MjcfForward.of(Rig.load(str(path))).simulate(programme(), {})).all()
 
 
 def test_options_that_a_rig_does_not_have_are_refused(tmp_path, capsys):

@@ -2,14 +2,28 @@
 
 from __future__ import annotations
 
+import copy
+from dataclasses import dataclass, replace
+from typing import ClassVar, final
+
 import numpy as np
 import pytest
-from two_link import TIME, programme, rig
+from two_link import TIME, programme, rig, write_files
 
 from ves_twin.diagnosis.forward import Programme
+from ves_twin.recording.recording import Recording, RecordingInfo
+from ves_twin.rigs import inverse
 from ves_twin.rigs.description import Mode
-from ves_twin.rigs.effect import play
+from ves_twin.rigs.effect import RigEffect, play
+from ves_twin.rigs.element import Element
+from ves_twin.rigs.experiment import RigExperiment
 from ves_twin.rigs.forward import MjcfForward
+from ves_twin.rigs.inverse import efforts_of_motion
+from ves_twin.rigs.part_effects import ActuatorDelay
+from ves_twin.rigs.rig import Rig
+from ves_twin.rigs.stepping import motion_of_drive
+from ves_twin.rigs.tell import tell
+from ves_twin.rigs.work import Work
 
 INNER = slice(200, -200)
 """Rows that the ends of a zero-phase filter do not reach."""
@@ -82,6 +96,102 @@ def test_halving_the_step_changes_little_and_the_difference_falls_with_it(machin
     change = np.max(np.abs(coarse - fine)[:, at])
     # a first-order step of 1 ms on a motion of 0.1 m
     assert 1e-7 < change < 2e-3
+
+
+@final
+@dataclass(frozen=True)
+class LongerArm(RigEffect):
+    """An effect of another package: the arm hangs lower on its cart."""
+
+    shift: float = 0.0
+
+    kind: ClassVar[str] = "longer_arm"
+    element: ClassVar[Element] = Element.BODY
+
+    def edit_model(self, model):
+        model.jnt_pos[model.joint("swing").id, 2] += self.shift
+
+
+def test_an_effect_that_edits_any_number_of_the_model_changes_the_efforts(machine):
+    """Through what is kept of earlier motions: as with nothing kept."""
+    fed = programme()
+    begun = Work.begin(machine, fed, {})
+    plain = efforts_of_motion(begun)["drive.force"]
+    model = copy.copy(begun.model)
+    LongerArm("arm", shift=0.2).edit_model(model)
+    found = efforts_of_motion(replace(begun, model=model))["drive.force"]
+    inverse._moved.cache_clear()
+    assert np.array_equal(found, efforts_of_motion(replace(begun, model=model))["drive.force"])
+    assert np.max(np.abs(found - plain)) > 0.1
+
+
+@final
+@dataclass(frozen=True)
+class Limit(RigEffect):
+    """An effect of another package: an amplifier gives no more than this."""
+
+    most: float = 0.0
+
+    kind: ClassVar[str] = "limit"
+    element: ClassVar[Element] = Element.ACTUATOR
+
+    def edit_command(self, command, time):
+        return np.clip(command, -self.most, self.most)
+
+
+def test_an_effect_on_an_actuator_is_at_work_in_closed_loop_too(machine):
+    """A limit below the controller's own is that limit; effects follow one another."""
+    fed = replace(programme(), time=TIME[:300])
+    fed = replace(fed, drive={n: v[:300] for n, v in fed.drive.items()})
+    place = machine.entries[0].place
+    limit, late = Limit("drive", most=3.0), ActuatorDelay("drive", delay=0.005)
+    controller = machine.description.controllers["drive"]
+    told = machine.description.model_copy(
+        update={"controllers": {"drive": controller.model_copy(update={"limit": 3.0})}}
+    )
+    limited = replace(machine, description=told)
+
+    def cart(rig, *effects):
+        work = replace(Work.begin(rig, fed, {}), effects=tuple((e, place) for e in effects))
+        return motion_of_drive(work, Mode.REFERENCE)["cart.position"]
+
+    assert not np.array_equal(cart(machine), cart(limited))
+    assert np.array_equal(cart(machine, limit), cart(limited))
+    assert np.array_equal(cart(machine, limit, late), cart(limited, late))
+    # the delay's own short way against what every effect has
+    general = RigEffect.edit_row(late, np.sin(TIME), TIME, 700)
+    assert late.edit_row(np.sin(TIME), TIME, 700) == pytest.approx(general, abs=1e-12)
+
+
+def test_a_start_may_be_a_text_with_a_unit(tmp_path):
+    told = '\n[start.swing]\nposition = "10 deg"\nspeed = "-20 deg/s"\n'
+    forward = MjcfForward.of(rig(tmp_path, more=told))
+    rows = forward.simulate(programme(), {})
+    angle = rows[:, [c.name for c in forward.channels].index("arm.angle")]
+    assert angle[0] == pytest.approx(np.radians(10.0), abs=1e-12)
+    # gravity and the torque change it by up to 10 % in 2 ms
+    assert (angle[1] - angle[0]) / TIME[1] == pytest.approx(np.radians(-20.0), rel=0.2)
+
+
+@pytest.mark.parametrize("state", ["measured", "estimated"])
+def test_a_measured_start_is_the_first_row_also_of_a_signal_that_reads_the_other_way(
+    tmp_path, state
+):
+    """Cart at +0.3 m by a position that counts backwards: -0.3 m of the joint, moving."""
+    path = write_files(tmp_path, more='\n[start.swing]\nposition = "measured"\n')
+    text = path.read_text().replace('joint = "rail"', 'joint = "rail"\nsign = -1', 1)
+    path.write_text(text.replace("[start.rail]", '[start.rail]\nposition = "measured"'))
+    machine = Rig.load(str(path))
+    fed = {**programme().drive, "cart.position": (0.3 + 0.2 * TIME)[:, None]}
+    if state == "estimated":
+        moved = Recording(TIME, fed, RecordingInfo("measured", scenario="a"))
+        machine = tell({"a": moved}, RigExperiment(start={"state": state}), machine).rig
+    forward = MjcfForward.of(machine)
+    rows = forward.simulate(Programme("backwards", TIME, fed), {})
+    x = rows[:, [c.name for c in forward.channels].index("cart.position")]
+    assert x[0] == pytest.approx(0.3, abs=1e-12)
+    # the ends of a zero-phase filter and 4 ms of motion: per cents of 0.2 m/s
+    assert (x[2] - x[0]) / (TIME[2] - TIME[0]) == pytest.approx(0.2, rel=0.1)
 
 
 def test_a_gap_is_crossed_before_the_driven_side_follows():

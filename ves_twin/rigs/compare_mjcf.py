@@ -114,6 +114,11 @@ def _one(recording: Recording, rig: Rig, mode: Mode) -> RigComparison:
     forward = MjcfForward.of(rig, mode)
     programme = Programme.of(recording, forward.drive, rate=rig.description.rate)
     simulated = forward.simulate(programme, {})
+    if not np.all(np.isfinite(simulated)):
+        came = f"a simulation of {recording.info.scenario} ({mode}) that diverges"
+        raise InvalidInputError(
+            rig.description.model, came, "a finite motion; try a smaller timestep"
+        )
     skip = 0 if mode is Mode.MOTION else int(np.ceil(FORGET / programme.period))
     grid = AnalysisGrid.of(programme.period, programme.rate)
     grid = AnalysisGrid(programme.period, 1) if programme.poses else grid

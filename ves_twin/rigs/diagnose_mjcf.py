@@ -68,6 +68,8 @@ def diagnose_mjcf(
     """
     told = rig.description
     forward = MjcfForward.of(rig)
+    for recording in recordings:
+        forward.check_noise(recording.signals)
     chosen = replace(settings or Settings(), rate=told.rate, causes=told.causes)
     if recordings and is_quick(forward, recordings[0], told.rate):
         chosen = replace(chosen, workers=1)

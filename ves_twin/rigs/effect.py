@@ -72,6 +72,10 @@ class RigEffect(ABC):
         """Whether every size is zero."""
         return not any(self.sizes.values())
 
+    def least(self, nominal: float) -> float:
+        """Smallest value of a size beside its nominal one; below it no machine can be."""
+        return -math.inf
+
     def present(self, model: mujoco.MjModel) -> float:
         """What the model has of its attribute; sizes are departures from that."""
         return 0.0
@@ -91,6 +95,20 @@ class RigEffect(ABC):
         """What an actuator gives of its command (n,)."""
         return command
 
+    def edit_row(self, command: FloatArray, time: FloatArray, row: int) -> float:
+        """What an actuator gives in one row of a closed loop, which knows no later commands.
+
+        By `edit_command` of all up to there; an effect that knows a shorter way has its own.
+
+        Args:
+            command: to the actuator (n,), filled up to the row.
+            time: of the rows [s] (n,).
+            row: which one.
+        """
+        if type(self).edit_command is RigEffect.edit_command:
+            return float(command[row])
+        return float(self.edit_command(command[: row + 1], time[: row + 1])[row])
+
     def edit_required(self, effort: FloatArray, time: FloatArray) -> FloatArray:
         """The command (n,) that an actuator needs to give an effort."""
         return effort
@@ -100,6 +118,14 @@ class RigEffect(ABC):
     ) -> FloatArray:
         """What is read (n, w) of a signal whose true values are (n, w)."""
         return reading
+
+    @property
+    def setting(self) -> tuple[str, str]:
+        """Element and attribute that stand for it in [[parameters]]: "tool", "centre_x"."""
+        if self.attribute != "centre":
+            return self.target, self.attribute
+        name, _, axis = self.target.rpartition(".")
+        return name, f"centre_{axis}"
 
     @property
     def column(self) -> int:

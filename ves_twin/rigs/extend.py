@@ -46,10 +46,7 @@ def _setting(
     entry: Entry, value: float, there: dict[tuple[str, str, str, str], Setting]
 ) -> Setting:
     """An attribute of the model at a new value; how well it is known stays as it was."""
-    name, attribute = entry.effect.target, entry.effect.attribute
-    if attribute == "centre":
-        name, _, axis = name.rpartition(".")
-        attribute = f"centre_{axis}"
+    name, attribute = entry.effect.setting
     new = Setting.model_validate({"attribute": attribute, str(entry.effect.element): name})
     old = there.get(_place(new), new)
     return old.model_copy(update={"value": value, "source": "ves-twin diagnose"})

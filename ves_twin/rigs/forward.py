@@ -2,15 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Container, Mapping
 from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
 
 from ves_twin.diagnosis.forward import Channel, Hypothesis, Parameter, Programme
+from ves_twin.errors import InvalidInputError
 from ves_twin.rigs.description import Compared, Mode
 from ves_twin.rigs.inverse import efforts_of_motion
+from ves_twin.rigs.joint_units import joint_units
 from ves_twin.rigs.rig import Rig
 from ves_twin.rigs.stepping import motion_of_drive
 from ves_twin.rigs.work import Work
@@ -94,6 +96,16 @@ class MjcfForward:
         """The library of causes that the file allows."""
         return self.rig.hypotheses
 
+    def check_noise(self, recorded: Container[str]) -> None:
+        """Raise InvalidInputError where a signal that is to be diagnosed has no noise.
+
+        A comparison does without; a diagnosis weighs each row by it.
+        """
+        for channel in self.channels:
+            if channel.signal in recorded and not channel.sd > 0.0:
+                expected = f"the sd of one row in {channel.unit}, above zero"
+                raise InvalidInputError(f"signals.{channel.signal}.noise", channel.sd, expected)
+
     def simulate(
         self, programme: Programme, values: Mapping[str, float], refined: bool = False
     ) -> FloatArray:
@@ -108,8 +120,7 @@ class MjcfForward:
     def _starts(self) -> tuple[Parameter, ...]:
         found = []
         for joint, start in self.rig.description.start.items():
-            hinge = bool(self.rig.model.jnt_type[self.rig.model.joint(joint).id] == 3)
-            units = ("rad", "rad/s") if hinge else ("m", "m/s")
+            units = joint_units(self.rig.model, joint)
             sds = (start.sd, start.speed_sd)
             for what, unit, told in zip(("position", "speed"), units, sds, strict=True):
                 sd = to_si(told, unit, f"start.{joint}")

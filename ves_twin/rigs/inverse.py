@@ -35,9 +35,11 @@ def efforts_of_motion(work: Work) -> dict[str, FloatArray]:
     told, model = work.rig.description, work.model
     positions = {j: work.position(j, work.programme.drive[s][:, 0]) for j, s in _single(work)}
     digest = hashlib.sha256(f"{work.rig.identity}{work.programme.identity}".encode())
-    for part in (*(getattr(model, name) for name in RIGID), *positions.values()):
+    rigid = _rigid(work.model)
+    digest.update(_content(rigid))
+    for part in positions.values():
         digest.update(np.ascontiguousarray(part).tobytes())
-    moved = _moved(_Motion(digest.hexdigest(), work, positions))
+    moved = _moved(_Motion(digest.hexdigest(), work, rigid, positions))
     found = {}
     for name, compared in told.compare.items():
         if compared.actuator:
@@ -47,14 +49,20 @@ def efforts_of_motion(work: Work) -> dict[str, FloatArray]:
     return found
 
 
-RIGID = (
-    "body_mass",
-    "body_ipos",
-    "body_inertia",
-    "dof_armature",
-    "jnt_stiffness",
-)
-"""Numbers of the model that effects change and that rigid-body efforts depend on."""
+def _rigid(model: mujoco.MjModel) -> mujoco.MjModel:
+    """The model without what is added to its rigid-body efforts, or acts through a command."""
+    rigid = copy.copy(model)
+    rigid.dof_frictionloss[:] = 0.0
+    rigid.dof_damping[:] = 0.0
+    rigid.actuator_gainprm[:] = 0.0
+    return rigid
+
+
+def _content(model: mujoco.MjModel) -> bytes:
+    """Every number of a model: an effect of another package may have edited any."""
+    content = np.empty(mujoco.mj_sizeModel(model), np.uint8)
+    mujoco.mj_saveModel(model, None, content)
+    return content.tobytes()
 
 
 @dataclass(frozen=True)
@@ -63,6 +71,7 @@ class _Motion:
 
     key: str
     work: Work = field(compare=False)
+    model: mujoco.MjModel = field(compare=False)
     positions: Mapping[str, FloatArray] = field(compare=False)
 
 
@@ -78,9 +87,7 @@ class _Moved:
 @lru_cache(maxsize=KEPT)
 def _moved(motion: _Motion) -> _Moved:
     """MuJoCo's inverse dynamics row by row, without damping and dry friction."""
-    model = copy.copy(motion.work.model)
-    model.dof_frictionloss[:] = 0.0
-    model.dof_damping[:] = 0.0
+    model = motion.model
     q, v, a = _states(motion)
     data = mujoco.MjData(model)
     efforts, sensed = np.zeros((len(q), model.nv)), np.zeros((len(q), model.nsensordata))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, ClassVar, final
 
@@ -14,6 +15,10 @@ from ves_twin.types import FloatArray
 
 if TYPE_CHECKING:
     import mujoco
+
+LEFT = 0.01
+"""Share of a body's mass and inertia that is left at least: MuJoCo takes neither at zero or below,
+and a body next to nothing needs steps next to nothing."""
 
 DELAY = Size("delay", "s", 0.05, 1e-4, Sign.POSITIVE)
 """Up to 50 ms: assumed, a slow fieldbus and its filters."""
@@ -53,6 +58,14 @@ class ActuatorDelay(RigEffect):
         """That of a delay ago."""
         return shifted(command, time, self.delay)
 
+    def edit_row(self, command: FloatArray, time: FloatArray, row: int) -> float:
+        """That of a delay ago, between the two rows about it."""
+        late = row - self.delay * (len(time) - 1) / float(time[-1] - time[0])
+        below = math.floor(late)
+        share = late - below
+        ends = command[max(below, 0)], command[min(max(below + 1, 0), row)]
+        return float((1.0 - share) * ends[0] + share * ends[1])
+
     def edit_required(self, effort: FloatArray, time: FloatArray) -> FloatArray:
         """That of a delay ahead."""
         return shifted(effort, time, -self.delay)
@@ -72,9 +85,15 @@ class BodyMass(ModelNumber):
     size: ClassVar[Size] = Size("mass", "kg", lambda p: 0.5 * p.mass, lambda p: 0.001 * p.mass)
     source: ClassVar[str] = "assumed: up to half of the body"
 
+    def least(self, nominal: float) -> float:
+        """A hundredth of the body."""
+        return LEFT * nominal
+
     def edit_model(self, model: mujoco.MjModel) -> None:
-        """Scale the inertia, add to the mass."""
-        model.body_inertia[self.entry(model)] *= 1.0 + self.mass / self.present(model)
+        """Scale the inertia, if the body has any mass, and add to the mass."""
+        before = self.present(model)
+        if before > 0.0:
+            model.body_inertia[self.entry(model)] *= 1.0 + self.mass / before
         super().edit_model(model)
 
 
@@ -109,6 +128,10 @@ class BodyInertia(RigEffect):
     element: ClassVar[Element] = Element.BODY
     size: ClassVar[Size] = Size("share", "1", 0.5, 0.002)
     source: ClassVar[str] = "assumed: up to half"
+
+    def least(self, nominal: float) -> float:
+        """All but a hundredth of the inertia gone."""
+        return LEFT - 1.0
 
     def edit_model(self, model: mujoco.MjModel) -> None:
         """Scale the inertia about the centre of mass."""

@@ -1,4 +1,4 @@
-"""place_of: a target's name as a place in the model or among the signals, with typical sizes."""
+"""place_of and typical_speed: a target as a place in model or signals, with typical sizes."""
 
 from __future__ import annotations
 
@@ -7,6 +7,7 @@ import mujoco
 from ves_twin.errors import InvalidInputError, UnknownNameError
 from ves_twin.rigs.description import RigDescription, Span
 from ves_twin.rigs.element import Element
+from ves_twin.rigs.joint_units import joint_units
 from ves_twin.rigs.place import Place
 from ves_twin.units import to_si
 
@@ -50,9 +51,20 @@ def place_of(
         target,
         hinge=hinge,
         effort=_positive(span.effort, "N*m" if hinge else "N", f"{what}.effort"),
-        speed=_positive(span.speed, "rad/s" if hinge else "m/s", f"{what}.speed"),
+        speed=typical_speed(target, told, model),
         travel=_positive(span.travel, "rad" if hinge else "m", f"{what}.travel"),
     )
+
+
+def typical_speed(joint: str, told: RigDescription, model: mujoco.MjModel) -> float:
+    """Typical speed of a joint [m/s or rad/s].
+
+    Raises:
+        InvalidInputError: the file says none.
+    """
+    _, unit = joint_units(model, joint)
+    span = told.typical.joint.get(joint, Span())
+    return _positive(span.speed, unit, f"typical.joint.{joint}.speed")
 
 
 def _signal(target: str, told: RigDescription, kind: str) -> Place:

@@ -13,7 +13,8 @@ import mujoco
 from ves_twin.diagnosis.forward import Hypothesis, Parameter
 from ves_twin.effects.magnitude import Magnitude, Sign
 from ves_twin.errors import FileAccessError, InvalidInputError, UnknownNameError, one_line
-from ves_twin.rigs.description import Allowed, Mode, RigDescription, Setting, load_description
+from ves_twin.rigs.check_description import check_description
+from ves_twin.rigs.description import Allowed, RigDescription, Setting, load_description
 from ves_twin.rigs.effect import RigEffect
 from ves_twin.rigs.element import Element
 from ves_twin.rigs.place import Place
@@ -43,6 +44,11 @@ class Entry:
     cause: bool
     per_recording: bool
     source: str
+
+    @property
+    def key(self) -> tuple[str, str]:
+        """Kind and target."""
+        return self.effect.kind, self.effect.target
 
     def name(self, magnitude: Magnitude) -> str:
         """Of a parameter: kind@target:magnitude."""
@@ -104,8 +110,9 @@ class Rig:
             if setting.value is not None:
                 effect, place = self._effect_of(setting, model)
                 (magnitude,) = effect.magnitudes(place)
-                value = to_si(setting.value, magnitude.unit, setting.attribute)
-                change = {magnitude.name: value - effect.present(model)}
+                change = {
+                    magnitude.name: _value(setting, effect, magnitude) - effect.present(model)
+                }
                 effect.sized(change).edit_model(model)
         mujoco.mj_setConst(model, mujoco.MjData(model))
         return model
@@ -135,10 +142,10 @@ class Rig:
     def parameters(self) -> tuple[Parameter, ...]:
         """Of all entries."""
         found = []
+        settings = {self._key(s): s for s in self.description.parameters}
         for entry in self.entries:
             for m, nominal in zip(entry.magnitudes, entry.nominal, strict=True):
-                low = 0.0 if m.sign is Sign.POSITIVE else nominal - m.largest
-                low, high = min(low, nominal), nominal + m.largest
+                low, high = _bounds(entry, m, nominal, settings.get(entry.key))
                 name = entry.name(m)
                 one = entry.per_recording
                 found.append(Parameter(name, m.unit, nominal, low, high, m.sd, one))
@@ -184,41 +191,8 @@ class Rig:
                 yield effect, entry.place
 
     def check(self) -> None:
-        """Raise UnknownNameError or InvalidInputError on names that do not fit together."""
-        told = self.description
-        signals = told.signals
-        for where, name in (
-            *(("drive.joints", s) for s in told.drive.joints.values()),
-            *(("drive.actuators", s) for s in told.drive.actuators.values()),
-            *(("compare", s) for s in told.compare),
-            *((f"controllers.{k}", c.reference) for k, c in told.controllers.items()),
-        ):
-            if name not in signals:
-                raise UnknownNameError(f"signal in {where}", name, signals)
-        if told.drive.mode is Mode.REFERENCE and not told.controllers:
-            raise InvalidInputError("controllers", "none", "one where drive.mode is 'reference'")
-        for names, known, what in (
-            (
-                [*told.drive.joints, *told.start, *(c.joint for c in told.compare.values())],
-                "jnt",
-                "joint",
-            ),
-            (
-                [*told.drive.actuators, *told.controllers]
-                + [c.actuator for c in told.compare.values()],
-                "actuator",
-                "actuator",
-            ),
-            ([c.sensor for c in told.compare.values()], "sensor", "sensor"),
-        ):
-            there = _names(self.model, known)
-            for name in filter(None, names):
-                if name not in there:
-                    raise UnknownNameError(f"{what} in {told.model}", name, there)
-        positions = {c.joint for c in told.compare.values() if c.of == "position"}
-        for joint, start in told.start.items():
-            if start.position == "measured" and joint not in {*positions, *told.drive.joints}:
-                raise InvalidInputError(f"start.{joint}", "measured", "a signal of its position")
+        """Raise UnknownNameError or InvalidInputError where the two files do not fit together."""
+        check_description(self.description, self.model)
         _ = self.hypotheses, self.parameters
 
     def _loaded(self, path: Path) -> mujoco.MjModel:
@@ -239,6 +213,11 @@ class Rig:
         effect = build_rig_effect(allowed.kind, target, {})
         place = place_of(effect.element, target, self.description, self.model, effect.kind)
         told = self.description.present.get(allowed.kind, {}).get(target, {})
+        if told and effect.attribute:
+            name, attribute = effect.setting
+            expected = f'[[parameters]] with {effect.element} = "{name}", attribute = "{attribute}"'
+            came = f"present.{allowed.kind}.{target}"
+            raise InvalidInputError(came, told, f"{expected} and value")
         if set(told) - set(effect.sizes):
             build_rig_effect(allowed.kind, target, told)
         magnitudes = tuple(
@@ -249,6 +228,10 @@ class Rig:
             nominal: tuple[float, ...] = (effect.present(self.model),)
         else:
             nominal = tuple(float(told.get(m.name, 0.0)) for m in magnitudes)
+            for m, value in zip(magnitudes, nominal, strict=True):
+                if value < effect.least(0.0):
+                    what = f"present.{allowed.kind}.{target}.{m.name}"
+                    raise InvalidInputError(what, value, f"at least {effect.least(0.0):g}")
         source = allowed.source or (setting.source if setting else "") or effect.source
         return Entry(
             effect, place, magnitudes, nominal, allowed.cause, allowed.per_recording, source
@@ -277,10 +260,33 @@ class Rig:
         return known[attribute], name
 
 
-def _names(model: mujoco.MjModel, kind: str) -> set[str]:
-    count = getattr(model, {"jnt": "njnt", "actuator": "nu", "sensor": "nsensor"}[kind])
-    access = {"jnt": model.joint, "actuator": model.actuator, "sensor": model.sensor}[kind]
-    return {access(i).name for i in range(count)}
+def _bounds(
+    entry: Entry, m: Magnitude, nominal: float, setting: Setting | None
+) -> tuple[float, float]:
+    """Of a parameter: what the file says, else the largest departure; never what cannot be."""
+    one_sided = m.sign is Sign.POSITIVE
+    low, high = 0.0 if one_sided else nominal - m.largest, nominal + m.largest
+    least = 0.0 if one_sided else entry.effect.least(nominal)
+    what = f"{entry.effect.kind} of {entry.effect.target}"
+    if setting and setting.low is not None:
+        low = to_si(setting.low, m.unit, f"low of {what}")
+    if setting and setting.high is not None:
+        high = to_si(setting.high, m.unit, f"high of {what}")
+    told = setting is not None and (setting.low, setting.high) != (None, None)
+    if told and not low <= nominal <= high:
+        raise InvalidInputError(f"low, high of {what}", (low, high), f"{nominal:g} within them")
+    return min(max(low, least), nominal), high
+
+
+def _value(setting: Setting, effect: RigEffect, m: Magnitude) -> float:
+    """What a setting makes of its attribute: a mass above zero, friction and springs not below."""
+    what = f"{setting.attribute} of {effect.target}"
+    value = to_si(setting.value, m.unit, what)
+    if m.sign is Sign.POSITIVE and value < 0.0:
+        raise InvalidInputError(what, setting.value, "zero or more")
+    if value <= effect.least(0.0):
+        raise InvalidInputError(what, setting.value, "more than zero")
+    return value
 
 
 def _sized(m: Magnitude, allowed: Allowed, setting: Setting | None, what: str) -> Magnitude:

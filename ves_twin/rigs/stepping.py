@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import math
-
 import mujoco
 import numpy as np
 from mujoco import rollout
@@ -12,8 +10,18 @@ from ves_twin.rigs.description import Controller, Mode
 from ves_twin.rigs.effect import RigEffect
 from ves_twin.rigs.element import Element
 from ves_twin.rigs.inverse import smoothed
+from ves_twin.rigs.joint_units import joint_units
 from ves_twin.rigs.work import Work, sensor_rows
 from ves_twin.types import FloatArray
+from ves_twin.units import to_si
+
+FAILED = (
+    mujoco.mjtWarning.mjWARN_BADQPOS,
+    mujoco.mjtWarning.mjWARN_BADQVEL,
+    mujoco.mjtWarning.mjWARN_BADQACC,
+    mujoco.mjtWarning.mjWARN_BADCTRL,
+)
+"""After these MuJoCo goes on from its reference state, or without commands: not what was asked."""
 
 
 def motion_of_drive(work: Work, mode: Mode, refined: bool = False) -> dict[str, FloatArray]:
@@ -26,6 +34,9 @@ def motion_of_drive(work: Work, mode: Mode, refined: bool = False) -> dict[str, 
         work: what is simulated.
         mode: CONTROL feeds recorded commands, REFERENCE set-points of the controllers.
         refined: with half the step.
+
+    Returns:
+        Signals; NaN throughout where the motion diverged and MuJoCo had to start it anew.
     """
     model, period = work.model, work.programme.period
     steps = max(1, round(period / model.opt.timestep)) * (2 if refined else 1)
@@ -36,7 +47,14 @@ def motion_of_drive(work: Work, mode: Mode, refined: bool = False) -> dict[str, 
         path, sensed, commands = _open(work, state, steps)
     else:
         path, sensed, commands = _stepped(work, state, steps, closed)
+    if _failed(state):
+        path, sensed = np.full_like(path, np.nan), np.full_like(sensed, np.nan)
+        commands = np.full_like(commands, np.nan)
     return _signals(work, path, sensed, commands)
+
+
+def _failed(data: mujoco.MjData) -> bool:
+    return any(data.warning[kind].number for kind in FAILED)
 
 
 def _start(work: Work) -> mujoco.MjData:
@@ -55,20 +73,22 @@ def _measured_start(work: Work, joint: str) -> tuple[float, float]:
     told = work.rig.description
     start = told.start[joint]
     if start.position != "measured":
-        return float(start.position), float(start.speed)
-    signal = position_signal(work, joint)
-    column = work.programme.drive[signal][:, 0]
+        units, what = joint_units(work.model, joint), f"start.{joint}"
+        at = to_si(start.position, units[0], f"{what}.position")
+        return at, to_si(start.speed, units[1], f"{what}.speed")
+    signal, sign = position_signal(work, joint)
+    column = sign * work.programme.drive[signal][:, 0]
     smooth = smoothed(column, work.programme.period, told.drive.smoothing)
     speed = (smooth[1] - smooth[0]) / work.programme.period
     return float(column[0]), float(speed)
 
 
-def position_signal(work: Work, joint: str) -> str:
-    """The signal that measures a joint's position."""
+def position_signal(work: Work, joint: str) -> tuple[str, int]:
+    """The signal that measures a joint's position, and its sign."""
     for name, compared in work.rig.description.compare.items():
         if compared.joint == joint and compared.of == "position":
-            return name
-    return work.rig.description.drive.joints[joint]
+            return name, compared.sign
+    return work.rig.description.drive.joints[joint], 1
 
 
 def _resisted(work: Work) -> bool:
@@ -135,12 +155,12 @@ def _stepped(
         for name in {e.target for e, _ in work.effects if e.element is Element.JOINT}
     ]
     path, sensed = np.zeros((rows, model.nq + model.nv)), np.zeros((rows, model.nsensordata))
-    speed = np.zeros(1)
+    speed, reach = np.zeros(1), _Reach(work)
     for k in range(rows):
         path[k, : model.nq], path[k, model.nq :] = data.qpos, data.qvel
         for loop in loops:
             asked[k, loop.actuator] = loop.command(k, data)
-        data.ctrl[:] = _late(work, asked, k) if closed else asked[k]
+        data.ctrl[:] = reach.at(asked[k], k) if closed else asked[k]
         for n in range(steps):
             for name, dof in resisted:
                 speed[0] = data.qvel[dof]
@@ -148,21 +168,28 @@ def _stepped(
             mujoco.mj_step(model, data)
             if n == 0:
                 sensed[k] = data.sensordata
+        if _failed(data):
+            break
     return path, sensed, asked
 
 
-def _late(work: Work, asked: FloatArray, row: int) -> FloatArray:
-    """Commands of a row as they reach the actuators, which may be late."""
-    reach = asked[row].copy()
-    for effect, _ in work.effects:
-        if effect.element is Element.ACTUATOR and "delay" in effect.sizes:
-            i = work.model.actuator(effect.target).id
-            late = row - effect.sizes["delay"] / work.programme.period
-            below = math.floor(late)
-            share = late - below
-            ends = asked[max(below, 0), i], asked[min(max(below + 1, 0), row), i]
-            reach[i] = (1.0 - share) * ends[0] + share * ends[1]
-    return np.asarray(reach)
+class _Reach:
+    """Commands of a closed loop as they reach the actuators, row by row, effect after effect."""
+
+    def __init__(self, work: Work) -> None:
+        self.time = work.programme.time
+        self.chain = [
+            (effect, work.model.actuator(effect.target).id, np.zeros(len(self.time)))
+            for effect, _ in work.effects
+            if effect.element is Element.ACTUATOR
+        ]
+
+    def at(self, asked: FloatArray, row: int) -> FloatArray:
+        reach = asked.copy()
+        for effect, i, given in self.chain:
+            given[row] = reach[i]
+            reach[i] = effect.edit_row(given, self.time, row)
+        return reach
 
 
 def _signals(

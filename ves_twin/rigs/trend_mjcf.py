@@ -46,6 +46,8 @@ def trend_mjcf(
         UnknownNameError: an unknown cause, or a signal that is not recorded.
     """
     forward = MjcfForward.of(rig)
+    for recording in recordings:
+        forward.check_noise(recording.signals)
     chosen = replace(settings or Settings(), rate=rig.description.rate)
     if recordings and is_quick(forward, recordings[0], rig.description.rate):
         chosen = replace(chosen, workers=1)

@@ -15,6 +15,7 @@ from ves_twin.rigs.effect import RigEffect
 from ves_twin.rigs.element import Element
 from ves_twin.rigs.joint_effects import CoulombFriction
 from ves_twin.rigs.place import Place
+from ves_twin.rigs.places import typical_speed
 from ves_twin.rigs.rig import Rig
 from ves_twin.types import FloatArray
 
@@ -68,15 +69,8 @@ class Work:
         level = CoulombFriction(joint).present(self.model)
         if level == 0.0:
             return np.zeros_like(speed)
-        typical = self.rig.description.typical.joint[joint].speed
-        slow = SMOOTH * float(typical) if isinstance(typical, int | float) else self._slow(joint)
+        slow = SMOOTH * typical_speed(joint, self.rig.description, self.model)
         return np.asarray(level * np.tanh(speed / slow))
-
-    def _slow(self, joint: str) -> float:
-        from ves_twin.rigs.places import place_of
-
-        place = place_of(Element.JOINT, joint, self.rig.description, self.model, "")
-        return SMOOTH * place.speed
 
     def position(self, joint: str, position: FloatArray) -> FloatArray:
         """A joint's position behind the effects between it and where it is measured (n,)."""
