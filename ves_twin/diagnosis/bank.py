@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import hashlib
-import os
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -16,6 +15,7 @@ from ves_twin.diagnosis.linearise import Linearisation, linearise, with_bends
 from ves_twin.diagnosis.runs import Progress, Runs, silent
 from ves_twin.errors import FileAccessError, InvalidInputError
 from ves_twin.types import FloatArray, IntArray, SingleArray
+from ves_twin.whole_file import whole_file
 
 STRAIGHT = 4.0
 """Size of a linear signature in commissioning sd; scaled, it reaches from 1.4 to 11."""
@@ -245,13 +245,12 @@ def write_arrays(path: Path, **arrays: np.ndarray[Any, Any]) -> None:
     Raises:
         FileAccessError: the folder cannot be written.
     """
-    unfinished = path.with_name(f".{path.stem}-{os.getpid()}.npz")
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
-        np.savez(unfinished, **arrays)  # type: ignore[arg-type]
-        unfinished.replace(path)
     except OSError as error:
         raise FileAccessError(f"cannot write {path}: {error.strerror}") from None
+    with whole_file(path) as partial, partial.open("wb") as file:
+        np.savez(file, **arrays)  # type: ignore[arg-type]
 
 
 def _read(path: Path, runs: Runs) -> Bank:

@@ -7,9 +7,9 @@ import os
 from pathlib import Path
 
 from ves_twin.diagnosis.verdict import Verdict
-from ves_twin.errors import FileAccessError
 from ves_twin.rigs.description import KIND, SCHEMA, Setting, load_description, shipped_rigs
 from ves_twin.rigs.rig import Entry, Rig
+from ves_twin.whole_file import write_whole
 
 
 def extended(rig: Rig, verdict: Verdict) -> Rig:
@@ -71,12 +71,7 @@ def write_rig(rig: Rig, path: Path, note: str = "") -> None:
         for target, sizes in targets.items():
             lines += ["", f"[present.{kind}.{json.dumps(target)}]"]
             lines += [f"{name} = {value!r}" for name, value in sizes.items()]
-    partial = path.with_suffix(".part")
-    try:
-        partial.write_text("\n".join(lines) + "\n", encoding="utf-8")
-        partial.replace(path)
-    except OSError as error:
-        raise FileAccessError(f"cannot write {path}: {error.strerror}") from None
+    write_whole(path, "\n".join(lines) + "\n")
 
 
 def _toml(value: object) -> str:
