@@ -17,7 +17,7 @@ from ves_twin.plant.statics import place_rig
 from ves_twin.recording.recording import Event
 from ves_twin.rerun_log import write
 from ves_twin.rerun_log.write import write_rrd
-from ves_twin.signals import SIGNALS
+from ves_twin.signals import SIGNALS, Role, Signal
 
 
 def _run(name: str, duration: float) -> Recording:
@@ -202,6 +202,24 @@ def test_a_recording_of_one_measured_signal_can_be_written(beam, tmp_path):
     info = replace(beam.info, origin="measured", settings="{}", plant="", plant_hash="", events=())
     few = Recording(beam.time, {"leg.length": beam["leg.length"]}, info)
     assert "/signals/leg.length" in _entities(write_rrd(few, tmp_path / "a.rrd"))
+
+
+@pytest.fixture
+def own(beam) -> Recording:
+    """A recording with a signal of its own in two units that no signal of the rig has."""
+    units = ("m/s", "m/s", "rad/s^2")
+    signal = Signal("hand.rates", ("x", "y", "turn"), units, Role.MEASUREMENT, "i", "of a hand")
+    values = np.random.default_rng(2).normal(size=(len(beam), 3))
+    info = replace(beam.info, own_signals=(signal,))
+    return Recording(beam.time, {**beam.signals, signal.name: values}, info)
+
+
+def test_a_signal_of_ones_own_in_other_units_is_written(own, tmp_path):
+    path = write_rrd(own, tmp_path / "a.rrd")
+    speeds = _column(path, "signals/hand.rates/m_per_s", "Scalars:scalars")
+    np.testing.assert_allclose(speeds, own["hand.rates"][:, :2])
+    turns = _column(path, "signals/hand.rates/rad_per_s_2", "Scalars:scalars")
+    np.testing.assert_allclose(turns, own["hand.rates"][:, 2:])
 
 
 def test_an_empty_recording_can_be_written(beam, tmp_path):
