@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import argparse
-import json
 import os
 from pathlib import Path
 from typing import TYPE_CHECKING
+
+from ves_twin.json_text import json_text
 
 if TYPE_CHECKING:
     from ves_twin.sweeps.engine import Engine
@@ -71,7 +72,7 @@ def execute(arguments: argparse.Namespace) -> int:
             lambda done, points: bar.share(done / points, f"{done} of {points} points"),
         )
     if arguments.json:
-        print(json.dumps(_account(plan, account), indent=2))
+        print(json_text(_account(plan, account)))
     else:
         print(_text(plan, account))
     return 0 if account.whole else 3

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 
+from ves_twin.json_text import json_text
 from ves_twin.plant.plant import Plant
 from ves_twin.procedures.feasible import Feasible
 from ves_twin.types import FloatArray
@@ -74,7 +74,7 @@ def write_fit(fit: Fit, bounds: Mapping[str, str], folder: Path) -> list[str]:
         },
         "conflicts": [{"one": a, "other": b, "cosine": c} for a, b, c in conflicts],
     }
-    text = json.dumps(content, indent=2)
+    text = json_text(content)
     write_whole(folder / "calibration.json", text + "\n")
     write_whole(folder / "plant.toml", _plant_file(fit))
     write_whole(folder / "entries.toml", _entries(fit))
