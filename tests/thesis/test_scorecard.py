@@ -68,7 +68,7 @@ def test_commands_on_a_rig_tuned_without_a_claim_name_its_file(claims, answers, 
     card = score_claims([claims["C041"]], {"C041": told}, context)
     command = card.rows[0].predicted.runs[0]
     file = resource_folder("models").parent / command.split("--plant ")[1]
-    assert Plant.load(str(file)) == plant_without("C041")
+    assert Plant.load(str(file)).hash == plant_without("C041").hash
 
 
 def test_rigs_calibrated_without_a_claim_are_plant_files(tmp_path, monkeypatch):
