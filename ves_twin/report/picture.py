@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from ves_twin.errors import FileAccessError
+from ves_twin.whole_file import whole_file
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -21,14 +21,12 @@ def new_picture(height: float, width: float = WIDTH) -> Figure:
     return Figure(figsize=(width, height), layout="constrained")
 
 
-def save_picture(figure: Figure, path: Path) -> Path:
-    """Write a figure as PNG.
+def save_picture(figure: Figure, path: Path, dpi: int = DPI) -> Path:
+    """Write a figure as PNG, complete or not at all.
 
     Raises:
         FileAccessError: the file cannot be written.
     """
-    try:
-        figure.savefig(path, dpi=DPI)
-    except OSError as error:
-        raise FileAccessError(f"cannot write {path}: {error.strerror}") from None
+    with whole_file(path) as partial:
+        figure.savefig(partial, format="png", dpi=dpi)
     return path
