@@ -12,6 +12,7 @@ from ves_twin.linear.leg_loop import leg_actuator, leg_loop, leg_return_ratio, s
 from ves_twin.linear.leg_settings import LegSettings
 from ves_twin.linear.response import bandwidth, frequency_response, step_response
 from ves_twin.plant.plant import Plant
+from ves_twin.procedures.claims import RATE_GAIN
 
 LOW, DEFAULT = LegSettings(12.6), LegSettings(20.9, place=FilterPlace.ERROR)
 COUNTS = (3000, 6000, 12000, 20000, 30000)
@@ -140,3 +141,8 @@ def test_amplifiers_slower_than_the_legs_are_refused(plant):
 def test_a_frequency_beyond_half_the_rate_is_refused(plant):
     with pytest.raises(InvalidInputError, match="half the rate"):
         frequency_response(leg_loop(plant, LOW), [1.0, 400.0])
+
+
+def test_counts_have_one_scale():
+    """K2 = 30000 is 0.1 wherever it is meant, to the last bit: scorecard, figures, calibration."""
+    assert LegSettings.of_counts(12000, 30000, FilterPlace.ERROR).rate_gain == 0.1 == RATE_GAIN
