@@ -8,7 +8,7 @@ from ves_twin.control import leg_loop as kernel
 from ves_twin.control.leg_loop import FilterPlace
 from ves_twin.errors import InvalidInputError
 from ves_twin.linear.hydraulic_stage import LENGTH, hydraulic_stage, load_per_leg
-from ves_twin.linear.leg_loop import leg_actuator, leg_loop, leg_return_ratio, section
+from ves_twin.linear.leg_loop import leg_actuator, leg_loop, section
 from ves_twin.linear.leg_settings import LegSettings
 from ves_twin.linear.response import bandwidth, frequency_response, step_response
 from ves_twin.plant.plant import Plant
@@ -117,7 +117,7 @@ def test_the_actuator_falls_by_20_db_a_decade(plant):
 
 def test_the_loop_gain_reaches_minus_one_where_the_closed_loop_turns_unstable(plant):
     """Gain margin of the return ratio against the poles of the closed loop."""
-    ratio = leg_return_ratio(plant, DEFAULT)
+    ratio = leg_actuator(plant) * section(plant.parameters) * DEFAULT.gain
     hertz = np.geomspace(1.0, 12.5, 20000)
     gain = frequency_response(ratio, hertz).gain
     turn = np.flatnonzero(np.diff(np.sign(gain.imag)) * (gain.real[:-1] < 0))[0]

@@ -58,6 +58,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def execute(arguments: argparse.Namespace) -> int:
     """Carry out the sweep; 0 when every point has a result, 3 where some were lost."""
+    from ves_twin.cli.main import DONE, ENDED_EARLY
     from ves_twin.cli.progress import RunProgress
     from ves_twin.sweeps.sweep import carry_out_sweep
 
@@ -75,7 +76,7 @@ def execute(arguments: argparse.Namespace) -> int:
         print(json_text(_account(plan, account)))
     else:
         print(_text(plan, account))
-    return 0 if account.whole else 3
+    return DONE if account.whole else ENDED_EARLY
 
 
 def _engine(arguments: argparse.Namespace) -> Engine:

@@ -94,16 +94,6 @@ def leg_loop(plant: Plant, settings: LegSettings, load: float | None = None) -> 
     return closed
 
 
-def leg_return_ratio(plant: Plant, settings: LegSettings, load: float | None = None) -> StateSpace:
-    """Loop gain of the length loop, cut at the error; at both places of the section the same."""
-    from control import StateSpace
-
-    inner = _with_rate(plant, settings, load) * settings.gain
-    if settings.place is FilterPlace.NONE:
-        return inner
-    return inner * StateSpace(*_section_matrices(plant.actual))
-
-
 def _with_rate(plant: Plant, settings: LegSettings, load: float | None) -> StateSpace:
     from control import StateSpace, feedback
 

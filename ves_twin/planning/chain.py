@@ -135,11 +135,6 @@ class SerialChain:
         rotation, shift = self.displacements(q)
         return np.asarray(np.einsum("...kij,kj->...ki", rotation, self.com) + shift)
 
-    def tip_at(self, q: FloatArray) -> FloatArray:
-        """End of the last link [m] (..., 3) at q (..., n)."""
-        rotation, shift = self.displacements(q)
-        return np.asarray(rotation[..., -1, :, :] @ self.tip + shift[..., -1, :])
-
     def mass_matrix(self, q: FloatArray) -> FloatArray:
         """Mass matrix of the arm for the rates (V, omega of the base; q'), about the base origin.
 

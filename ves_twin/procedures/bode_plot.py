@@ -3,14 +3,10 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 from ves_twin.linear.response import FrequencyResponse
 from ves_twin.procedures.sine_fit import MeasuredResponse
 from ves_twin.report.picture import new_picture, save_picture
-
-if TYPE_CHECKING:
-    pass
 
 HEIGHT = 5.2
 """Height of a picture [inch]."""
