@@ -7,11 +7,12 @@ import pytest
 from matplotlib.figure import Figure
 
 from ves_twin.errors import FileAccessError
-from ves_twin.report.picture import new_picture, save_picture
+from ves_twin.report.figure import new_figure
+from ves_twin.report.picture import PICTURE_WIDTH, save_picture
 
 
 def test_a_picture_has_its_size_in_inches_times_its_resolution(tmp_path):
-    path = save_picture(new_picture(2.0, 3.0), tmp_path / "a.png", 100)
+    path = save_picture(new_figure(2.0, 3.0), tmp_path / "a.png", 100)
     assert matplotlib.image.imread(path).shape[:2] == (200, 300)
     assert list(tmp_path.iterdir()) == [path]
 
@@ -25,6 +26,6 @@ def test_a_full_disk_leaves_the_picture_that_was_there(tmp_path, monkeypatch):
     path.write_bytes(b"before")
     monkeypatch.setattr(Figure, "savefig", fill)
     with pytest.raises(FileAccessError, match="No space left"):
-        save_picture(new_picture(2.0), path)
+        save_picture(new_figure(2.0, PICTURE_WIDTH), path)
     assert path.read_bytes() == b"before"
     assert list(tmp_path.iterdir()) == [path]

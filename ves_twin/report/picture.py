@@ -1,4 +1,4 @@
-"""new_picture and save_picture: a matplotlib figure as PNG, without a display or global state."""
+"""save_picture: a matplotlib figure as PNG."""
 
 from __future__ import annotations
 
@@ -10,15 +10,8 @@ from ves_twin.whole_file import whole_file
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-WIDTH, DPI = 7.0, 110
+PICTURE_WIDTH, DPI = 7.0, 110
 """Width of a picture [inch] and its resolution."""
-
-
-def new_picture(height: float, width: float = WIDTH) -> Figure:
-    """An empty figure of a size in inches."""
-    from matplotlib.figure import Figure  # slow to import
-
-    return Figure(figsize=(width, height), layout="constrained")
 
 
 def save_picture(figure: Figure, path: Path, dpi: int = DPI) -> Path:
