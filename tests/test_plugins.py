@@ -1,6 +1,7 @@
 """Installed packages add controllers by entry points; clashes and broken ones are one clear line."""
 
 import sys
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -9,6 +10,11 @@ import ves_twin as vt
 from ves_twin.cli.main import main
 from ves_twin.control.registry import GRAVITY_COMPENSATIONS, PLATFORM_CONTROLLERS
 from ves_twin.errors import PluginError, UnknownNameError, VesTwinError
+from ves_twin.scenario.schema import Scenario
+from ves_twin.simulator.outcome import Outcome
+from ves_twin.thesis.claim import load_claims
+from ves_twin.thesis.context import Context
+from ves_twin.thesis.evaluators.registry import ANSWERS
 
 SHORT = {"run.duration": 0.3, "run.settle": 0.3}
 HEAVE = '''
@@ -201,3 +207,19 @@ def test_an_installed_effect_that_declares_nothing_is_one_line(install):
     install("bobbing_vague", {"ves_twin.effects": {"vague": "bobbing_vague:Vague"}}, STICKY)
     with pytest.raises(PluginError, match=r"'vague' of bobbing_vague 1\.2 .* lacks kind, targets"):
         vt.Simulator(None, vt.Scenario.load("position_sine", {"effects.vague.rig.x": 1.0}), 0)
+
+
+def test_the_modes_of_the_thesis_are_asked_for_without_those_of_plugins(install):
+    install("other_lab", {"ves_twin.controllers": {"heave": "other_lab:Heave"}})
+    asked = []
+
+    class Asked(Context):
+        def run(self, scenario, changes=None):
+            asked.append(Scenario.load(scenario, changes).platform.mode)
+            info = SimpleNamespace(outcome=Outcome.COMPLETED)
+            return SimpleNamespace(recording=SimpleNamespace(info=info), command=scenario)
+
+    found = ANSWERS["C002"](Asked(vt.Plant.load("ves2")), load_claims()["C002"])
+    assert "heave" in PLATFORM_CONTROLLERS
+    assert found.holds
+    assert asked == ["position", "admittance", "micro_gravity"]

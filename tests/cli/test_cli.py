@@ -1,6 +1,7 @@
 """The command line: answers, exit codes, and one line for whatever is wrong."""
 
 import json
+import math
 import signal
 import subprocess
 import sys
@@ -10,8 +11,10 @@ from pathlib import Path
 import pytest
 
 from ves_twin.cli.main import COMMANDS, main
+from ves_twin.procedures.procedure import Account, Conduct, Procedure
 from ves_twin.recording.files import load_recording
 from ves_twin.scenario.load import procedure_questions, scenario_questions
+from ves_twin.simulator.outcome import Outcome
 
 QUICK = ["--set", "run.duration=0.3", "--set", "run.settle=0.3", "--no-rrd"]
 
@@ -33,6 +36,25 @@ def test_json_output_is_one_object_and_nothing_else(capsys, tmp_path):
     assert json.loads(capsys.readouterr().out)["versions"]["mujoco"].startswith("3.17")
     assert main(["run", "position_sine", *QUICK, "--json", "--out", str(tmp_path)]) == 0
     assert json.loads(capsys.readouterr().out)["outcome"] == "completed"
+
+
+class _Endless(Procedure):
+    """Ends with numbers that JSON does not know, as `confirm_by_run` may."""
+
+    def carry_out(self, conduct: Conduct) -> Account:
+        return Account(Outcome.COMPLETED, {"growth": math.inf, "sd": [math.nan, 1.0]})
+
+
+def test_a_procedure_s_json_has_null_for_what_is_not_finite(capsys, tmp_path, monkeypatch):
+    found = _Endless(name="endless", question="how fast?", procedure="stability_map")
+    where = "ves_twin.procedures.registry.load_procedure"
+    monkeypatch.setattr(where, lambda name, changes: found)
+    assert main(["run", "stability_map", "--json", "--out", str(tmp_path)]) == 0
+    for text in (capsys.readouterr().out, (tmp_path / "summary.json").read_text()):
+        assert "Infinity" not in text
+        assert "NaN" not in text
+        content = json.loads(text)
+        assert (content["growth"], content["sd"]) == (None, [None, 1.0])
 
 
 def test_run_writes_what_the_contract_names(capsys, tmp_path):

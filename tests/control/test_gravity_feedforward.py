@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 import ves_twin as vt
-from ves_twin.gravity_model.chain import Joint, SerialChain
+from ves_twin.gravity_model.chain import DhChain, Joint
 from ves_twin.gravity_model.gravity_model import GravityModel, gravity_in_top
 from ves_twin.plant.assembly import assemble_free_arm, compile_model
 from ves_twin.scenario.schema import Scenario
@@ -31,7 +31,7 @@ def test_the_torque_is_what_mujoco_needs_to_hold_the_arm_on_a_tilted_base():
 
 def test_a_prismatic_joint_carries_the_weight_along_its_axis():
     joints = (Joint(0.2, 0.3, np.pi / 2), Joint(0.0, 0.1, 0.4, 0.3, prismatic=True))
-    chain = SerialChain(joints, np.eye(4))
+    chain = DhChain(joints, np.eye(4))
     mass, com = np.array([5.0, 3.0, 2.0]), RNG.normal(size=(3, 3))
     model = GravityModel.of(chain, mass, com, 9.81)
     q, angles = np.array([[0.4, 0.2]]), np.array([[0.1, -0.2, 0.3]])

@@ -11,7 +11,7 @@ from ves_twin.errors import (
     VesTwinError,
 )
 from ves_twin.gravity_model.calibration import GravityCalibration
-from ves_twin.gravity_model.chain import Joint, SerialChain
+from ves_twin.gravity_model.chain import DhChain, Joint
 from ves_twin.gravity_model.first_moments import FirstMoments
 from ves_twin.gravity_model.identify import identify
 
@@ -46,7 +46,7 @@ def test_another_sensor_is_refused(calibration, bench):
 
 
 def test_another_arm_is_refused(calibration):
-    other = FirstMoments.of(SerialChain((Joint(0.5, 0.3, 0.0),), np.eye(4)))
+    other = FirstMoments.of(DhChain((Joint(0.5, 0.3, 0.0),), np.eye(4)))
     with pytest.raises(InvalidInputError, match="arm"):
         calibration.check("sensor-1", other)
 

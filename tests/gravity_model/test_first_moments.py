@@ -4,17 +4,17 @@ import mujoco
 import numpy as np
 import pytest
 
-from ves_twin.gravity_model.chain import Joint, SerialChain
+from ves_twin.gravity_model.chain import DhChain, Joint
 from ves_twin.gravity_model.first_moments import FirstMoments
 from ves_twin.gravity_model.gravity_model import GravityModel, gravity_in_top
 from ves_twin.kinematics.rotations import matrix_from_angles
 from ves_twin.plant.plant import Plant
 
-PUMA = FirstMoments.of(SerialChain.of_puma560(Plant.load("ves2").arm))
+PUMA = FirstMoments.of(DhChain.of_puma560(Plant.load("ves2").arm))
 ROUND_OFF = 1e-9
 """Sums of products of order 1e3 in double precision, and least squares over well-scaled columns."""
 
-SIX_AXES = SerialChain(
+SIX_AXES = DhChain(
     (
         Joint(0.40, 0.18, np.pi / 2),
         Joint(0.0, 0.60, 0.0, theta=np.pi / 2),
@@ -25,7 +25,7 @@ SIX_AXES = SerialChain(
     ),
     np.eye(4),
 )
-WITH_SLIDE = SerialChain(
+WITH_SLIDE = DhChain(
     (Joint(0.3, 0.1, 0.0), Joint(0.0, 0.4, np.pi), Joint(0.05, 0.0, 0.0, prismatic=True)),
     np.eye(4),
 )

@@ -3,19 +3,19 @@
 import numpy as np
 import pytest
 
-from ves_twin.gravity_model.chain import Joint, SerialChain
+from ves_twin.gravity_model.chain import DhChain, Joint
 from ves_twin.gravity_model.gravity_model import GravityModel
 from ves_twin.gravity_model.quick_gravity import QuickGravity
 from ves_twin.plant.plant import Plant
 
 TURNED = np.array([[0, -1, 0, 0.1], [1, 0, 0, -0.2], [0, 0, 1, 0.3], [0, 0, 0, 1.0]])
 CHAINS = {
-    "puma": SerialChain.of_puma560(Plant.load("ves2").arm),
-    "slide": SerialChain(
+    "puma": DhChain.of_puma560(Plant.load("ves2").arm),
+    "slide": DhChain(
         (Joint(0.3, 0.1, 0.0), Joint(0.0, 0.4, np.pi), Joint(0.05, 0.0, 0.0, prismatic=True)),
         TURNED,
     ),
-    "four": SerialChain(
+    "four": DhChain(
         tuple(Joint(0.1 * k, 0.2, 0.5 * k - 1.0, theta=0.3) for k in range(4)), np.eye(4)
     ),
 }

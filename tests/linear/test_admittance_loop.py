@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from ves_twin.control.leg_loop import FilterPlace
+from ves_twin.effects.force_sensor import SensorLag
 from ves_twin.linear.admittance_loop import AxisModel, admittance_loop, payload_mass
 from ves_twin.linear.leg_settings import LegSettings
 from ves_twin.linear.periodic import PeriodicSystem
@@ -85,3 +86,13 @@ def test_a_loop_that_no_mass_holds_has_no_limit(plant):
     """Gain beyond what the leg loop itself stands with the filter."""
     settings = LegSettings(200.0, place=FilterPlace.ERROR)
     assert stability_limit(plant, settings, RATE) == float("inf")
+
+
+def test_a_slow_sensor_acts_as_the_corner_that_it_has(plant):
+    """An effect and the number that it stands for give the same growth."""
+    slow = plant.extended(SensorLag(target="sensor", slowness=1.0))
+    corner = plant.parameters.number("sensor.corner")
+    same = plant.with_values({"sensor.corner": 0.5 * corner})
+    model = AxisModel.trial(0.3 * payload_mass(plant))
+    growths = [admittance_loop(p, LegSettings(20.9), model, RATE).growth for p in (slow, same)]
+    assert growths[0] == pytest.approx(growths[1], rel=1e-12)

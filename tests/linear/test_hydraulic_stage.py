@@ -3,6 +3,8 @@
 import numpy as np
 import pytest
 
+from ves_twin.effects.cylinder import OilAir
+from ves_twin.effects.valve import ValveGain
 from ves_twin.linear.hydraulic_stage import (
     ACCELERATION,
     LENGTH,
@@ -63,3 +65,22 @@ def test_a_leg_feels_its_share_of_the_heaving_mass():
     mass = 60.0 + 93.7 + 6 * 2.5  # platform, arm, rods of models/ves2.toml
     legs = 0.5 * load_per_leg(plant) * np.sum((heave_cosines(plant) * heave) ** 2)
     assert legs == pytest.approx(0.5 * mass * heave**2, rel=EXACT)
+
+
+@pytest.mark.parametrize(
+    ("name", "effect", "number", "factor"),
+    [
+        ("ves2", ValveGain(target="leg.1", gain=0.25), "hydraulics.valve_gain", 1.25),
+        ("ves2_pressure", OilAir(target="leg.1", loss=0.5), "chamber.bulk_modulus", 0.5),
+    ],
+)
+def test_an_effect_acts_as_the_number_that_it_changes(name, effect, number, factor):
+    plant = Plant.load(name)
+    value = plant.parameters.array(number)
+    value[0] *= factor
+    changed = plant.with_values({number: value.tolist()})
+    s = 2j * np.pi * 7.0
+    assert not np.allclose(hydraulic_stage(plant, LOAD)(s), hydraulic_stage(changed, LOAD)(s))
+    np.testing.assert_allclose(
+        hydraulic_stage(plant.extended(effect), LOAD)(s), hydraulic_stage(changed, LOAD)(s)
+    )

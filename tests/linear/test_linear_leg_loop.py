@@ -8,10 +8,11 @@ from ves_twin.control import leg_loop as kernel
 from ves_twin.control.leg_loop import FilterPlace
 from ves_twin.errors import InvalidInputError
 from ves_twin.linear.hydraulic_stage import LENGTH, hydraulic_stage, load_per_leg
-from ves_twin.linear.leg_loop import leg_actuator, leg_loop, leg_return_ratio, section
+from ves_twin.linear.leg_loop import leg_actuator, leg_loop, section
 from ves_twin.linear.leg_settings import LegSettings
 from ves_twin.linear.response import bandwidth, frequency_response, step_response
 from ves_twin.plant.plant import Plant
+from ves_twin.procedures.claims import RATE_GAIN
 
 LOW, DEFAULT = LegSettings(12.6), LegSettings(20.9, place=FilterPlace.ERROR)
 COUNTS = (3000, 6000, 12000, 20000, 30000)
@@ -116,7 +117,7 @@ def test_the_actuator_falls_by_20_db_a_decade(plant):
 
 def test_the_loop_gain_reaches_minus_one_where_the_closed_loop_turns_unstable(plant):
     """Gain margin of the return ratio against the poles of the closed loop."""
-    ratio = leg_return_ratio(plant, DEFAULT)
+    ratio = leg_actuator(plant) * section(plant.parameters) * DEFAULT.gain
     hertz = np.geomspace(1.0, 12.5, 20000)
     gain = frequency_response(ratio, hertz).gain
     turn = np.flatnonzero(np.diff(np.sign(gain.imag)) * (gain.real[:-1] < 0))[0]
@@ -140,3 +141,8 @@ def test_amplifiers_slower_than_the_legs_are_refused(plant):
 def test_a_frequency_beyond_half_the_rate_is_refused(plant):
     with pytest.raises(InvalidInputError, match="half the rate"):
         frequency_response(leg_loop(plant, LOW), [1.0, 400.0])
+
+
+def test_counts_have_one_scale():
+    """K2 = 30000 is 0.1 wherever it is meant, to the last bit: scorecard, figures, calibration."""
+    assert LegSettings.of_counts(12000, 30000, FilterPlace.ERROR).rate_gain == 0.1 == RATE_GAIN

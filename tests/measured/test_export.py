@@ -1,6 +1,7 @@
 """export: what is written for other programs comes back to the last bit, with its units."""
 
 import json
+from errno import ENOSPC
 
 import numpy as np
 import pytest
@@ -94,3 +95,15 @@ def test_an_unknown_format_and_a_missing_folder_leave_nothing_behind(tmp_path):
         with pytest.raises(FileAccessError):
             export_recording(recording(np.ones((3, 6))), form, tmp_path / "no" / "r.x")
     assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.parametrize("form", ["csv", "mat"])
+def test_an_export_on_a_full_disk_leaves_nothing_behind(tmp_path, monkeypatch, form):
+    def fill(*arguments, **options):
+        raise OSError(ENOSPC, "No space left on device")
+
+    monkeypatch.setattr("pyarrow.csv.write_csv", fill)
+    monkeypatch.setattr("scipy.io.savemat", fill)
+    with pytest.raises(FileAccessError, match="No space left"):
+        export_recording(recording(np.ones((3, 6))), form, tmp_path / "a")
+    assert not list(tmp_path.iterdir())

@@ -37,7 +37,9 @@ def test_reach_goes_from_the_centre_of_mass_to_the_point(n, random_chain):
     total = chain.coms_at(q) * chain.mass[:, None]
     centre = total.sum(axis=1) / chain.mass.sum()
     end, base = VirtualManipulator.to_endpoint(chain), VirtualManipulator.to_base(chain)
-    np.testing.assert_allclose(centre + end.reach(q), chain.tip_at(q), rtol=0, atol=1e-12)
+    rotation, shift = chain.displacements(q)
+    tip = rotation[:, -1] @ chain.tip + shift[:, -1]
+    np.testing.assert_allclose(centre + end.reach(q), tip, rtol=0, atol=1e-12)
     np.testing.assert_allclose(centre + base.reach(q), np.tile(chain.com[0], (5, 1)), atol=1e-12)
 
 

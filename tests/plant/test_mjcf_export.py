@@ -1,5 +1,7 @@
 """A plant as plain MJCF: MuJoCo alone makes the same rig of it, and it says what it lacks."""
 
+from errno import ENOSPC
+
 import mujoco
 import numpy as np
 import pytest
@@ -110,3 +112,17 @@ def test_info_writes_the_file_and_tells_the_differences_in_words(capsys, tmp_pat
 def test_mjcf_needs_a_plant(capsys):
     assert main(["info", "--mjcf", "rig.xml"]) == 2
     assert "--plant" in capsys.readouterr().err
+
+
+def test_a_full_disk_leaves_what_was_there(tmp_path, monkeypatch):
+    def fill(path, text, **options):
+        path.write_bytes(text[:100].encode())
+        raise OSError(ENOSPC, "No space left on device")
+
+    path = tmp_path / "rig.xml"
+    path.write_text("before")
+    monkeypatch.setattr("pathlib.Path.write_text", fill)
+    with pytest.raises(FileAccessError, match="No space left"):
+        export_mjcf(vt.Plant.load("ves2"), path)
+    assert path.read_text() == "before"
+    assert list(tmp_path.iterdir()) == [path]

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 import ves_twin as vt
+from ves_twin.effects.cylinder import OilAir
 from ves_twin.plant.modes import structural_modes
 
 HEAVES = (-0.15, 0.0, 0.15)
@@ -75,3 +76,16 @@ def test_impulse_response_peaks_at_the_linearised_mode(modes, figure, heave):
     figure(f"impulse peak at heave {heave:+.2f} m", peak, HIGHEST, "Hz")
     assert peak >= LOWEST
     assert min(spread) - 0.4 <= peak <= max(spread) + 0.4
+
+
+def test_air_in_the_oil_lowers_the_modes_as_the_bulk_modulus_that_it_leaves():
+    plant = vt.Plant.load("ves2_pressure")
+    kept = 0.4 * plant.parameters.array("chamber.bulk_modulus")
+    aired = plant.extended(*(OilAir(target=f"leg.{i}", loss=0.6) for i in range(1, 7)))
+    soft, same, hard = (
+        structural_modes(p, np.zeros(6), np.zeros(3))
+        for p in (aired, plant.with_values({"chamber.bulk_modulus": kept.tolist()}), plant)
+    )
+    # the product 0.4 * modulus rounds differently in the two plants
+    assert [m.frequency for m in soft] == pytest.approx([m.frequency for m in same], rel=1e-9)
+    assert soft[0].frequency < hard[0].frequency

@@ -2,10 +2,14 @@
 
 import json
 
+import numpy as np
 import pytest
 
 import ves_twin as vt
+from ves_twin.effects.cylinder import CoulombFriction
 from ves_twin.errors import InvalidInputError, UnknownNameError, VesTwinError
+from ves_twin.procedures.calibration_files import Fit, write_fit
+from ves_twin.procedures.feasible import Feasible
 from ves_twin.procedures.procedure import Conduct
 from ves_twin.procedures.registry import load_procedure
 from ves_twin.procedures.workers import carry_out_jobs
@@ -39,6 +43,26 @@ def test_fit_brings_a_plant_back_into_its_claims(tmp_path):
     stiffness = result["numbers"]["leg.bending_stiffness"]["value"]
     assert fitted.parameters.number("leg.bending_stiffness") == pytest.approx(stiffness, rel=1e-3)
     assert 'grade = "calibrated"' in (tmp_path / "entries.toml").read_text()
+
+
+def test_the_written_plant_keeps_effects_and_what_else_differed(tmp_path):
+    start = vt.Plant.load("ves2").with_values({"leg.rod_mass": 2.7})
+    start = start.extended(CoulombFriction("leg.3", level=60.0))
+    fit = Fit(
+        plant=start,
+        names=("leg.bending_stiffness", "gain.low"),
+        start=np.array([1500.0, 12.6]),
+        values=np.array([1234.56, 12.0]),
+        spread=np.array([100.0, np.nan]),
+        claims={"mode_lowest": 11.0},
+        region=Feasible(("mode_lowest >=",), np.array([1.0]), np.array([[0.5, 0.0]])),
+        history=(1.0,),
+        at_ends={},
+    )
+    write_fit(fit, {"mode_lowest": "10 ..."}, tmp_path)
+    written = vt.Plant.load(str(tmp_path / "plant.toml"))
+    assert written.name == "ves2_calibrated"
+    assert written.hash == start.with_values({"leg.bending_stiffness": 1235.0}).hash
 
 
 @pytest.mark.parametrize("name", ["calibrate_plant", "calibrate_plant_pressure"])

@@ -6,7 +6,7 @@ import pytest
 import ves_twin as vt
 from ves_twin.errors import InvalidInputError
 from ves_twin.procedures.error_sources import GRAVITY_SOURCES, ErrorSources
-from ves_twin.procedures.methods_agreement import LEARNING_SOURCES, agreement
+from ves_twin.procedures.methods_agreement import agreement
 from ves_twin.procedures.procedure import Conduct
 from ves_twin.procedures.registry import load_procedure
 
@@ -15,6 +15,8 @@ COVERAGE = 2.0
 budget's 95 times in 100."""
 
 SHORT = {"duration": 4.0, "alpha": 10.0, "draws": 1}
+LEARNING_SOURCES = ("rest", "sensor noise", "drift", "gains and level")
+"""What the learned W_g gets wrong."""
 
 
 def test_mean_squares_add_over_sources_and_over_methods():

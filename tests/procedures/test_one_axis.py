@@ -5,6 +5,9 @@ import pytest
 
 import ves_twin as vt
 from ves_twin.control.leg_loop import FilterPlace
+from ves_twin.effects.force_sensor import SensorLag
+from ves_twin.effects.valve import ValveLag
+from ves_twin.errors import InvalidInputError
 from ves_twin.procedures.one_axis import OneAxis
 
 # Bandwidths [Hz] and mass limits of an independent sampled one-axis simulation with 5 ms lag and
@@ -60,3 +63,15 @@ def test_rate_gain_cuts_the_peak_and_hardly_the_bandwidth():
     assert abs(loop.bandwidth(0.1) / loop.bandwidth() - 1.0) < 0.15
     high = axis(31.4, "error")
     assert np.max(np.abs(high.leg_response(f, 0.1))) < 0.95 * np.max(np.abs(high.leg_response(f)))
+
+
+def test_an_effect_acts_as_the_number_that_it_changes():
+    plant = vt.Plant.load("ves2").extended(SensorLag(target="sensor", slowness=1.0))
+    slow = OneAxis.of(plant, 20.9, FilterPlace.ERROR, 9.0, 80.0)
+    assert slow == axis(20.9, "error", **{"sensor.corner": 10.0}) != axis(20.9, "error")
+
+
+def test_legs_that_an_effect_makes_differ_are_refused():
+    plant = vt.Plant.load("ves2").extended(ValveLag(target="leg.3", lag=0.002))
+    with pytest.raises(InvalidInputError, match="same value for all legs"):
+        OneAxis.of(plant, 20.9, FilterPlace.ERROR, 9.0, 80.0)

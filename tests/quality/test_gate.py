@@ -106,6 +106,16 @@ def test_millimetres_and_degrees_are_suspected(healthy):
     assert "degrees against radians, the other way round" in words
 
 
+def test_degrees_are_suspected_where_one_joint_of_three_moves(healthy):
+    """Joints that stand still, with noise on them, say nothing of the unit."""
+    command, measured = healthy["arm.command"].copy(), healthy["arm.q"].copy()
+    command[:, 1:] = 0.3
+    measured[:, 1:] = 0.3 + 1e-5 * np.sin(np.arange(len(healthy)))[:, None]
+    one = {"arm.command": command, "arm.q": np.degrees(measured)}
+    words = found(replace(healthy, signals={**healthy.signals, **one}))
+    assert "degrees against radians is suspected" in words["units"]
+
+
 @pytest.mark.parametrize(
     ("change", "words"),
     [

@@ -16,8 +16,10 @@ from ves_twin.plant.layout import Layout
 from ves_twin.plant.statics import place_rig
 from ves_twin.recording.recording import Event
 from ves_twin.rerun_log import write
+from ves_twin.rerun_log.blueprint import blueprint_of
+from ves_twin.rerun_log.series import series_of
 from ves_twin.rerun_log.write import write_rrd
-from ves_twin.signals import SIGNALS
+from ves_twin.signals import SIGNALS, Role, Signal
 
 
 def _run(name: str, duration: float) -> Recording:
@@ -202,6 +204,38 @@ def test_a_recording_of_one_measured_signal_can_be_written(beam, tmp_path):
     info = replace(beam.info, origin="measured", settings="{}", plant="", plant_hash="", events=())
     few = Recording(beam.time, {"leg.length": beam["leg.length"]}, info)
     assert "/signals/leg.length" in _entities(write_rrd(few, tmp_path / "a.rrd"))
+
+
+@pytest.fixture
+def own(beam) -> Recording:
+    """A recording with a signal of its own in two units that no signal of the rig has."""
+    units = ("m/s", "m/s", "rad/s^2")
+    signal = Signal("hand.rates", ("x", "y", "turn"), units, Role.MEASUREMENT, "i", "of a hand")
+    values = np.random.default_rng(2).normal(size=(len(beam), 3))
+    info = replace(beam.info, own_signals=(signal,))
+    return Recording(beam.time, {**beam.signals, signal.name: values}, info)
+
+
+def test_a_signal_of_ones_own_in_other_units_is_written(own, tmp_path):
+    path = write_rrd(own, tmp_path / "a.rrd")
+    speeds = _column(path, "signals/hand.rates/m_per_s", "Scalars:scalars")
+    np.testing.assert_allclose(speeds, own["hand.rates"][:, :2])
+    turns = _column(path, "signals/hand.rates/rad_per_s_2", "Scalars:scalars")
+    np.testing.assert_allclose(turns, own["hand.rates"][:, 2:])
+
+
+def test_signals_of_ones_own_have_a_page_and_those_of_the_rig_need_none(own, beam):
+    entities = frozenset(s.entity for s in series_of(own))
+    (page,) = (p for p in _pages(entities) if p.name == "Other signals")
+    shown = {content for view in page.contents for content in view.contents}
+    assert shown == {"/signals/hand.rates/m_per_s", "/signals/hand.rates/rad_per_s_2"}
+    usual = frozenset(s.entity for s in series_of(beam))
+    assert "Other signals" not in {p.name for p in _pages(usual)}
+
+
+def _pages(entities: frozenset[str]) -> list:
+    upper, _ = blueprint_of(entities).root_container.contents
+    return list(upper.contents[1].contents)
 
 
 def test_an_empty_recording_can_be_written(beam, tmp_path):

@@ -7,6 +7,7 @@ import pytest
 
 from ves_twin.errors import UnreachableError
 from ves_twin.plant.plant import Plant
+from ves_twin.resources import resource_folder
 from ves_twin.thesis.context import Context
 from ves_twin.thesis.evaluation import Evaluation, NotBuilt, NotRun, NotTestable
 from ves_twin.thesis.left_out import plant_without
@@ -58,6 +59,16 @@ def test_a_tuned_claim_shows_what_a_rig_tuned_without_it_gives(claims, answers, 
     assert nothing.rows[0].to_dict()["leave_one_out"] == NOT_COMPUTED
     free = score_claims([claims["C010"]], answers, context, without=lambda name: shorter)
     assert free.rows[0].to_dict()["leave_one_out"] is None
+
+
+def test_commands_on_a_rig_tuned_without_a_claim_name_its_file(claims, answers, context):
+    def told(context, claim):
+        return Evaluation((0.5,), runs=(context._command("position_sine", {}),))
+
+    card = score_claims([claims["C041"]], {"C041": told}, context)
+    command = card.rows[0].predicted.runs[0]
+    file = resource_folder("models").parent / command.split("--plant ")[1]
+    assert Plant.load(str(file)).hash == plant_without("C041").hash
 
 
 def test_rigs_calibrated_without_a_claim_are_plant_files(tmp_path, monkeypatch):

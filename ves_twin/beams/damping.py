@@ -37,15 +37,3 @@ def square_root(matrix: FloatArray) -> FloatArray:
     """Symmetric square root of a symmetric, positive semi-definite matrix."""
     values, vectors = np.linalg.eigh((matrix + matrix.T) / 2)
     return np.asarray((vectors * np.sqrt(np.maximum(values, 0.0))) @ vectors.T)
-
-
-def natural_frequencies(mass: FloatArray, stiffness: FloatArray) -> FloatArray:
-    """Undamped natural frequencies of M x'' + K x = 0 by rising value [Hz] (n,).
-
-    Args:
-        mass: M (n, n), symmetric, positive definite.
-        stiffness: K (n, n), symmetric, positive semi-definite.
-    """
-    inverse = np.linalg.inv(square_root(mass))
-    squares = np.linalg.eigvalsh(inverse @ ((stiffness + stiffness.T) / 2) @ inverse)
-    return np.asarray(np.sqrt(np.maximum(squares, 0.0)) / (2 * np.pi))

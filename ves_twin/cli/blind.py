@@ -11,6 +11,8 @@ from math import isnan
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from ves_twin.json_text import json_text
+
 if TYPE_CHECKING:
     from ves_twin.blind.answers import Answer
     from ves_twin.blind.mark import Marks
@@ -248,7 +250,7 @@ def _score(arguments: argparse.Namespace, folder: Path, key: Path, answers: Path
         told = {"rows": rows, "seconds": dict(marks.seconds)}
         if after:
             told["correlation"] = None if isnan(after.correlation) else after.correlation
-        print(json.dumps(told, indent=1))
+        print(json_text(told, indent=1))
     else:
         print(text)
     return 0

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import argparse
-import json
 from pathlib import Path
 from typing import TYPE_CHECKING
+
+from ves_twin.json_text import json_text
 
 if TYPE_CHECKING:
     from ves_twin.comparison.compare import Named
@@ -50,7 +51,7 @@ def execute(arguments: argparse.Namespace) -> int:
     comparison = _compare(arguments)
     folder = output_folder(arguments.out, "compare")
     page = comparison_page(comparison)
-    text = json.dumps(comparison.to_dict(), indent=2, allow_nan=False)
+    text = json_text(comparison.to_dict())
     make_folder(folder)
     write_page(folder / JSON_NAME, text + "\n")
     write_page(folder / PAGE_NAME, page)
@@ -75,7 +76,7 @@ def _rig(arguments: argparse.Namespace) -> int:
     pairs = zip(given.measured, given.rigs, strict=True)
     found = [one for recording, rig in pairs for one in compare_mjcf([recording], rig)]
     content = {"schema": SCHEMA, "recordings": [one.to_dict() for one in found]}
-    text = json.dumps(content, indent=2, allow_nan=False)
+    text = json_text(content)
     folder = output_folder(arguments.out, "compare")
     page = rig_comparison_page(found)
     make_folder(folder)

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import argparse
-import json
 from collections.abc import Mapping
 from dataclasses import asdict
 from typing import TYPE_CHECKING
+
+from ves_twin.json_text import json_text
 
 if TYPE_CHECKING:
     from ves_twin.envs.evaluation import Evaluation, Figure
@@ -83,7 +84,7 @@ def execute(arguments: argparse.Namespace) -> int:
         if differences:
             figures = {name: asdict(figure) for name, figure in differences.items()}
             content["against"] = {**found[1].to_dict(), "differences": figures}
-        print(json.dumps(content, indent=2))
+        print(json_text(content))
     else:
         print(_text(found[0]))
         if differences:

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import argparse
-import json
 from pathlib import Path
 from typing import TYPE_CHECKING
+
+from ves_twin.json_text import json_text
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -50,7 +51,7 @@ def execute(arguments: argparse.Namespace) -> int:
     save_recording(imported.recording, path)
     if arguments.json:
         content = {**imported.account.to_dict(), "recording": str(path)}
-        print(json.dumps(content, indent=2, allow_nan=False))
+        print(json_text(content))
     else:
         print(f"{imported.account.to_text()}\nrecording {path}")
     return 0

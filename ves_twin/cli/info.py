@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import argparse
-import json
 from typing import TYPE_CHECKING
 
 from ves_twin.errors import InvalidInputError
+from ves_twin.json_text import json_text
 from ves_twin.units import unit_tail
 
 if TYPE_CHECKING:
@@ -34,7 +34,7 @@ def execute(arguments: argparse.Namespace) -> int:
     if arguments.mjcf:
         content |= mjcf_content(arguments.plant, arguments.mjcf)
     if arguments.json:
-        print(json.dumps(content, indent=2))
+        print(json_text(content))
         return 0
     for title, entries in content.items():
         print(f"{title}:" if not isinstance(entries, str) else f"{title}: {entries}")

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import argparse
-import json
 from pathlib import Path
+
+from ves_twin.json_text import json_text
 
 SUMMARY = "show what is in a lab file: channels, rates, ranges, gaps; draft a map"
 
@@ -33,7 +34,7 @@ def execute(arguments: argparse.Namespace) -> int:
         path = _place(arguments.out, Path(arguments.file))
         write_page(path, draft_map(inspection))
         content["map"], text = str(path), f"{text}\n\nmap to edit: {path}"
-    print(json.dumps(content, indent=2, allow_nan=False) if arguments.json else text)
+    print(json_text(content) if arguments.json else text)
     return 0
 
 

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import argparse
-import json
 from pathlib import Path
 from typing import TYPE_CHECKING
+
+from ves_twin.json_text import json_text
 
 if TYPE_CHECKING:
     from ves_twin.thesis.context import Context
@@ -60,7 +61,7 @@ def execute(arguments: argparse.Namespace) -> int:
         **(card.to_dict() if card else {}),
         "figures": [{**vars(figure), "png": str(figure.png)} for figure in drawn],
     }
-    text = json.dumps(content, indent=2)
+    text = json_text(content)
     if arguments.out and card:
         _write(Path(arguments.out), card, text)
     if arguments.json:

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import argparse
-import json
 from typing import TYPE_CHECKING
+
+from ves_twin.json_text import json_text
 
 if TYPE_CHECKING:
     from ves_twin.procedures.procedure import Account, Procedure
@@ -42,7 +43,7 @@ def run_procedure(arguments: argparse.Namespace) -> int | None:
     with RunProgress(procedure.name, 1.0, unit="share") as progress:
         conduct = Conduct(folder, plant, arguments.seed, progress.share)
         account = procedure.carry_out(conduct)
-    text = json.dumps(_summary(procedure, account), indent=2)
+    text = json_text(_summary(procedure, account))
     write_whole(folder / SUMMARY_NAME, text + "\n")
     if arguments.json:
         print(text)

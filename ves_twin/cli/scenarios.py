@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import argparse
-import json
+
+from ves_twin.json_text import json_text
 
 SUMMARY = "list the scenarios: name and the question each answers"
 
@@ -19,7 +20,7 @@ def execute(arguments: argparse.Namespace) -> int:
 
     questions = scenario_questions() | procedure_questions()
     if arguments.json:
-        print(json.dumps(questions, indent=2))
+        print(json_text(questions))
         return 0
     width = max(map(len, questions))
     for name, question in questions.items():

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import argparse
-import json
 import os
 from pathlib import Path
 from typing import TYPE_CHECKING
+
+from ves_twin.json_text import json_text
 
 if TYPE_CHECKING:
     from ves_twin.sweeps.engine import Engine
@@ -57,6 +58,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def execute(arguments: argparse.Namespace) -> int:
     """Carry out the sweep; 0 when every point has a result, 3 where some were lost."""
+    from ves_twin.cli.main import DONE, ENDED_EARLY
     from ves_twin.cli.progress import RunProgress
     from ves_twin.sweeps.sweep import carry_out_sweep
 
@@ -71,10 +73,10 @@ def execute(arguments: argparse.Namespace) -> int:
             lambda done, points: bar.share(done / points, f"{done} of {points} points"),
         )
     if arguments.json:
-        print(json.dumps(_account(plan, account), indent=2))
+        print(json_text(_account(plan, account)))
     else:
         print(_text(plan, account))
-    return 0 if account.whole else 3
+    return DONE if account.whole else ENDED_EARLY
 
 
 def _engine(arguments: argparse.Namespace) -> Engine:

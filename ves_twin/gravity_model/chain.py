@@ -1,4 +1,4 @@
-"""SerialChain: link frames of any serial arm from its standard Denavit-Hartenberg table."""
+"""DhChain: link frames of any serial arm from its standard Denavit-Hartenberg table."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ class Joint:
 
 
 @dataclass(frozen=True)
-class SerialChain:
+class DhChain:
     """An arm on the platform: link 0 stands on it, link i follows joint i.
 
     Attributes:
@@ -46,7 +46,7 @@ class SerialChain:
     base: FloatArray
 
     @staticmethod
-    def of_puma560(arm: Puma560) -> SerialChain:
+    def of_puma560(arm: Puma560) -> DhChain:
         """The PUMA of the thesis; frame 0 is its mounting plane, d0 above t."""
         base = np.eye(4)
         base[2, 3] = arm.d0
@@ -55,7 +55,7 @@ class SerialChain:
             Joint(arm.d2, arm.a2, 0.0),
             Joint(arm.d3, arm.a3, 0.0),
         )
-        return SerialChain(joints, base)
+        return DhChain(joints, base)
 
     @property
     def identity(self) -> str:

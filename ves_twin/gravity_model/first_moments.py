@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ves_twin.gravity_model.chain import SerialChain
+from ves_twin.gravity_model.chain import DhChain
 from ves_twin.types import FloatArray
 
 INDEPENDENT = 1e-7
@@ -32,12 +32,12 @@ class FirstMoments:
     Source: thesis eqs 3.7 to 3.9, C.2, errata E-9, E-31.
     """
 
-    chain: SerialChain
+    chain: DhChain
     kept: tuple[int, ...]
     combine: FloatArray
 
     @staticmethod
-    def of(chain: SerialChain) -> FirstMoments:
+    def of(chain: DhChain) -> FirstMoments:
         """The reduction of a chain, found by rank over random joint coordinates."""
         rng = np.random.default_rng(31)
         q = rng.uniform(-np.pi, np.pi, (_SAMPLES, len(chain.joints)))
@@ -84,7 +84,7 @@ class FirstMoments:
         return np.cross(h, gravity_in_top[:, :, None], axis=1)
 
 
-def _all_columns(chain: SerialChain, q: FloatArray) -> FloatArray:
+def _all_columns(chain: DhChain, q: FloatArray) -> FloatArray:
     """Columns (n, 3, 4 (k + 1)): axes of every link frame, then their origins."""
     frames = chain.frames(q)
     axes = np.concatenate([frames[:, i, :3, :3] for i in range(frames.shape[1])], axis=2)

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ves_twin.gravity_model.chain import SerialChain
+from ves_twin.gravity_model.chain import DhChain
 from ves_twin.gravity_model.first_moments import FirstMoments
 from ves_twin.types import FloatArray
 
@@ -30,7 +30,7 @@ class GravityModel:
     gravity: float
 
     @staticmethod
-    def of(chain: SerialChain, mass: FloatArray, com: FloatArray, gravity: float) -> GravityModel:
+    def of(chain: DhChain, mass: FloatArray, com: FloatArray, gravity: float) -> GravityModel:
         """The model of links of known mass [kg] (k + 1,) and centre in its frame [m] (k + 1, 3)."""
         basis = FirstMoments.of(chain)
         return GravityModel(basis, float(np.sum(mass)), basis.parameters(mass, com), gravity)

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ves_twin.errors import UnreachableError
+from ves_twin.kinematics.denavit_hartenberg import link_transform
 from ves_twin.types import FloatArray
 
 ROUND_OFF = 1e-12
@@ -52,7 +53,7 @@ class Puma560:
         frames = np.empty((3, 4, 4))
         current = np.eye(4)
         for i, (theta, d, a, alpha) in enumerate(table):
-            current = current @ _dh(theta, d, a, alpha)
+            current = current @ link_transform(theta, d, a, alpha)
             frames[i] = current
         return frames
 
@@ -127,15 +128,3 @@ class Puma560:
         )
         q = np.array([q1, q2, q3])
         return np.asarray(np.arctan2(np.sin(q), np.cos(q)))
-
-
-def _dh(theta: float, d: float, a: float, alpha: float) -> FloatArray:
-    ct, st, ca, sa = np.cos(theta), np.sin(theta), np.cos(alpha), np.sin(alpha)
-    return np.array(
-        [
-            [ct, -st * ca, st * sa, a * ct],
-            [st, ct * ca, -ct * sa, a * st],
-            [0.0, sa, ca, d],
-            [0.0, 0.0, 0.0, 1.0],
-        ]
-    )

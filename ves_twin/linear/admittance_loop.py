@@ -48,7 +48,7 @@ class AxisModel:
 
 def payload_mass(plant: Plant) -> float:
     """Mass on the force sensor: the arm [kg]."""
-    return float(np.sum(plant.parameters.array("arm.mass")))
+    return float(np.sum(plant.actual.array("arm.mass")))
 
 
 def admittance_loop(
@@ -70,7 +70,7 @@ def admittance_loop(
 
     Source: thesis fig. 5-6, 5.4.
     """
-    table = plant.parameters
+    table = plant.actual
     tick = table.number("clock.tick")
     leg, amplifier = (round(table.number(f"clock.{n}_ticks")) for n in ("leg", "amplifier"))
     cycle = round(1.0 / (rate * tick))
@@ -131,7 +131,7 @@ class _States:
         return m
 
     def _controller(self, plant: Plant, settings: LegSettings) -> FloatArray:
-        table, at = plant.parameters, self.at
+        table, at = plant.actual, self.at
         period = table.number("clock.leg_ticks") * table.number("clock.tick")
         b, a = chebyshev_section(1.0 / period)
         unit = np.eye(self.size)
@@ -161,7 +161,7 @@ class _States:
         from scipy.linalg import expm
         from scipy.signal import butter
 
-        table, at = plant.parameters, self.at
+        table, at = plant.actual, self.at
         tick = table.number("clock.tick")
         a, b = np.asarray(stage.A), np.asarray(stage.B)
         n = len(a)

@@ -24,7 +24,7 @@ def load_per_leg(plant: Plant) -> float:
     A heave speed w turns all six legs at u w, u the cosine between leg and vertical, so that
     platform, arm and rods of mass M are 6 m with m = M / (6 u^2).
     """
-    table = plant.parameters
+    table = plant.actual
     mass = (
         table.number("platform.mass")
         + float(np.sum(table.array("arm.mass")))
@@ -68,12 +68,13 @@ def hydraulic_stage(plant: Plant, load: float, leg: int = 0) -> StateSpace:
 
 def _oil_column(plant: Plant, load: float, leg: int) -> tuple[FloatArray, FloatArray]:
     """States: spool, column, length, speed."""
-    array = plant.parameters.array
+    table = plant.actual
+    array = table.array
     stiffness, damping = (array(f"hydraulics.oil_{n}")[leg] for n in ("stiffness", "damping"))
     a, b = np.zeros((4, 4)), np.zeros(4)
     _lag(a, b, array("hydraulics.valve_lag")[leg])
     gain = array("hydraulics.valve_gain")[leg]
-    a[1, 0] = gain * plant.parameters.number("hydraulics.full_speed")
+    a[1, 0] = gain * table.number("hydraulics.full_speed")
     a[2, 3] = 1.0
     a[3, 1:] = np.array([stiffness, -stiffness, -damping]) / load
     return a, b
@@ -81,14 +82,15 @@ def _oil_column(plant: Plant, load: float, leg: int) -> tuple[FloatArray, FloatA
 
 def _chambers(plant: Plant, load: float, leg: int) -> tuple[FloatArray, FloatArray]:
     """States: spool, pressures of piston and annulus, length, speed."""
-    array = plant.parameters.array
+    table = plant.actual
+    array = table.array
     block = np.zeros(1, chambers.PARAMETERS)
-    fill_chambers(block[0], plant.parameters)
+    fill_chambers(block[0], table)
     p = block[0]
     area = np.array(p["area"])
     volume = p["dead_volume"][leg] + area * p["half_stroke"]
     leak, null = p["leakage"][leg], p["conductance"]
-    speed = array("hydraulics.valve_gain")[leg] * plant.parameters.number("hydraulics.full_speed")
+    speed = array("hydraulics.valve_gain")[leg] * table.number("hydraulics.full_speed")
     flow = speed * area * [1.0, -1.0]
     pressures = np.array([[-null[0] - leak, leak], [leak, -null[1] - leak]])
     a, b = np.zeros((5, 5)), np.zeros(5)

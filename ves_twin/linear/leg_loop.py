@@ -53,7 +53,7 @@ def leg_actuator(plant: Plant, load: float | None = None) -> StateSpace:
     """
     from control import StateSpace
 
-    table = plant.parameters
+    table = plant.actual
     tick = table.number("clock.tick")
     leg, amplifier = (round(table.number(f"clock.{n}_ticks")) for n in ("leg", "amplifier"))
     if amplifier > leg:
@@ -84,7 +84,7 @@ def leg_loop(plant: Plant, settings: LegSettings, load: float | None = None) -> 
     from control import StateSpace, feedback
 
     inner = _with_rate(plant, settings, load)
-    filtering = StateSpace(*_section_matrices(plant.parameters))
+    filtering = StateSpace(*_section_matrices(plant.actual))
     if settings.place is FilterPlace.ERROR:
         closed = feedback(inner * filtering * settings.gain, 1)
     elif settings.place is FilterPlace.FEEDBACK:
@@ -94,21 +94,11 @@ def leg_loop(plant: Plant, settings: LegSettings, load: float | None = None) -> 
     return closed
 
 
-def leg_return_ratio(plant: Plant, settings: LegSettings, load: float | None = None) -> StateSpace:
-    """Loop gain of the length loop, cut at the error; at both places of the section the same."""
-    from control import StateSpace
-
-    inner = _with_rate(plant, settings, load) * settings.gain
-    if settings.place is FilterPlace.NONE:
-        return inner
-    return inner * StateSpace(*_section_matrices(plant.parameters))
-
-
 def _with_rate(plant: Plant, settings: LegSettings, load: float | None) -> StateSpace:
     from control import StateSpace, feedback
 
     actuator = leg_actuator(plant, load)
-    period = leg_period(plant.parameters)
+    period = leg_period(plant.actual)
     gain = settings.rate_gain / period
     rate = StateSpace([[0.0]], [[1.0]], [[-gain]], [[gain]], period)
     return feedback(actuator, rate)

@@ -7,13 +7,17 @@ from dataclasses import dataclass
 from ves_twin.control.leg_loop import FilterPlace
 
 GAIN_PER_K1 = 1.05e-3
-"""Leg gain per count of K1 [1/s]; assumed, from about 2 Hz at low gain and the 40 % of 5.5.
+"""Leg gain per count of K1 [1/s]; assumed: one scale fits about 2 Hz at low gain and the 40 % of
+5.5, so that neither counts in the score.
 
 Source: errata E-48, E-49 (the thesis gives no unit).
 """
 
-RATE_GAIN_PER_K2 = 3.3e-6
-"""Rate gain per count of K2 [1]; assumed, 0.1 at 30000. Source: errata E-49."""
+RATE_GAIN_PER_K2 = 0.1 / 30000
+"""Rate gain per count of K2 [1]; assumed: 0.1 at 30000 keeps 5.6's "K2 hardly matters" open.
+
+Source: errata E-49.
+"""
 
 
 @dataclass(frozen=True)

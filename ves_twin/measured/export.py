@@ -3,17 +3,17 @@
 from __future__ import annotations
 
 import json
-import os
 from pathlib import Path
 
 import pyarrow as pa
 import pyarrow.csv as pcsv
 import scipy.io
 
-from ves_twin.errors import FileAccessError, UnknownNameError
+from ves_twin.errors import UnknownNameError
 from ves_twin.recording.files import save_recording
 from ves_twin.recording.recording import Recording
 from ves_twin.recording.table import batch_of, schema_of
+from ves_twin.whole_file import whole_file, write_whole
 
 FORMATS = ("csv", "parquet", "mat")
 
@@ -40,13 +40,10 @@ def export_recording(recording: Recording, form: str, path: Path) -> tuple[Path,
     """
     if form not in FORMATS:
         raise UnknownNameError("format", form, FORMATS)
-    try:
-        if form == "parquet":
-            save_recording(recording, path)
-            return (path,)
-        return _csv(recording, path) if form == "csv" else _mat(recording, path)
-    except OSError as error:
-        raise FileAccessError(f"cannot write {path}: {error.strerror}") from None
+    if form == "parquet":
+        save_recording(recording, path)
+        return (path,)
+    return _csv(recording, path) if form == "csv" else _mat(recording, path)
 
 
 def _csv(recording: Recording, path: Path) -> tuple[Path, ...]:
@@ -54,15 +51,13 @@ def _csv(recording: Recording, path: Path) -> tuple[Path, ...]:
     batch = batch_of(schema, recording.time, recording.signals)
     table = pa.Table.from_batches([batch])
     names = [f"{field.name} [{_unit(field)}]" for field in schema]
-    partial, sidecar = _partial(path), path.with_name(f"{path.name}.json")
-    with partial.open("wb") as file:
-        file.write((",".join(names) + "\n").encode())
-        options = pcsv.WriteOptions(include_header=False)
-        pcsv.write_csv(table.replace_schema_metadata(None), file, options)
-    json_partial = _partial(sidecar)
-    json_partial.write_text(json.dumps(_metadata(recording, schema), indent=1), encoding="utf-8")
-    os.replace(json_partial, sidecar)
-    os.replace(partial, path)
+    sidecar = path.with_name(f"{path.name}.json")
+    with whole_file(path) as partial:
+        with partial.open("wb") as file:
+            file.write((",".join(names) + "\n").encode())
+            options = pcsv.WriteOptions(include_header=False)
+            pcsv.write_csv(table.replace_schema_metadata(None), file, options)
+        write_whole(sidecar, json.dumps(_metadata(recording, schema), indent=1))
     return path, sidecar
 
 
@@ -77,10 +72,8 @@ def _mat(recording: Recording, path: Path) -> tuple[Path, ...]:
         units |= dict(zip(columns, signal.units, strict=True))
     content["units"] = {key.replace(".", "_"): unit for key, unit in units.items()}
     content["ves_twin"] = json.dumps(_metadata(recording, schema))
-    partial = _partial(path)
-    with partial.open("wb") as file:
+    with whole_file(path) as partial, partial.open("wb") as file:
         scipy.io.savemat(file, content, long_field_names=True, do_compression=True)
-    os.replace(partial, path)
     return (path,)
 
 
@@ -98,7 +91,3 @@ def _metadata(recording: Recording, schema: pa.Schema) -> dict[str, object]:
 
 def _unit(field: pa.Field) -> str:
     return str((field.metadata or {}).get(b"unit", b"").decode())
-
-
-def _partial(path: Path) -> Path:
-    return path.with_name(f"{path.name}.partial")

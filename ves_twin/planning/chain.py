@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ves_twin.errors import InvalidInputError
+from ves_twin.kinematics.denavit_hartenberg import link_transform
 from ves_twin.types import FloatArray
 
 
@@ -85,7 +86,7 @@ class SerialChain:
         rows = np.asarray(table, float)
         frames = [np.eye(4) if mount is None else np.asarray(mount, float)]
         for theta, d, a, alpha in rows:
-            frames.append(frames[-1] @ _dh(theta, d, a, alpha))
+            frames.append(frames[-1] @ link_transform(theta, d, a, alpha))
         stacked = np.array(frames)
         rotation, origin = stacked[:, :3, :3], stacked[:, :3, 3]
         axes = rotation[:-1, :, 2]
@@ -134,11 +135,6 @@ class SerialChain:
         """Centres of mass of the links [m] (..., n + 1, 3) at q (..., n)."""
         rotation, shift = self.displacements(q)
         return np.asarray(np.einsum("...kij,kj->...ki", rotation, self.com) + shift)
-
-    def tip_at(self, q: FloatArray) -> FloatArray:
-        """End of the last link [m] (..., 3) at q (..., n)."""
-        rotation, shift = self.displacements(q)
-        return np.asarray(rotation[..., -1, :, :] @ self.tip + shift[..., -1, :])
 
     def mass_matrix(self, q: FloatArray) -> FloatArray:
         """Mass matrix of the arm for the rates (V, omega of the base; q'), about the base origin.
@@ -193,15 +189,3 @@ def _rotations(axis: FloatArray, angle: FloatArray) -> FloatArray:
     cross = skew(axis)
     sine, cosine = np.sin(angle)[..., None, None], np.cos(angle)[..., None, None]
     return np.asarray(np.eye(3) + sine * cross + (1 - cosine) * (cross @ cross))
-
-
-def _dh(theta: float, d: float, a: float, alpha: float) -> FloatArray:
-    ct, st, ca, sa = np.cos(theta), np.sin(theta), np.cos(alpha), np.sin(alpha)
-    return np.array(
-        [
-            [ct, -st * ca, st * sa, a * ct],
-            [st, ct * ca, -ct * sa, a * st],
-            [0.0, sa, ca, d],
-            [0.0, 0.0, 0.0, 1.0],
-        ]
-    )

@@ -15,7 +15,7 @@ PRINTED_INERTIA = np.array(
 
 
 def puma_chain(plant: Plant, printed: bool = False) -> SerialChain:
-    """The arm of a plant in the platform top frame t.
+    """The arm of a plant in the platform top frame t, as described: who plans knows no effects.
 
     Args:
         plant: whose arm it is.

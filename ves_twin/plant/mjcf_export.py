@@ -9,9 +9,9 @@ from textwrap import fill
 
 import numpy as np
 
-from ves_twin.errors import FileAccessError
 from ves_twin.plant.assembly import assemble, compile_model
 from ves_twin.plant.plant import Plant
+from ves_twin.whole_file import write_whole
 
 POINT_INERTIA = 1e-9
 """Inertia [kg m^2] given to point masses: MuJoCo writes no mass of a body that has none."""
@@ -75,10 +75,7 @@ def export_mjcf(plant: Plant, path: Path) -> MjcfExport:
         InvalidInputError: numbers that no rigid body can have.
     """
     export = mjcf_of(plant)
-    try:
-        path.write_text(export.text, encoding="utf-8")
-    except OSError as error:
-        raise FileAccessError(f"cannot write {path}: {error.strerror}") from None
+    write_whole(path, export.text)
     return export
 
 

@@ -59,7 +59,7 @@ def structural_modes(
 
     Source: thesis 5.2 (first modes 10 to 13 Hz, falling with leg extension).
     """
-    tick = plant.parameters.number("clock.tick")
+    tick = plant.actual.number("clock.tick")
     model, data = _resting(plant, tick, np.asarray(pose, float), np.asarray(q, float))
     size = 2 * model.nv + model.na
     transition = np.zeros((size, size))
@@ -81,7 +81,7 @@ def _resting(
     plant: Plant, tick: float, pose: FloatArray, q: FloatArray
 ) -> tuple[mujoco.MjModel, mujoco.MjData]:
     spec = assemble(plant, tick)
-    array = plant.parameters.array
+    array = plant.actual.array
     oil_stiffness, oil_damping = _oil(plant, pose)
     full = plant.fidelity is Fidelity.FULL
     for i in range(LEGS):
@@ -116,11 +116,11 @@ def _oil(plant: Plant, pose: FloatArray) -> tuple[FloatArray, FloatArray]:
     In the pressure form the stiffness follows the rod travel, and the valves' null leakage, which
     damps in series with the oil, has no place in a joint: its damping ratios are too small.
     """
-    array = plant.parameters.array
+    array = plant.actual.array
     if plant.hydraulics is Hydraulics.LINEAR:
         return array("hydraulics.oil_stiffness"), array("hydraulics.oil_damping")
     block = np.zeros(1, chambers.PARAMETERS)
-    fill_chambers(block[0], plant.parameters)
+    fill_chambers(block[0], plant.actual)
     geometry = plant.geometry
     travel = geometry.lengths(pose) - geometry.lengths(np.zeros(6))
     return chamber_stiffness(block[0], travel), array("chamber.viscous")

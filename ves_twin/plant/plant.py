@@ -13,7 +13,7 @@ import numpy as np
 from ves_twin.effects.effect import Effect
 from ves_twin.effects.registry import parse_effects
 from ves_twin.errors import InvalidInputError, UnknownNameError
-from ves_twin.gravity_model.chain import SerialChain
+from ves_twin.gravity_model.chain import DhChain
 from ves_twin.gravity_model.gravity_model import GravityModel
 from ves_twin.kinematics.puma560 import Puma560
 from ves_twin.kinematics.stewart import StewartGeometry
@@ -180,7 +180,7 @@ class Plant:
         """M_total and P of the arm's own masses."""
         array = self.parameters.array
         return GravityModel.of(
-            SerialChain.of_puma560(self.arm),
+            DhChain.of_puma560(self.arm),
             array("arm.mass"),
             array("arm.com"),
             self.parameters.number("gravity"),

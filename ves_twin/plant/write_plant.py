@@ -11,25 +11,30 @@ from ves_twin.plant.plant import Plant
 from ves_twin.whole_file import write_whole
 
 
-def write_plant(plant: Plant, path: Path, note: str = "") -> None:
+def write_plant(plant: Plant, path: Path, note: str = "", name: str = "") -> None:
     """Write a plant; what was there is replaced only when the new file is whole.
 
     Args:
         plant: changed numbers and effects over the shipped plant of its form and fidelity.
         path: a .toml file.
         note: comment on the first lines.
+        name: of the plant; that of the file if left out.
 
     Raises:
         FileAccessError: not writable.
     """
     lines = [f"# {line}" for line in note.splitlines()]
-    lines += [f"schema = {SCHEMA}", f"name = {json.dumps(path.stem)}", f'base = "{plant.base}"']
+    lines += [
+        f"schema = {SCHEMA}",
+        f"name = {json.dumps(name or path.stem)}",
+        f'base = "{plant.base}"',
+    ]
     changes = plant.changes()
     if changes:
         lines += ["", "[parameters]"]
-        lines += [f"{json.dumps(name)} = {json.dumps(value)}" for name, value in changes.items()]
+        lines += [f"{json.dumps(key)} = {json.dumps(value)}" for key, value in changes.items()]
     for kind, targets in effects_table(plant.effects).items():
         for target, values in targets.items():
             lines += ["", f"[effects.{kind}.{json.dumps(target)}]"]
-            lines += [f"{name} = {value!r}" for name, value in values.items()]
+            lines += [f"{key} = {value!r}" for key, value in values.items()]
     write_whole(path, "\n".join(lines) + "\n")

@@ -7,6 +7,7 @@ from pathlib import Path
 import numpy as np
 
 from ves_twin.recording.recording import Recording
+from ves_twin.report.picture import save_picture
 
 
 def write_agreement(learned: Recording, model: Recording, path: Path) -> None:
@@ -36,4 +37,4 @@ def write_agreement(learned: Recording, model: Recording, path: Path) -> None:
         axes.set_xlabel("time [s]")
         axes.grid(alpha=0.3)
         axes.legend(fontsize=8)
-    figure.savefig(path, dpi=100)
+    save_picture(figure, path, 100)

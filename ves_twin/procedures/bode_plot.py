@@ -3,14 +3,11 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 from ves_twin.linear.response import FrequencyResponse
 from ves_twin.procedures.sine_fit import MeasuredResponse
-from ves_twin.report.picture import new_picture, save_picture
-
-if TYPE_CHECKING:
-    pass
+from ves_twin.report.figure import new_figure
+from ves_twin.report.picture import PICTURE_WIDTH, save_picture
 
 HEIGHT = 5.2
 """Height of a picture [inch]."""
@@ -24,7 +21,7 @@ class BodePlot:
     """
 
     def __init__(self, title: str) -> None:
-        self.figure = new_picture(HEIGHT)
+        self.figure = new_figure(HEIGHT, PICTURE_WIDTH)
         self._gain, self._phase = self.figure.subplots(2, 1, sharex=True)
         self._gain.set_title(title, fontsize=10)
         self._gain.set_ylabel("gain [dB]")

@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 
+from ves_twin.json_text import json_text
 from ves_twin.plant.plant import Plant
+from ves_twin.plant.write_plant import write_plant
 from ves_twin.procedures.feasible import Feasible
 from ves_twin.types import FloatArray
 from ves_twin.whole_file import write_whole
@@ -74,18 +75,16 @@ def write_fit(fit: Fit, bounds: Mapping[str, str], folder: Path) -> list[str]:
         },
         "conflicts": [{"one": a, "other": b, "cosine": c} for a, b, c in conflicts],
     }
-    text = json.dumps(content, indent=2)
+    text = json_text(content)
     write_whole(folder / "calibration.json", text + "\n")
-    write_whole(folder / "plant.toml", _plant_file(fit))
+    write_plant(_fitted(fit), folder / "plant.toml", name=f"{fit.plant.name}_calibrated")
     write_whole(folder / "entries.toml", _entries(fit))
     return [*_claim_lines(fit, bounds), "", *_number_lines(fit), "", *_conflict_lines(conflicts)]
 
 
-def _plant_file(fit: Fit) -> str:
-    head = f'schema = 1\nname = "{fit.plant.name}_calibrated"\nbase = "{fit.plant.base}"\n'
-    lines = [f'"{name}" = {value:.4g}' for name, value in _of_plant(fit)]
-    kept = [f'"{n}" = {v}' for n, v in fit.plant.changes().items() if n not in fit.names]
-    return head + "\n[parameters]\n" + "\n".join([*kept, *lines]) + "\n"
+def _fitted(fit: Fit) -> Plant:
+    """The plant with the fitted numbers, in the four digits that they deserve."""
+    return fit.plant.with_values({name: float(f"{value:.4g}") for name, value in _of_plant(fit)})
 
 
 def _entries(fit: Fit) -> str:

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ves_twin.control.leg_loop import EDGE, FilterPlace
+from ves_twin.linear.leg_settings import RATE_GAIN_PER_K2
 from ves_twin.plant.modes import structural_modes
 from ves_twin.plant.plant import Plant
 from ves_twin.procedures.one_axis import OneAxis
@@ -27,7 +28,7 @@ NO_MODE = 40.0
 PRINTED_RMS = np.array([0.46, 0.24, 0.46, 0.62, 1.01, 0.06])
 """RMS of the gravity error [N, N m] (6,) of thesis Table 3-1."""
 
-RATE_GAIN = 0.1
+RATE_GAIN = 30000 * RATE_GAIN_PER_K2
 """K2 = 30000 in physical units (thesis 5.6; the scale is inferred)."""
 
 _BEAM, _RELEASE, _STANDING = "beam_horizontal_truth", "release_table_5_2", "position_sine"

@@ -11,6 +11,7 @@ from pydantic import Field, JsonValue
 from ves_twin.plant.plant import Plant
 from ves_twin.procedures.error_sources import GRAVITY_SOURCES, RIG_SOURCES, ErrorSources
 from ves_twin.procedures.procedure import Account, Conduct, Procedure
+from ves_twin.report.picture import save_picture
 from ves_twin.scenario.fields import Seconds
 from ves_twin.simulator.outcome import Outcome
 from ves_twin.types import FloatArray
@@ -119,4 +120,4 @@ def _picture(table: dict[str, FloatArray], conduct: Conduct) -> None:
         axes.legend(fontsize=8)
         axes.grid(alpha=0.3, axis="x")
         axes.set_yticks(places, names)
-    figure.savefig(conduct.folder / "budget.png", dpi=100)
+    save_picture(figure, conduct.folder / "budget.png", 100)

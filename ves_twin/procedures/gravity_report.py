@@ -13,6 +13,7 @@ from ves_twin.gravity_model.identify import Identification
 from ves_twin.gravity_model.poses import Conditioning
 from ves_twin.gravity_model.sensitivity import AXES
 from ves_twin.procedures.procedure import Account
+from ves_twin.report.picture import save_picture
 from ves_twin.simulator.outcome import Outcome
 from ves_twin.types import FloatArray
 from ves_twin.whole_file import write_whole
@@ -138,4 +139,4 @@ def _picture(result: Calibrated, path: Path) -> None:
         axes.set_ylabel(f"signal less model [{unit}]")
         axes.grid(alpha=0.3)
         axes.legend(fontsize=8)
-    figure.savefig(path, dpi=120)
+    save_picture(figure, path, 120)

@@ -12,6 +12,7 @@ from ves_twin.plant.plant import Plant
 from ves_twin.procedures.gravity_shift import gravity_shift
 from ves_twin.procedures.procedure import Account, Conduct, Procedure, part_of
 from ves_twin.recording.recording import Recording
+from ves_twin.report.picture import save_picture
 from ves_twin.scenario.fields import Seconds
 from ves_twin.scenario.schema import Scenario
 from ves_twin.simulator.outcome import Outcome
@@ -139,4 +140,4 @@ def _picture(
         axes.set_xlabel("time [s]")
         axes.legend(fontsize=7)
         axes.grid(alpha=0.3)
-    figure.savefig(conduct.folder / "sensitivity.png", dpi=100)
+    save_picture(figure, conduct.folder / "sensitivity.png", 100)

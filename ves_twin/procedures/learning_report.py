@@ -12,6 +12,7 @@ from ves_twin.procedures.agreement_picture import write_agreement
 from ves_twin.procedures.number_table import write_table
 from ves_twin.procedures.procedure import Account
 from ves_twin.recording.recording import Recording
+from ves_twin.report.picture import save_picture
 from ves_twin.simulator.outcome import Outcome
 from ves_twin.types import FloatArray
 
@@ -206,7 +207,7 @@ def _picture(learned: Learned, time: FloatArray, path: Path) -> None:
     right.legend(fontsize=8)
     for axes in (left, middle, right):
         axes.grid(alpha=0.3)
-    figure.savefig(path, dpi=100)
+    save_picture(figure, path, 100)
 
 
 def _largest(poses: FloatArray) -> tuple[float, float]:

@@ -19,10 +19,6 @@ from ves_twin.scenario.fields import Seconds
 from ves_twin.simulator.outcome import Outcome
 from ves_twin.types import FloatArray
 
-LEARNING_SOURCES = ("rest", "sensor noise", "drift", "gains and level")
-"""What the learned W_g gets wrong; `rest` is what all runs have: phase A off its path, smoothing,
-transducers, iterations that are not over."""
-
 LOST = "lost_against_gravity_known_exactly"
 LEVEL = "platform.level"
 
@@ -94,7 +90,11 @@ class MethodsAgreement(Procedure):
     def _learning_budget(
         self, real: Plant, ideal: Plant, seed: int, progress: Progress
     ) -> dict[str, FloatArray]:
-        """Mean squares by source (6,), each less those of `rest`."""
+        """Mean squares by source (6,), each less those of `rest`.
+
+        `rest` is what all runs have: phase A off its path, smoothing, transducers, iterations that
+        are not over.
+        """
         plans: dict[str, tuple[Plant, float, float]] = {
             "rest": (ideal, 0.0, 0.0),
             "sensor noise": (ideal, 1.0, 0.0),

@@ -54,8 +54,11 @@ class OneAxis:
             place: what the leg filter filters.
             edge: of the leg filter [Hz].
             rate: of the admittance cycle [Hz].
+
+        Raises:
+            InvalidInputError: legs that differ, by a number or an effect.
         """
-        number = plant.parameters.number
+        number = plant.actual.number
         lag, tick = number("hydraulics.valve_lag"), number("clock.tick")
         if plant.hydraulics is Hydraulics.LINEAR:
             lag += number("hydraulics.oil_damping") / number("hydraulics.oil_stiffness")

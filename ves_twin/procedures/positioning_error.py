@@ -13,7 +13,8 @@ from pydantic import Field, JsonValue
 from ves_twin.control.leg_loop import FilterPlace
 from ves_twin.plant.plant import Plant
 from ves_twin.procedures.procedure import Account, Conduct, Procedure
-from ves_twin.report.picture import new_picture, save_picture
+from ves_twin.report.figure import new_figure
+from ves_twin.report.picture import PICTURE_WIDTH, save_picture
 from ves_twin.scenario.fields import Seconds
 from ves_twin.scenario.schema import Legs, Scenario
 from ves_twin.signals import SIGNALS
@@ -151,7 +152,7 @@ def _lines(releases: Sequence[ReleaseError]) -> tuple[str, ...]:
 
 def draw_releases(releases: Sequence[ReleaseError], path: Path) -> Path:
     """Draw the error of every axis over time, one line a leg setting."""
-    figure = new_picture(6.4)
+    figure = new_figure(6.4, PICTURE_WIDTH)
     for i, axes in enumerate(figure.subplots(3, 2, sharex=True).T.ravel()):
         for n, r in enumerate(releases):
             axes.plot(r.time, 1e3 * r.error[:, i], lw=1.0, color=f"C{n}", label=r.label)

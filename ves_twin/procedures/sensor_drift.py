@@ -11,6 +11,7 @@ from ves_twin.gravity_model.sensitivity import AXES
 from ves_twin.kinematics.wrenches import top_to_sensor
 from ves_twin.plant.plant import Plant
 from ves_twin.procedures.procedure import Account, Conduct, Procedure
+from ves_twin.report.picture import save_picture
 from ves_twin.scenario.fields import Seconds
 from ves_twin.simulator.outcome import Outcome
 from ves_twin.simulator.sensor_run import sensor_run
@@ -96,4 +97,4 @@ def _picture(once: FloatArray, often: FloatArray, every: float, conduct: Conduct
             axes.legend(fontsize=8, loc="upper left")
         grid[0, column].set_title(head, fontsize=10)
         grid[1, column].set_xlabel("time [h]")
-    figure.savefig(conduct.folder / "drift.png", dpi=110)
+    save_picture(figure, conduct.folder / "drift.png")

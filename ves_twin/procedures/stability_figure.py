@@ -9,6 +9,8 @@ from typing import TYPE_CHECKING
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
+from ves_twin.report.picture import save_picture
+
 if TYPE_CHECKING:
     from ves_twin.procedures.stability_map import MapPoint
 
@@ -57,7 +59,7 @@ def draw_map(points: Sequence[MapPoint], plant: str, path: Path) -> None:
     frequencies.set_xlabel("leg gain [1/s]")
     for axes in (limits, frequencies):
         axes.grid(alpha=0.3)
-    figure.savefig(path, dpi=120)
+    save_picture(figure, path, 120)
 
 
 def _fill(bounded: bool) -> str:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from dataclasses import asdict, dataclass
 from typing import Annotated
 
@@ -11,6 +10,7 @@ from pydantic import Field, JsonValue
 
 from ves_twin.control.leg_loop import EDGE, FilterPlace
 from ves_twin.errors import InvalidInputError
+from ves_twin.json_text import json_text
 from ves_twin.plant.plant import Plant
 from ves_twin.procedures.confirm import Confirmation, confirm_by_run
 from ves_twin.procedures.one_axis import OneAxis
@@ -100,7 +100,7 @@ class StabilityMap(Procedure):
             "scenario": self.scenario,
             "points": [{**asdict(p), "share": p.share} for p in points],
         }
-        text = json.dumps(content, indent=2)
+        text = json_text(content)
         write_whole(conduct.folder / MAP_NAME, text + "\n")
         draw_map(points, plant.name, conduct.folder / FIGURE_NAME)
         return Account(Outcome.COMPLETED, content, tuple(_table(points)))

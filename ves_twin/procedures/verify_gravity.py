@@ -12,6 +12,7 @@ from ves_twin.kinematics.wrenches import sensor_to_top
 from ves_twin.plant.plant import Plant
 from ves_twin.procedures.procedure import Account, Conduct, Procedure, part_of
 from ves_twin.recording.recording import Recording
+from ves_twin.report.picture import save_picture
 from ves_twin.scenario.fields import PerSecond, Seconds, si
 from ves_twin.scenario.schema import Scenario
 from ves_twin.simulator.outcome import Outcome
@@ -199,4 +200,4 @@ def _picture(run: Recording, plant: Plant, conduct: Conduct) -> None:
         above.legend(fontsize=8)
         for axes in (above, below):
             axes.grid(alpha=0.3)
-    figure.savefig(conduct.folder / "verification.png", dpi=110)
+    save_picture(figure, conduct.folder / "verification.png")

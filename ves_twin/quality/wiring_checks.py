@@ -37,7 +37,7 @@ def _pair(command: FloatArray, measured: FloatArray, name: str) -> list[Check]:
             unknown("wiring", f"{name}: the commands do not move, so nothing can be told", name)
         ]
     command, measured = command[finite], measured[finite]
-    scale = _unit(command, measured, name)
+    scale = _unit(command[:, moving], measured[:, moving], name)
     match = _correlation(measured, command)
     checks = [scale] if scale is not None else [passed("units", f"{name}: as its command", name)]
     swapped, turned = [], []

@@ -1,34 +1,25 @@
-"""new_picture and save_picture: a matplotlib figure as PNG, without a display or global state."""
+"""save_picture: a matplotlib figure as PNG."""
 
 from __future__ import annotations
 
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from ves_twin.errors import FileAccessError
+from ves_twin.whole_file import whole_file
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-WIDTH, DPI = 7.0, 110
+PICTURE_WIDTH, DPI = 7.0, 110
 """Width of a picture [inch] and its resolution."""
 
 
-def new_picture(height: float, width: float = WIDTH) -> Figure:
-    """An empty figure of a size in inches."""
-    from matplotlib.figure import Figure  # slow to import
-
-    return Figure(figsize=(width, height), layout="constrained")
-
-
-def save_picture(figure: Figure, path: Path) -> Path:
-    """Write a figure as PNG.
+def save_picture(figure: Figure, path: Path, dpi: int = DPI) -> Path:
+    """Write a figure as PNG, complete or not at all.
 
     Raises:
         FileAccessError: the file cannot be written.
     """
-    try:
-        figure.savefig(path, dpi=DPI)
-    except OSError as error:
-        raise FileAccessError(f"cannot write {path}: {error.strerror}") from None
+    with whole_file(path) as partial:
+        figure.savefig(partial, format="png", dpi=dpi)
     return path

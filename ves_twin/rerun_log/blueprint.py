@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import rerun.blueprint as rrb
 
 from ves_twin.rerun_log.colours import BACKGROUND
+from ves_twin.signals import SIGNALS
 
 EYE = (2.4, -2.3, 2.0)
 LOOK_AT = (0.0, 0.0, 1.05)
@@ -120,8 +121,12 @@ _PAGES = (
 
 
 def blueprint_of(entities: frozenset[str]) -> rrb.Blueprint:
-    """Layout for the plotted entities that a recording has; pages without one are left out."""
-    pages = [page for page in (_page(p, entities) for p in _PAGES) if page is not None]
+    """Layout for the plotted entities that a recording has; pages without one are left out.
+
+    Signals that are not of the rig's table have a page of their own, one plot an entity.
+    """
+    wanted = (*_PAGES, _own_signals(entities))
+    pages = [page for page in (_page(p, entities) for p in wanted) if page is not None]
     upper = rrb.Horizontal(_machine(), rrb.Tabs(*pages, active_tab=0), column_shares=[5, 6])
     lower = rrb.Horizontal(_events(), _account(), column_shares=[5, 6])
     return rrb.Blueprint(
@@ -133,6 +138,12 @@ def blueprint_of(entities: frozenset[str]) -> rrb.Blueprint:
         auto_layout=False,
         auto_views=False,
     )
+
+
+def _own_signals(entities: frozenset[str]) -> Page:
+    found = (e.removeprefix("signals/") for e in sorted(entities) if e.startswith("signals/"))
+    own = [name for name in found if name.split("/")[0] not in SIGNALS]
+    return Page("Other signals", 2, tuple(Plot(name, (f"signals/{name}",)) for name in own))
 
 
 def _machine() -> rrb.Spatial3DView:

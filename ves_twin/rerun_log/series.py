@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable
 from dataclasses import dataclass
 
@@ -83,7 +84,7 @@ def _signal_series(recording: Recording, name: str) -> list[Series]:
     for unit in units:
         columns = [i for i, u in enumerate(signal.units) if u == unit]
         factor, label = shown(name, unit)
-        entity = f"signals/{name}" if len(units) == 1 else f"signals/{name}/{GROUPS[unit]}"
+        entity = f"signals/{name}" if len(units) == 1 else f"signals/{name}/{_group(unit)}"
         colours = axis_colours(len(columns))
         result.append(
             Series(
@@ -94,6 +95,11 @@ def _signal_series(recording: Recording, name: str) -> list[Series]:
             )
         )
     return result
+
+
+def _group(unit: str) -> str:
+    """Last part of an entity; the viewer's paths take words only: m_per_s, m_per_s_2."""
+    return GROUPS.get(unit) or re.sub(r"\W+", "_", unit.replace("/", "_per_"))
 
 
 def _columns(
@@ -155,7 +161,7 @@ def _differences(recording: Recording, entity: str, minuend: str, other: str) ->
         factor, label = SHOWN_UNITS.get(unit, (1.0, unit))
         result.append(
             Series(
-                entity if len(units) == 1 else f"{entity}/{GROUPS[unit]}",
+                entity if len(units) == 1 else f"{entity}/{_group(unit)}",
                 tuple(f"{signal.axes[i]} [{label}]" for i in columns),
                 axis_colours(len(columns)),
                 _difference(first, second, columns, factor),

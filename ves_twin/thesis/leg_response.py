@@ -10,8 +10,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ves_twin.linear.leg_settings import LegSettings
+from ves_twin.procedures.sine_fit import fit_sine
 from ves_twin.thesis.context import Context
-from ves_twin.types import FloatArray
 
 AMPLITUDE = 1e-3
 """Sine in Z [m]: small against the stroke, large against transducer counts."""
@@ -25,15 +26,6 @@ HIGHEST = 24.0
 
 LOWEST = 0.05
 """Below this no more octave downwards is tried [Hz]."""
-
-
-@dataclass(frozen=True)
-class LegSettings:
-    """Settings of the leg loops: gain [1/s], rate gain [1], what the section filters."""
-
-    gain: float
-    rate_gain: float = 0.0
-    filter: str = "none"
 
 
 @dataclass(frozen=True)
@@ -76,12 +68,12 @@ def leg_response(context: Context, legs: LegSettings, frequency: float) -> LegRe
         "platform.motion.fade": FADE,
         "legs.gain": legs.gain,
         "legs.rate_gain": legs.rate_gain,
-        "legs.filter": legs.filter,
+        "legs.filter": legs.place.value,
     }
     run = context.run("position_sine", changes)
     last = run.recording.window(duration - round(length * frequency) / frequency, np.inf)
     phasors = {
-        name: _phasors(last.time, last[name], frequency)
+        name: fit_sine(last.time, last[name], frequency)
         for name in ("leg.command", "leg.length", "valve.command")
     }
     closed = phasors["leg.length"] / phasors["leg.command"]
@@ -122,11 +114,3 @@ def _crossing(low: LegResponse, high: LegResponse) -> float:
     above, below = (np.log(abs(r.closed) / HALF_POWER) for r in (low, high))
     share = above / (above - below)
     return float(low.frequency * (high.frequency / low.frequency) ** share)
-
-
-def _phasors(time: FloatArray, values: FloatArray, frequency: float) -> np.ndarray:
-    """Complex amplitude of each column by least squares on sine, cosine, mean and trend."""
-    angle = 2.0 * np.pi * frequency * time
-    basis = np.column_stack([np.cos(angle), np.sin(angle), np.ones_like(time), time - time[0]])
-    fit, *_ = np.linalg.lstsq(basis, values, rcond=None)
-    return np.asarray(fit[0] - 1j * fit[1])

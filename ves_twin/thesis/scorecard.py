@@ -18,7 +18,7 @@ from ves_twin.thesis.evaluation import (
     NotRun,
     NotTestable,
 )
-from ves_twin.thesis.left_out import PlantWithout, plant_without
+from ves_twin.thesis.left_out import FOLDER, PlantWithout, plant_without
 from ves_twin.thesis.row import Row
 from ves_twin.thesis.store import Store, code_hash
 from ves_twin.thesis.verdict import Verdict
@@ -95,7 +95,8 @@ def score_claims(
         found = _evaluate(answer, claim, context, store)
         other = without(claim.id) if claim.calibrated_on else None
         if other is not None:
-            there = replace(context, plant=other, plant_name=other.name, _kept={})
+            file = f"models/{FOLDER}/{claim.id}.toml"
+            there = replace(context, plant=other, plant_name=file, _kept={})
             other_found = _evaluate(answer, claim, there, store)
             predicted = other_found if isinstance(other_found, Evaluation) else None
         rows.append(Row(claim, found, predicted))

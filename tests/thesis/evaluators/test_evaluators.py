@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from ves_twin.control.leg_loop import chebyshev_section
+from ves_twin.linear.leg_settings import LegSettings
 from ves_twin.plant.plant import Plant
 from ves_twin.procedures.registry import load_procedure
 from ves_twin.scenario.load import parse_setting
@@ -15,7 +16,7 @@ from ves_twin.thesis.context import Context
 from ves_twin.thesis.evaluation import Evaluation, NotBuilt, NotRun, NotTestable
 from ves_twin.thesis.evaluators import chapter_3, chapter_5
 from ves_twin.thesis.evaluators.registry import ANSWERS
-from ves_twin.thesis.leg_response import LegSettings, bandwidth, leg_response
+from ves_twin.thesis.leg_response import bandwidth, leg_response
 from ves_twin.thesis.scorecard import score_claims
 from ves_twin.thesis.verdict import Verdict
 

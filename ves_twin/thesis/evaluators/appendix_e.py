@@ -19,7 +19,7 @@ from ves_twin.thesis.evaluators.chapter_2 import WHOLE_TICKS, model_rates
 
 PARKED = "release_table_5_2"
 MOVING, POWER, CEILING = "operation_panic", "operation_crate_power", "operation_ceiling"
-READERS, SESSION, RECOVERY = "operation_two_readers", "operation_session", "operation_recovery"
+READERS, RECOVERY = "operation_two_readers", "operation_recovery"
 EMULATION = "beam_horizontal_truth"
 
 COAST = 0.5

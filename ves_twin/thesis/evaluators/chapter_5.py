@@ -9,6 +9,7 @@ from scipy.signal import freqs, freqz
 
 from ves_twin.control.emulated import EmulatedSystem
 from ves_twin.control.leg_loop import FilterPlace, chebyshev_section
+from ves_twin.linear.leg_settings import RATE_GAIN_PER_K2, LegSettings
 from ves_twin.plant.modes import structural_modes
 from ves_twin.plant.statics import check_reach
 from ves_twin.procedures.gravity_shift import gravity_shift
@@ -20,22 +21,15 @@ from ves_twin.thesis.claim import Claim
 from ves_twin.thesis.context import Context
 from ves_twin.thesis.evaluation import Answer, Evaluation, Evaluator, NotTestable
 from ves_twin.thesis.evaluators.chapter_2 import model_rates
-from ves_twin.thesis.leg_response import LegSettings, bandwidth, leg_response
+from ves_twin.thesis.leg_response import bandwidth, leg_response
 from ves_twin.thesis.standing_rig import StandingRig
 from ves_twin.types import ComplexArray, FloatArray
-
-GAIN_PER_COUNT = 1.05e-3
-"""Leg gain [1/s] per count of K1. The thesis gives no unit (E-49); one scale fits the 2 Hz at low
-gain and the 40 % of 5.5 (E-48), so neither counts in the score."""
-
-RATE_GAIN_PER_COUNT = 0.1 / 30000
-"""Rate gain [1] per count of K2: 0.1 at 30000 keeps 5.6's "K2 hardly matters" open (assumed)."""
 
 LOW = LegSettings(12.6)
 """K1 = 12000 without filter: about 2 Hz (5.2)."""
 
-LOW_FILTERED = LegSettings(12.6, filter="error")
-DEFAULT = LegSettings(20.9, filter="error")
+LOW_FILTERED = LegSettings(12.6, place=FilterPlace.ERROR)
+DEFAULT = LegSettings(20.9, place=FilterPlace.ERROR)
 """K1 = 20000 with the filter on the error (5.4, fig. 5-4)."""
 
 RELEASE = "release_table_5_2"
@@ -188,7 +182,7 @@ def _softness(context: Context, claim: Claim) -> Evaluation:
 
 def _positioning_error(context: Context, legs: LegSettings) -> tuple[FloatArray, str, str]:
     """Rms of command less pose for each axis (6,), command, outcome of a release."""
-    changes = {"legs.gain": legs.gain, "legs.filter": legs.filter}
+    changes = {"legs.gain": legs.gain, "legs.filter": legs.place.value}
     run = context.run(RELEASE, changes)
     error = run.recording["platform.command"] - run.recording["platform.pose"]
     return np.sqrt(np.mean(error**2, axis=0)), run.command, run.recording.info.outcome
@@ -250,7 +244,7 @@ def _diagonal(matrix: str) -> Evaluator:
 
 
 def _rate_gain(context: Context, claim: Claim) -> Evaluation:
-    damped = LegSettings(DEFAULT.gain, RATE_GAIN_PER_COUNT * 30000, DEFAULT.filter)
+    damped = LegSettings(DEFAULT.gain, RATE_GAIN_PER_K2 * 30000, DEFAULT.place)
     without, with_it = bandwidth(context, DEFAULT), bandwidth(context, damped)
     change = 100.0 * abs(with_it.frequency / without.frequency - 1.0)
     note = f"{without.frequency:.2f} to {with_it.frequency:.2f} Hz at K1 = 20000"
@@ -258,9 +252,8 @@ def _rate_gain(context: Context, claim: Claim) -> Evaluation:
 
 
 def _gain_range(context: Context, claim: Claim) -> Evaluation:
-    rate_gain = RATE_GAIN_PER_COUNT * 30000
     found = [
-        bandwidth(context, LegSettings(GAIN_PER_COUNT * k1, rate_gain, "error"))
+        bandwidth(context, LegSettings.of_counts(k1, 30000, FilterPlace.ERROR))
         for k1 in (3000, 10000, 20000, 30000)
     ]
     values = tuple(one.frequency for one in found)

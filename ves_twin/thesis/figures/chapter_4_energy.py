@@ -8,7 +8,8 @@ import numpy as np
 
 from ves_twin.plant.plant import Plant
 from ves_twin.procedures.coupling_map_paths import CYCLE, CouplingMapPaths, peak_ratio
-from ves_twin.report.picture import new_picture, save_picture
+from ves_twin.report.figure import new_figure
+from ves_twin.report.picture import PICTURE_WIDTH, save_picture
 from ves_twin.thesis.figures.chapter_4_map import STYLES
 from ves_twin.thesis.figures.chapter_4_shipped import shipped
 from ves_twin.thesis.figures.figure import FigureResult
@@ -19,7 +20,7 @@ def draw_figure_4_2(plant: Plant, folder: Path, quick: bool) -> FigureResult:
     procedure = shipped("coupling_map_paths", CouplingMapPaths)
     if quick:
         procedure = procedure.model_copy(update={"rest": 3.0})
-    figure = new_picture(3.8)
+    figure = new_figure(3.8, PICTURE_WIDTH)
     axes = figure.subplots()
     numbers: dict[str, float] = {}
     ideal, rig = procedure.runs(plant), procedure.rig_runs(plant, bare=()).emulated

@@ -12,7 +12,8 @@ from ves_twin.planning.coupling_map import CouplingMap, coupling_map
 from ves_twin.planning.puma import puma_chain
 from ves_twin.plant.plant import Plant
 from ves_twin.procedures.coupling_map_paths import CouplingMapPaths
-from ves_twin.report.picture import new_picture, save_picture
+from ves_twin.report.figure import new_figure
+from ves_twin.report.picture import save_picture
 from ves_twin.thesis.figures.chapter_4_shipped import shipped
 from ves_twin.thesis.figures.figure import FigureResult
 from ves_twin.types import FloatArray
@@ -46,7 +47,7 @@ def draw_figure_4_1(plant: Plant, folder: Path, quick: bool) -> FigureResult:
     }
     shades = np.concatenate([face.most.ravel() for face in maps.values()])
     span = (float(shades.min()), float(shades.max()))
-    figure = new_picture(4.2, 11.0)
+    figure = new_figure(4.2, 11.0)
     numbers: dict[str, float] = {}
     for axes, (name, face) in zip(figure.subplots(1, 3), maps.items(), strict=True):
         _draw_lines(axes, face, span)

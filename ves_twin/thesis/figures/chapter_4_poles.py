@@ -8,7 +8,8 @@ from ves_twin.planning.flexible_base import HIGH_GAINS, PPED_GAINS, JointGains
 from ves_twin.planning.pped import damping_estimator
 from ves_twin.plant.plant import Plant
 from ves_twin.procedures.pped_release import PpedRelease
-from ves_twin.report.picture import new_picture, save_picture
+from ves_twin.report.figure import new_figure
+from ves_twin.report.picture import PICTURE_WIDTH, save_picture
 from ves_twin.thesis.figures.chapter_4_shipped import shipped
 from ves_twin.thesis.figures.figure import FigureResult
 
@@ -26,7 +27,7 @@ def draw_figure_4_5(plant: Plant, folder: Path, quick: bool) -> FigureResult:
 def _draw(plant: Plant, folder: Path, name: str, title: str, gains: JointGains) -> FigureResult:
     procedure = shipped("pped_release", PpedRelease)
     poles = procedure.builder(plant, printed=True)(gains).poles()
-    figure = new_picture(3.8)
+    figure = new_figure(3.8, PICTURE_WIDTH)
     wide, near = figure.subplots(1, 2)
     for axes in (wide, near):
         axes.plot(poles.real, poles.imag, "x", color="C0", ms=7)

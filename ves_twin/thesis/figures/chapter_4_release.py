@@ -10,7 +10,8 @@ import numpy as np
 from ves_twin.planning.flexible_base import HIGH_GAINS, PPED_GAINS
 from ves_twin.plant.plant import Plant
 from ves_twin.procedures.pped_release import CYCLE, PpedRelease, Release
-from ves_twin.report.picture import new_picture, save_picture
+from ves_twin.report.figure import new_figure
+from ves_twin.report.picture import PICTURE_WIDTH, save_picture
 from ves_twin.thesis.figures.chapter_4_shipped import shipped
 from ves_twin.thesis.figures.figure import FigureResult
 from ves_twin.types import FloatArray
@@ -59,7 +60,7 @@ def _draw(
 ) -> FigureResult:
     procedure = shipped("pped_release", PpedRelease)
     sets = {"pped": PPED_GAINS, "high": HIGH_GAINS, "energy": procedure.least_energy(plant)}
-    figure = new_picture(3.8)
+    figure = new_figure(3.8, PICTURE_WIDTH)
     axes = figure.subplots()
     numbers: dict[str, float] = {}
     for kind, (colour, label) in STYLES.items():

@@ -7,7 +7,8 @@ from pathlib import Path
 from ves_twin.plant.plant import Plant
 from ves_twin.procedures.coupling_map_paths import CouplingMapPaths
 from ves_twin.procedures.pped_release_emulated import PpedReleaseEmulated
-from ves_twin.report.picture import new_picture, save_picture
+from ves_twin.report.figure import new_figure
+from ves_twin.report.picture import PICTURE_WIDTH, save_picture
 from ves_twin.thesis.figures.chapter_4_release import SHOWN, STYLES
 from ves_twin.thesis.figures.chapter_4_shipped import shipped
 from ves_twin.thesis.figures.figure import FigureResult
@@ -23,7 +24,7 @@ def draw_figure_4_3(plant: Plant, folder: Path, quick: bool) -> FigureResult:
         procedure = procedure.model_copy(update={"rest": QUICK_REST})
     runs = procedure.rig_runs(plant, bare=("good",))
     good, bare = runs.emulated["good"], runs.uncompensated["good"]
-    figure = new_picture(3.8)
+    figure = new_figure(3.8, PICTURE_WIDTH)
     axes = figure.subplots()
     floor = 1e-4  # of the picture [J]; the noise of the standing platform is below
     for run, colour, label in (
@@ -56,7 +57,7 @@ def draw_emulated_release(plant: Plant, folder: Path, quick: bool) -> FigureResu
     if quick:
         procedure = procedure.model_copy(update={"duration": QUICK_RELEASE})
     runs = {name: procedure.on_rig(plant, g) for name, g in procedure.gain_sets(plant).items()}
-    figure = new_picture(7.6)
+    figure = new_figure(7.6, PICTURE_WIDTH)
     numbers: dict[str, float] = {}
     heads = ("zero gravity", "leg lag alone", "on the rig, Model Method")
     panels = figure.subplots(3, 1, sharex=True, sharey=True)

@@ -12,7 +12,8 @@ from ves_twin.linear.leg_settings import LegSettings
 from ves_twin.linear.stability_limit import stability_limit
 from ves_twin.plant.plant import Plant
 from ves_twin.procedures.measured_poles import measure_poles
-from ves_twin.report.picture import new_picture, save_picture
+from ves_twin.report.figure import new_figure
+from ves_twin.report.picture import PICTURE_WIDTH, save_picture
 from ves_twin.thesis.figures.bode import HIGH, legs_of, other_form
 from ves_twin.thesis.figures.figure import FigureResult
 from ves_twin.types import ComplexArray
@@ -38,7 +39,7 @@ def draw_figure_5_10(plant: Plant, folder: Path, quick: bool) -> FigureResult:
 def _draw(plant: Plant, folder: Path, quick: bool, name: str, place: FilterPlace) -> FigureResult:
     settings = LegSettings.of_counts(HIGH, 0, place)
     payload = payload_mass(plant)
-    figure = new_picture(4.6)
+    figure = new_figure(4.6, PICTURE_WIDTH)
     axes = figure.subplots()
     numbers = {"stability limit, model over payload mass": stability_limit(plant, settings, RATE)}
     for n, ratio in enumerate(RATIOS):

@@ -12,7 +12,8 @@ from ves_twin.linear.leg_settings import LegSettings
 from ves_twin.linear.response import step_response
 from ves_twin.plant.plant import Plant
 from ves_twin.procedures.measured_step import measure_step
-from ves_twin.report.picture import new_picture, save_picture
+from ves_twin.report.figure import new_figure
+from ves_twin.report.picture import PICTURE_WIDTH, save_picture
 from ves_twin.thesis.figures.bode import GAINS, HIGH, K2, legs_of
 from ves_twin.thesis.figures.figure import FigureResult
 
@@ -21,7 +22,7 @@ DURATION = 1.0
 
 def draw_figure_5_13(plant: Plant, folder: Path, quick: bool) -> FigureResult:
     """Unit steps for K1 from 3000 to 30000, with K2 = 30000 (left) and without (right)."""
-    figure = new_picture(4.0)
+    figure = new_figure(4.0, PICTURE_WIDTH)
     numbers: dict[str, float] = {}
     for axes, k2 in zip(figure.subplots(1, 2, sharey=True), (K2, 0), strict=True):
         for n, k1 in enumerate(GAINS):
