@@ -263,7 +263,7 @@ def test_a_controller_and_an_arm_of_ones_own_run_under_an_operation_too():
     changes = {"run.duration": 1.0, "operation.actions": []}
     q = np.array([0.1, 0.0, 0.0])
     scenario = vt.Scenario.load("operation_panic", {**changes, "arm.start": q.tolist()})
-    moves = ArmMotion(q, (Move(0.0, 1.0, q + [0.2, 0.0, 0.0]),))
+    moves = ArmMotion(q, (Move(0.0, 1.0, q + np.array([0.2, 0.0, 0.0])),))
     sim = vt.Simulator(None, scenario, controller=Stays, arm=moves)
     sim.advance(1.0)
     signals = sim.recorder.sink.collect()[1]

@@ -135,6 +135,15 @@ def test_wrench_beyond_the_sensor_range_ends_by_name():
     assert sim.outcome is Outcome.WRENCH_RANGE
 
 
+def test_a_run_that_fails_while_it_settles_has_every_signal_of_no_rows():
+    changes = {"parameters": {"sensor.range": [500.0] * 6}}
+    run = vt.simulate(vt.Scenario.load("position_sine", {**SHORT, **changes}))
+    assert run.info.outcome == Outcome.WRENCH_RANGE
+    assert len(run) == 0
+    assert run["truth.pose"].shape == (0, 6)
+    assert run["arm.q"].shape == (0, 3)
+
+
 def test_state_that_is_not_finite_ends_as_diverged():
     sim = vt.Simulator(None, vt.Scenario.load("position_sine", SHORT))
     sim.data.qvel[:] = np.nan
