@@ -242,6 +242,20 @@ def test_a_snapshot_of_an_operated_emulation_repeats_to_the_last_bit():
     assert np.array_equal(ends[0][1], ends[1][1])
 
 
+def test_the_zero_g_reference_does_not_depend_on_when_rows_are_flushed(monkeypatch):
+    """Its arm has its drive, whatever the laboratory's buttons do after the row."""
+    changes = {"run.duration": 1.2, "operation.begin": "run"}
+    pressed = {"operation.actions": [{"at": 0.9, "action": "press_arm_panic"}]}
+    runs = []
+    for pause in (0.0, 1e9):  # flush at every cycle, and only at the end
+        monkeypatch.setattr("ves_twin.simulator.recorder.FLUSH_SECONDS", pause)
+        runs.append(run("beam_horizontal_truth", {**changes, **pressed}))
+    for name in ("reference.pose", "reference.pose_leg_lag"):
+        assert np.array_equal(runs[0][name], runs[1][name]), name
+    calm = run("beam_horizontal_truth", changes)
+    assert np.array_equal(runs[0]["reference.pose"], calm["reference.pose"])
+
+
 class Stays(PlatformController):
     """Commands the pose of home, whatever the mode's own would do."""
 
