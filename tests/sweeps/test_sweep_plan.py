@@ -112,7 +112,7 @@ def test_the_identity_knows_what_a_set_point_file_holds_and_misses_it_before_any
         return plan_sweep("position_sine", ["seed=1,2"], played).identity
 
     played = {"platform.motion": {"kind": "setpoints", "file": str(file)}}
-    with pytest.raises(VesTwinError, match="set-point file .* does not exist"):
+    with pytest.raises(VesTwinError, match=r"set-point file .* does not exist"):
         plan_sweep("position_sine", ["seed=1,2"], played)
     assert identity("0,1.0") == identity("0,1.0")
     assert identity("0,1.0") != identity("0,1.1")
