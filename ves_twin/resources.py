@@ -45,6 +45,20 @@ def find_resource(kind: str, folder: str, name_or_path: str, suffix: str = ".tom
     raise UnknownNameError(kind, name_or_path, (p.stem for p in root.glob(f"*{suffix}")))
 
 
+def beside(naming: Path, name_or_path: str) -> str:
+    """What a file names: a file beside it, if there is one of that path, else as it came.
+
+    Args:
+        naming: the file that names another one.
+        name_or_path: a bare name, which is left as it is, or a path.
+    """
+    given = Path(name_or_path)
+    if not (given.suffix or len(given.parts) > 1) or given.is_absolute():
+        return name_or_path
+    near = naming.parent / given
+    return str(near) if _is_file(near) else name_or_path
+
+
 def _is_file(path: Path) -> bool:
     try:
         return path.is_file()

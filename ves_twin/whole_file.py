@@ -20,10 +20,7 @@ def whole_file(path: Path) -> Iterator[Path]:
     Raises:
         FileAccessError: it cannot be written: read-only folder, full disk.
     """
-    if path.is_dir():
-        raise FileAccessError(f"cannot write {path}: it is a folder")
-    if path.exists() and not os.access(path, os.W_OK):
-        raise FileAccessError(f"cannot write {path}: the file is read-only")
+    _check_target(path)
     partial = path.with_name(f".{path.name}.{os.getpid()}.partial")  # two programs may write it
     try:
         yield partial
@@ -37,10 +34,28 @@ def whole_file(path: Path) -> Iterator[Path]:
             partial.unlink(missing_ok=True)
 
 
+def check_writable(path: Path) -> None:
+    """Raise FileAccessError if a file could not be written; nothing is left behind."""
+    _check_target(path)
+    probe = path.with_name(f".{path.name}.{os.getpid()}.probe")
+    try:
+        probe.touch()
+        probe.unlink()
+    except OSError as error:
+        raise FileAccessError(f"cannot write {path}: {error.strerror}") from None
+
+
 def write_whole(path: Path, text: str) -> None:
     """Write a text file, UTF-8, complete or not at all; raises as `whole_file`."""
     with whole_file(path) as partial:
         partial.write_text(text, encoding="utf-8")
+
+
+def _check_target(path: Path) -> None:
+    if path.is_dir():
+        raise FileAccessError(f"cannot write {path}: it is a folder")
+    if path.exists() and not os.access(path, os.W_OK):
+        raise FileAccessError(f"cannot write {path}: the file is read-only")
 
 
 def _to_disk(path: Path) -> None:

@@ -7,7 +7,9 @@ import subprocess
 import sys
 import time
 from pathlib import Path
+from types import SimpleNamespace
 
+import numpy as np
 import pytest
 
 from ves_twin.cli.main import COMMANDS, main
@@ -174,6 +176,60 @@ def test_live_view_without_a_display_gets_one_line(capsys, monkeypatch):
     monkeypatch.delenv("WAYLAND_DISPLAY", raising=False)
     assert main(["view", "position_sine", "--live"]) == 2
     assert "needs a display" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    ("words", "option"),
+    [
+        (["--set", "legs.gain=3"], "--set"),
+        (["--plant", "ves2"], "--plant"),
+        (["--seed", "0"], "--seed"),
+        (["--controller", "a.py:Mine"], "--controller"),
+        (["--out", "here"], "--out"),
+        (["--no-rrd"], "--no-rrd"),
+    ],
+)
+def test_view_of_a_recording_refuses_what_it_would_ignore(capsys, tmp_path, words, option):
+    (tmp_path / "run.rrd").write_bytes(b"RRF2")
+    assert main(["view", str(tmp_path / "run.rrd"), *words]) == 2
+    error = capsys.readouterr().err
+    assert f"{option} does nothing on a recording" in error
+    assert error.count("\n") == 1
+
+
+@pytest.mark.parametrize("words", [["--out", "here"], ["--no-rrd"], ["--web"]])
+def test_live_view_refuses_what_it_would_ignore(capsys, words):
+    assert main(["view", "position_sine", "--live", *words]) == 2
+    assert f"{words[0]} does nothing with --live" in capsys.readouterr().err
+
+
+class _Window:
+    """A viewer's window that nobody closes."""
+
+    cam = SimpleNamespace(lookat=np.zeros(3), distance=0.0, azimuth=0.0, elevation=0.0)
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *_):
+        pass
+
+    def is_running(self):
+        return True
+
+    def sync(self):
+        pass
+
+
+def test_live_view_of_a_run_that_ends_early_exits_3(capsys, monkeypatch):
+    import mujoco.viewer  # noqa: F401  (a name to replace; the command line imports it late)
+
+    monkeypatch.setenv("DISPLAY", ":0")
+    monkeypatch.setattr("mujoco.viewer.launch_passive", lambda *_, **__: _Window())
+    weak = "parameters.sensor.range=[500.0,500.0,500.0,500.0,500.0,500.0]"
+    words = ["view", "position_sine", "--live", "--set", "run.settle=0.1", "--set", weak]
+    assert main(words) == 3
+    assert "wrench_range" in capsys.readouterr().err
 
 
 def test_info_tells_what_a_plant_changes(capsys, tmp_path):

@@ -2,6 +2,7 @@
 
 import json
 
+import gymnasium as gym
 import numpy as np
 import pytest
 
@@ -14,8 +15,10 @@ from ves_twin.envs.evaluation import (
     evaluate,
     interquartile_mean,
     policy_class,
+    run_episode,
 )
-from ves_twin.errors import InvalidInputError, UnknownNameError
+from ves_twin.envs.policy import Policy
+from ves_twin.errors import ControllerError, InvalidInputError, UnknownNameError
 
 POLICY = """
 import numpy as np
@@ -104,6 +107,32 @@ def test_a_policy_that_does_not_fit_says_so():
         evaluate(Trial("VibrationDamping-v0", "lag_feedforward", "none", "ves2_fast"), [0])
     with pytest.raises(InvalidInputError, match="VibrationFreeReach"):
         evaluate(Trial("PlatformTracking-v0", "straight_path", "none", "ves2_fast"), [0])
+
+
+class _Fails(Policy):
+    def __init__(self, answer):
+        self.answer = answer
+
+    @classmethod
+    def build(cls, briefing):
+        return cls(None)
+
+    def begin(self, observation):
+        pass
+
+    def act(self, observation):
+        if isinstance(self.answer, Exception):
+            raise self.answer
+        return self.answer
+
+
+@pytest.mark.parametrize("answer", [ValueError("no\nroot"), "left", [[0.0], [0.0, 1.0]]])
+def test_a_policy_that_fails_is_named_in_one_line(answer):
+    env = gym.make("VesTwin/PlatformTracking-v0", plant="ves2_fast", disable_env_checker=True)
+    with pytest.raises(ControllerError, match=r"policy _Fails raised ValueError") as caught:
+        run_episode(env, _Fails(answer), 0)
+    env.close()
+    assert "\n" not in str(caught.value)
 
 
 def score(environment, policy):

@@ -1,5 +1,7 @@
 """`run --video`: a GIF of the run that moves as the run does, and one line where it cannot be."""
 
+import json
+
 import numpy as np
 import pytest
 from PIL import Image
@@ -54,6 +56,38 @@ def test_other_endings_and_procedures_are_one_line_before_anything_runs(tmp_path
     assert main(["run", "leg_response", "--out", folder, "--video", "a.gif"]) == 2
     assert "not a procedure" in capsys.readouterr().err
     assert not (tmp_path / "run").exists()
+
+
+def test_what_could_not_be_drawn_is_refused_before_anything_runs(tmp_path, capsys):
+    folder = str(tmp_path / "run")
+    long = ["--set", f"run.duration={LONGEST + 1}", "--video", str(tmp_path / "a.gif")]
+    for words, says in (
+        (long, "at most 120 s"),
+        (["--video", str(tmp_path / "none" / "a.gif")], "cannot write"),
+        (["--video", f"{_folder(tmp_path / 'is.gif')}"], "it is a folder"),
+    ):
+        assert main([*WORDS, "--out", folder, *words]) == 2
+        error = capsys.readouterr().err
+        assert says in error
+        assert error.count("\n") == 1
+    assert not (tmp_path / "run").exists()
+
+
+def _folder(path):
+    path.mkdir()
+    return path
+
+
+def test_a_run_without_rows_is_told_and_has_no_film(monkeypatch, tmp_path, capsys):
+    monkeypatch.setattr("ves_twin.envs.film.check_off_screen", lambda: None)
+    path = tmp_path / "a.gif"
+    weak = ["--set", "parameters.sensor.range=[500.0,500.0,500.0,500.0,500.0,500.0]"]
+    words = ["run", "position_sine", "--no-rrd", "--set", "run.settle=0.1", *weak]
+    assert main([*words, "--out", str(tmp_path / "run"), "--video", str(path), "--json"]) == 3
+    out, err = capsys.readouterr()
+    assert json.loads(out)["outcome"] == "wrench_range"
+    assert "ended before its first row" in err
+    assert not path.exists()
 
 
 def test_without_opengl_nothing_runs(monkeypatch, tmp_path, capsys):

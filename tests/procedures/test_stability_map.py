@@ -1,17 +1,20 @@
 """Chapter 5's stability claims hold in the full plant, and fail where their causes are removed."""
 
 import json
+import subprocess
+import sys
 
 import numpy as np
 import pytest
 
 import ves_twin as vt
 from ves_twin.control.leg_loop import FilterPlace
-from ves_twin.errors import InvalidInputError
+from ves_twin.errors import InvalidInputError, UnknownNameError
 from ves_twin.plant.modes import structural_modes
 from ves_twin.procedures.procedure import Conduct
 from ves_twin.procedures.registry import load_procedure
 from ves_twin.procedures.stability_bench import StabilityBench
+from ves_twin.resources import resource_folder
 
 RIGID = {"leg.bending_stiffness": 3e5, "leg.bending_damping": 60.0}
 STIFF_OIL = {"hydraulics.oil_stiffness": 4e7, "hydraulics.oil_damping": 8e4}
@@ -106,3 +109,25 @@ def test_scenario_that_emulates_nothing_is_refused():
     scenario = vt.Scenario.load("position_sine")
     with pytest.raises(InvalidInputError, match=r"platform\.mode: got 'position'"):
         StabilityBench(vt.Plant.load("ves2"), scenario)
+
+
+def test_a_scenario_file_is_taken_and_an_unknown_name_refused_before_anything_is_written(tmp_path):
+    shipped = resource_folder("scenarios") / "beam_horizontal_truth.toml"
+    own = tmp_path / "own.toml"
+    own.write_text(shipped.read_text())
+    assert load_procedure("stability_map", {"scenario": str(own)}).scenario == str(own)
+    out = tmp_path / "out"
+    out.mkdir()
+    unknown = load_procedure("stability_map", {"scenario": "beam_horizontal_trut"})
+    with pytest.raises(UnknownNameError, match="did you mean 'beam_horizontal_truth'"):
+        unknown.carry_out(Conduct(out))
+    assert not list(out.iterdir())
+
+
+def test_no_scenario_file_is_read_when_procedures_are_imported():
+    code = (
+        "import ves_twin.scenario.load as load;"
+        "load._read = lambda path: 1 / 0;"
+        "import ves_twin.procedures.registry"
+    )
+    assert subprocess.run([sys.executable, "-c", code], check=False).returncode == 0

@@ -1,5 +1,6 @@
 """Tests of a recording as a rerun file: it is read back and compared with the recording."""
 
+import json
 from dataclasses import replace
 from pathlib import Path
 
@@ -16,6 +17,7 @@ from ves_twin.plant.layout import Layout
 from ves_twin.plant.statics import place_rig
 from ves_twin.recording.recording import Event
 from ves_twin.rerun_log import write
+from ves_twin.rerun_log.account import account
 from ves_twin.rerun_log.blueprint import blueprint_of
 from ves_twin.rerun_log.series import series_of
 from ves_twin.rerun_log.write import write_rrd
@@ -191,6 +193,23 @@ def test_the_account_tells_question_plant_outcome_and_emulation_error(beam, beam
     (text,) = _texts(beam_file, "account", "TextDocument:text")
     for part in ("How truly", beam.info.plant_hash, "seed 0", "completed", "| y [mm] |", "mujoco"):
         assert part in text
+
+
+def test_the_account_counts_motion_from_the_scenarios_home_as_the_summary_does(beam):
+    settings = json.loads(beam.info.settings)
+    home = [0.0, 0.0, -0.2, 0.0, 0.0, 0.0]
+    settings["platform"]["home"] = home
+    poses = ("truth.pose", "reference.pose", "reference.pose_leg_lag")
+    there = {name: beam[name] + home for name in poses}
+    moved = replace(beam, signals=there, info=replace(beam.info, settings=json.dumps(settings)))
+    # the same motion about another home: the same table, but for round-off of the sum
+    assert _table_of(account(moved)) == _table_of(account(beam))
+    settings["platform"]["home"] = "harmed"
+    assert account(replace(moved, info=replace(beam.info, settings=json.dumps(settings))))
+
+
+def _table_of(text: str) -> list[str]:
+    return [line for line in text.splitlines() if line.startswith("|")]
 
 
 def test_long_recordings_are_sent_in_chunks(beam, tmp_path, monkeypatch):

@@ -366,3 +366,32 @@ def test_overlapping_way_points_are_refused():
     ]
     with pytest.raises(VesTwinError, match=r"starts before the one at 0\.0 s has ended"):
         Scenario.load("identify_slow", {"platform.motion.moves": moves})
+
+
+def test_files_that_a_scenario_names_are_looked_for_beside_it_first(tmp_path, monkeypatch):
+    rig = 'schema = 1\nbase = "{}"\n[parameters]\n"leg.rod_mass" = {}\n'
+    (tmp_path / "deep").mkdir()
+    (tmp_path / "deep" / "rig.toml").write_text(rig.format("base.toml", 2.6))
+    (tmp_path / "deep" / "base.toml").write_text(rig.format("ves2", 2.7))
+    (tmp_path / "rig.toml").write_text(rig.format("ves2", 2.8))  # of the same name, elsewhere
+    for name in ("beam.toml", "calibration.toml", "moves.csv"):
+        (tmp_path / "deep" / name).write_text("")
+    path = tmp_path / "deep" / "mine.toml"
+    path.write_text(
+        '# Which files?\nplant = "rig.toml"\nbelief = "ves2"\n[run]\nduration = 1.0\n'
+        '[platform]\nmode = "micro_gravity"\nemulated = "beam.toml"\n'
+        '[gravity]\nmethod = "model"\nfile = "calibration.toml"\n[arm]\noperator = "moves.csv"\n'
+    )
+    monkeypatch.chdir(tmp_path)
+    found = Scenario.load("deep/mine.toml")
+    near = Path("deep")
+    assert found.plant == str(near / "rig.toml")
+    assert found.belief == "ves2"
+    assert found.platform.emulated == str(near / "beam.toml")
+    assert found.gravity.file == str(near / "calibration.toml")
+    assert found.arm.operator == str(near / "moves.csv")
+    assert Plant.load(found.plant).parameters.number("leg.rod_mass") == 2.6
+    given = Scenario.load("deep/mine.toml", {"plant": "rig.toml"})
+    assert Plant.load(given.plant).parameters.number("leg.rod_mass") == 2.8  # from the terminal
+    (tmp_path / "deep" / "rig.toml").unlink()
+    assert Scenario.load("deep/mine.toml").plant == "rig.toml"

@@ -4,6 +4,9 @@ import numpy as np
 import pytest
 
 import ves_twin as vt
+from ves_twin.control.controller import ControlTask, PlatformController
+from ves_twin.control.motion import ArmMotion, Move
+from ves_twin.control.readings import Readings
 from ves_twin.operation.laboratory import Laboratory
 from ves_twin.operation.state import State
 
@@ -222,3 +225,61 @@ def test_a_script_that_cannot_be_is_refused_in_one_line(changes, says):
         vt.Scenario.load("operation_panic", changes)
     assert isinstance(caught.value, __import__("ves_twin.errors").errors.VesTwinError)
     assert "\n" not in str(caught.value)
+
+
+def test_a_snapshot_of_an_operated_emulation_repeats_to_the_last_bit():
+    """Admittance and the queue of gravity estimates are those of the computers that run."""
+    changes = {"run.duration": 1.0, "operation.begin": "run"}
+    sim = vt.Simulator(None, vt.Scenario.load("beam_horizontal_truth", changes))
+    sim.advance(0.7)  # the arm moves, so that base and estimate do
+    snapshot = sim.snapshot()
+    ends = []
+    for _ in range(2):
+        sim.advance(0.2)
+        ends.append((sim.data.qpos.copy(), sim.rig.board["gravity.estimate"].copy()))
+        sim.restore(snapshot)
+    assert np.array_equal(ends[0][0], ends[1][0])
+    assert np.array_equal(ends[0][1], ends[1][1])
+
+
+def test_the_zero_g_reference_does_not_depend_on_when_rows_are_flushed(monkeypatch):
+    """Its arm has its drive, whatever the laboratory's buttons do after the row."""
+    changes = {"run.duration": 1.2, "operation.begin": "run"}
+    pressed = {"operation.actions": [{"at": 0.9, "action": "press_arm_panic"}]}
+    runs = []
+    for pause in (0.0, 1e9):  # flush at every cycle, and only at the end
+        monkeypatch.setattr("ves_twin.simulator.recorder.FLUSH_SECONDS", pause)
+        runs.append(run("beam_horizontal_truth", {**changes, **pressed}))
+    for name in ("reference.pose", "reference.pose_leg_lag"):
+        assert np.array_equal(runs[0][name], runs[1][name]), name
+    calm = run("beam_horizontal_truth", changes)
+    assert np.array_equal(runs[0]["reference.pose"], calm["reference.pose"])
+
+
+class Stays(PlatformController):
+    """Commands the pose of home, whatever the mode's own would do."""
+
+    @classmethod
+    def build(cls, task: ControlTask) -> "Stays":
+        return cls()
+
+    def update(self, time: float, readings: Readings) -> np.ndarray:
+        return np.zeros(6)
+
+    def snapshot(self) -> None:
+        return None
+
+    def restore(self, snapshot: object) -> None:
+        pass
+
+
+def test_a_controller_and_an_arm_of_ones_own_run_under_an_operation_too():
+    changes = {"run.duration": 1.0, "operation.actions": []}
+    q = np.array([0.1, 0.0, 0.0])
+    scenario = vt.Scenario.load("operation_panic", {**changes, "arm.start": q.tolist()})
+    moves = ArmMotion(q, (Move(0.0, 1.0, q + np.array([0.2, 0.0, 0.0])),))
+    sim = vt.Simulator(None, scenario, controller=Stays, arm=moves)
+    sim.advance(1.0)
+    signals = sim.recorder.sink.collect()[1]
+    assert not np.any(signals["platform.command"])  # the mode's own sine moves by centimetres
+    assert np.ptp(signals["arm.command"][:, 0]) > 0.15

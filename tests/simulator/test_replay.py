@@ -68,6 +68,26 @@ def test_a_window_of_a_run_replays_too(recording):
     assert miss < 1e-3
 
 
+def test_a_window_replays_at_its_own_times(recording):
+    """As its rows counted from zero: the set-points are those of the window, not of t = 0."""
+    tail = recording.window(1.0, 3.0)
+    shifted = vt.Recording(tail.time - tail.time[0], tail.signals, tail.info)
+    again, zero = (vt.replay(r, vt.Plant.load("ves2")) for r in (tail, shifted))
+    np.testing.assert_array_equal(again.time, tail.time)
+    for name in zero.signals:
+        np.testing.assert_array_equal(again[name], zero[name])
+
+
+def test_rows_at_other_times_than_the_log_clocks_are_refused(recording):
+    plant = vt.Plant.load("ves2")
+    every = {name: values[::3] for name, values in recording.signals.items()}
+    thinned = vt.Recording(recording.time[::3], every, recording.info)
+    with pytest.raises(InvalidInputError, match=r"row 2 at 0\.037.* every 0\.0126.*run\.log"):
+        vt.replay(thinned, plant)
+    with pytest.raises(InvalidInputError, match="0 rows"):
+        vt.replay(recording.window(50.0, 60.0), plant)
+
+
 def test_what_cannot_be_fed_in_is_refused(recording):
     plant = vt.Plant.load("ves2")
     with pytest.raises(UnknownNameError, match=r"signal to feed in 'leg\.length'"):

@@ -135,6 +135,15 @@ def test_wrench_beyond_the_sensor_range_ends_by_name():
     assert sim.outcome is Outcome.WRENCH_RANGE
 
 
+def test_a_run_that_fails_while_it_settles_has_every_signal_of_no_rows():
+    changes = {"parameters": {"sensor.range": [500.0] * 6}}
+    run = vt.simulate(vt.Scenario.load("position_sine", {**SHORT, **changes}))
+    assert run.info.outcome == Outcome.WRENCH_RANGE
+    assert len(run) == 0
+    assert run["truth.pose"].shape == (0, 6)
+    assert run["arm.q"].shape == (0, 3)
+
+
 def test_state_that_is_not_finite_ends_as_diverged():
     sim = vt.Simulator(None, vt.Scenario.load("position_sine", SHORT))
     sim.data.qvel[:] = np.nan
@@ -168,6 +177,42 @@ def test_controller_that_fails_is_named_in_one_line(answer):
     with pytest.raises(ControllerError, match="controller _Broken") as caught:
         sim.advance(0.1)
     assert "\n" not in str(caught.value)
+
+
+class _Gravity:
+    """A compensation that gives an answer, or raises it."""
+
+    def __init__(self, answer):
+        self.answer = answer
+
+    def wrench(self, time, readings):
+        if isinstance(self.answer, Exception):
+            raise self.answer
+        return self.answer
+
+
+@pytest.mark.parametrize(
+    "answer",
+    [np.full(6, np.nan), np.zeros(5), np.zeros((6, 1)), None, [0.0] * 6, ValueError("no\nroot")],
+)
+def test_gravity_compensation_that_fails_is_named_in_one_line(answer):
+    sim = vt.Simulator(None, vt.Scenario.load("position_sine", SHORT))
+    sim.computers.gravity = _Gravity(answer)
+    with pytest.raises(ControllerError, match="gravity compensation _Gravity") as caught:
+        sim.advance(0.1)
+    assert "\n" not in str(caught.value)
+
+
+def test_an_estimate_is_as_old_as_asked_though_its_array_is_used_again():
+    sim = vt.Simulator(None, vt.Scenario.load("position_sine", {**SHORT, "gravity.age": 2}))
+    reused = np.zeros(6)
+    sim.computers.gravity = _Gravity(reused)
+    seen = []
+    for k in range(5):
+        reused[:] = k
+        sim.computers.estimate_gravity(0.0)
+        seen.append(sim.computers.readings.gravity_in_sensor[0])
+    assert seen[2:] == [0.0, 1.0, 2.0]
 
 
 def test_readings_cannot_be_written_by_a_controller():

@@ -100,3 +100,19 @@ def test_the_identity_knows_what_named_files_hold(tmp_path):
 
     assert identity(20.0) == identity(20.0)
     assert identity(20.0) != identity(21.0)
+
+
+def test_the_identity_knows_what_a_set_point_file_holds_and_misses_it_before_anything_runs(
+    tmp_path,
+):
+    file = tmp_path / "points.csv"
+
+    def identity(row: str) -> object:
+        file.write_text(f"t,leg.command.1\n{row}\n")
+        return plan_sweep("position_sine", ["seed=1,2"], played).identity
+
+    played = {"platform.motion": {"kind": "setpoints", "file": str(file)}}
+    with pytest.raises(VesTwinError, match=r"set-point file .* does not exist"):
+        plan_sweep("position_sine", ["seed=1,2"], played)
+    assert identity("0,1.0") == identity("0,1.0")
+    assert identity("0,1.0") != identity("0,1.1")

@@ -77,6 +77,20 @@ def test_failures_are_rows_with_their_outcome_and_reason(tmp_path):
     assert "left the safety margin" in run_point(loud.points[0]).reason
 
 
+@pytest.mark.parametrize("scenario", ["position_sine", "beam_horizontal_truth"])
+def test_a_run_that_fails_while_it_settles_is_a_row_too(scenario):
+    weak = {"run.duration": 0.2, "run.settle": 0.2, "parameters.sensor.range": [500.0] * 6}
+    result = run_point(plan_sweep(scenario, ["legs.gain=12"], weak).points[0])
+    assert (result.outcome, result.duration) == ("wrench_range", 0.0)
+    assert "while settling" in result.reason
+    assert result.tracking_error == result.emulation_error == {}
+
+
+def test_whatever_fails_after_the_run_is_a_row_too(small_plan, monkeypatch):
+    monkeypatch.setattr("ves_twin.sweeps.run_point.simulate", lambda *_: None)
+    assert run_point(small_plan.points[0]).outcome == "error"
+
+
 def test_a_worker_with_other_versions_is_refused(small_plan):
     point = small_plan.points[0]
     old = type(point)(**{**vars(point), "versions": {**point.versions, "mujoco": "1.0"}})

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import sys
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -56,22 +57,29 @@ def execute(arguments: argparse.Namespace) -> int:
     if video is not None:
         from ves_twin.envs.film import check_video
 
-        check_video(video)
+        check_video(video, load(arguments)[0].run.duration)
     summary, folder = run_scenario(arguments)
-    if video is not None:
-        from ves_twin.envs.film import write_gif
-        from ves_twin.recording.files import load_recording
-
-        write_gif(load_recording(folder), video)
     if arguments.json:
         print(summary.to_json())
     else:
         from ves_twin.cli.summary_text import summary_text
 
         print(summary_text(summary, folder))
-        if video is not None:
-            print(f"  video     {video}")
+    if video is not None:
+        print(_draw(folder, video), file=sys.stderr if arguments.json else sys.stdout)
     return exit_code(summary.outcome)
+
+
+def _draw(folder: Path, video: Path) -> str:
+    """Draw a run whose summary is told, and say so; one without rows has nothing to draw."""
+    from ves_twin.envs.film import write_gif
+    from ves_twin.recording.files import load_recording
+
+    recording = load_recording(folder)
+    if not len(recording):
+        return f"  video     none: the run ended before its first row; {video} is not written"
+    write_gif(recording, video)
+    return f"  video     {video}"
 
 
 def exit_code(outcome: Outcome) -> int:

@@ -8,10 +8,24 @@ import os
 import sys
 import tempfile
 import time
+from collections.abc import Sequence
 from pathlib import Path
 
-from ves_twin.cli.run import add_run_options, load, load_controller, run_scenario
+from ves_twin.cli.run import add_run_options, exit_code, load, load_controller, run_scenario
 from ves_twin.errors import FileAccessError, InvalidInputError, UnknownNameError, VesTwinError
+
+OF_A_RUN = {
+    "--set": "settings",
+    "--plant": "plant",
+    "--seed": "seed",
+    "--controller": "controller",
+    "--out": "out",
+    "--no-rrd": "no_rrd",
+}
+"""Options that only a run that is written heeds -> their attribute."""
+
+NOT_LIVE = ("--out", "--no-rrd", "--web")
+"""Options that --live cannot heed: it writes nothing and has a window of its own."""
 
 SUMMARY = "look at a recording or a scenario: rerun, or MuJoCo's viewer with --live"
 
@@ -27,6 +41,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def execute(arguments: argparse.Namespace) -> int:
     """Open the viewer."""
     if arguments.live:
+        _refuse(arguments, NOT_LIVE, "with --live")
         return _live(arguments)
     from ves_twin.rerun_log.viewer import open_viewer
 
@@ -34,11 +49,12 @@ def execute(arguments: argparse.Namespace) -> int:
     is_recording = path.is_dir() or path.suffix in {".parquet", ".arrows", ".rrd"}
     if not is_recording:
         _check_something_is_there(path)
-        arguments.no_rrd = False
+        _refuse(arguments, ("--no-rrd",), "where the rerun file is what is looked at")
         summary, folder = run_scenario(arguments)
         if not (folder / "run.rrd").is_file():
             raise VesTwinError(f"nothing to look at: {summary.outcome.value}, {summary.advice}")
         return open_viewer(folder / "run.rrd", arguments.web)
+    _refuse(arguments, tuple(OF_A_RUN), "on a recording, which has been made")
     if path.suffix == ".rrd":
         check_rrd(path)
         return open_viewer(path, arguments.web)
@@ -48,6 +64,14 @@ def execute(arguments: argparse.Namespace) -> int:
     with tempfile.TemporaryDirectory(prefix="ves_twin-") as scratch:
         rrd = write_rrd(load_recording(path), Path(scratch) / "run.rrd")
         return open_viewer(rrd, arguments.web)
+
+
+def _refuse(arguments: argparse.Namespace, options: Sequence[str], where: str) -> None:
+    """Raise for an option that would be ignored."""
+    for option in options:
+        given = getattr(arguments, OF_A_RUN.get(option, option.lstrip("-")))
+        if given is not None and given is not False and given != []:
+            raise VesTwinError(f"view: {option} does nothing {where}; leave it out")
 
 
 def _check_something_is_there(path: Path) -> None:
@@ -78,12 +102,15 @@ def _run_folders(folder: Path) -> list[str]:
 
 def check_rrd(path: Path) -> None:
     """Raise InvalidInputError unless a file starts as a rerun file does."""
-    if path.is_file() and path.read_bytes()[:3] != b"RRF":
-        raise InvalidInputError(str(path), "another kind of file", "a rerun file")
+    if not path.is_file():
+        return
+    with path.open("rb") as file:
+        if file.read(3) != b"RRF":
+            raise InvalidInputError(str(path), "another kind of file", "a rerun file")
 
 
 def _live(arguments: argparse.Namespace) -> int:
-    """Step in real time; closing the window ends it."""
+    """Step in real time; closing the window ends it. The exit code is that of `run`."""
     if sys.platform == "linux" and not {"DISPLAY", "WAYLAND_DISPLAY"} & set(os.environ):
         raise VesTwinError("--live needs a display, and there is none; --web serves to a browser")
     import mujoco.viewer
@@ -104,5 +131,9 @@ def _live(arguments: argparse.Namespace) -> int:
             sim.advance(frame)
             window.sync()
             time.sleep(max(0.0, frame - (time.perf_counter() - begin)))
-    print(f"{scenario.name}: at {sim.time:.2f} s", file=sys.stderr)
-    return 0
+    if sim.outcome is None:
+        print(f"{scenario.name}: at {sim.time:.2f} s", file=sys.stderr)
+        return 0
+    ended = f"{sim.outcome.value} at {sim.time:.2f} s ({sim.outcome.advice})"
+    print(f"{scenario.name}: {ended}", file=sys.stderr)
+    return exit_code(sim.outcome)

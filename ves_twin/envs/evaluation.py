@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import asdict, dataclass
 
 import gymnasium as gym
@@ -15,7 +16,13 @@ from ves_twin.envs.baselines import BASELINES
 from ves_twin.envs.policy import Policy
 from ves_twin.envs.rig_env import rig_env
 from ves_twin.envs.wrappers import RandomRigs
-from ves_twin.errors import InvalidInputError, UnknownNameError
+from ves_twin.errors import (
+    ControllerError,
+    InvalidInputError,
+    UnknownNameError,
+    VesTwinError,
+    one_line,
+)
 from ves_twin.types import FloatArray
 from ves_twin.workers import Workers
 
@@ -188,15 +195,34 @@ def interquartile_mean(values: FloatArray) -> Figure:
 
 
 def run_episode(env: gym.Env[FloatArray, FloatArray], policy: Policy, seed: int) -> Episode:
-    """One episode of a policy in an environment of this room, with any wrappers."""
+    """One episode of a policy in an environment of this room, with any wrappers.
+
+    Raises:
+        ControllerError: the policy raised, or its action is no array of numbers.
+    """
     observation, info = env.reset(seed=seed)
-    policy.begin(observation)
+    with _named(policy, 0.0):
+        policy.begin(observation)
     cost, over, before = 0.0, False, 0.0
     while not over:
-        observation, _, terminated, truncated, info = env.step(policy.act(observation))
+        with _named(policy, before):
+            action = np.asarray(policy.act(observation), float)
+        observation, _, terminated, truncated, info = env.step(action)
         cost += info["cost"] * (info["time"] - before)
         before, over = info["time"], terminated or truncated
     return Episode(seed, info["outcome"], info["time"], cost, dict(info["metrics"]))
+
+
+@contextmanager
+def _named(policy: Policy, time: float) -> Iterator[None]:
+    """Make what a policy raises one line that names it."""
+    try:
+        yield
+    except VesTwinError:
+        raise
+    except Exception as error:
+        what = f"policy {type(policy).__name__} raised {type(error).__name__} at t = {time:.3f} s"
+        raise ControllerError(f"{what}: {one_line(error)}") from error
 
 
 def _episode(job: tuple[Trial, int]) -> Episode:

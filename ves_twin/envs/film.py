@@ -16,7 +16,7 @@ from ves_twin.recording.recording import Recording
 from ves_twin.rerun_log.poses import MACHINE_ARM, MACHINE_POSE, first_present
 from ves_twin.rerun_log.rig import DrawnRig
 from ves_twin.types import IntArray
-from ves_twin.whole_file import whole_file
+from ves_twin.whole_file import check_writable, whole_file
 
 FRAME = 0.08
 """Time between two pictures [s]; the format counts in hundredths."""
@@ -28,15 +28,23 @@ COLOURS = 128
 """Of the palette of a picture."""
 
 
-def check_video(path: Path) -> None:
+def check_video(path: Path, duration: float = 0.0) -> None:
     """Refuse before a run what could not be written after it.
 
+    Args:
+        path: the .gif file.
+        duration: of the run [s].
+
     Raises:
-        InvalidInputError: another ending than .gif.
+        InvalidInputError: another ending than .gif, or a run longer than LONGEST.
+        FileAccessError: the file cannot be written.
         NoPictureError: no OpenGL that draws off screen.
     """
     if path.suffix.lower() != ".gif":
         raise InvalidInputError("video", path.name, "FILE.gif; other forms need an encoder")
+    if duration > LONGEST:
+        raise InvalidInputError("video", f"{duration:.0f} s", f"at most {LONGEST:g} s, to draw")
+    check_writable(path)
     check_off_screen()
 
 

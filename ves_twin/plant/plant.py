@@ -25,7 +25,7 @@ from ves_twin.plant.parameters import (
     parse_parameters,
     read_plant_file,
 )
-from ves_twin.resources import find_resource, resource_folder
+from ves_twin.resources import beside, find_resource, resource_folder
 
 NOMINAL = "ves2"
 """The plant that has every number."""
@@ -62,7 +62,8 @@ class Plant:
         """A plant by name ("ves2") or from a file.
 
         A file is either complete, or it names a `base` plant and lists under `[parameters]`
-        what differs: `"leg.rod_mass" = 2.7`. Effects stand under `[effects]`.
+        what differs: `"leg.rod_mass" = 2.7`. Effects stand under `[effects]`. A `base` given by
+        its path is looked for beside the file first.
 
         Raises:
             FileAccessError: missing or unreadable file.
@@ -245,7 +246,7 @@ def _complete(table: ParameterTable, path: Path) -> ParameterTable:
 
 def _load_base(name: str, path: Path) -> Plant:
     try:
-        return Plant.load(name)
+        return Plant.load(beside(path, name))
     except RecursionError:
         raise InvalidInputError(
             f"{path}: base", name, "a plant that does not lead back here"

@@ -78,7 +78,7 @@ def confirm_by_run(
     sim.run_to(clock.ticks(PUSH[1]))
     sim.data.xfrc_applied[body] = 0.0
     sim.advance(duration)
-    _, signals = sim.recorder.sink.collect()  # type: ignore[attr-defined]
+    _, signals = sim.recorder.collect()
     # accelerations: beside them the slow swing of the base is small
     moved = np.diff(signals["truth.pose"][int(FADED / period) :, :3], 2, axis=0) / period**2
     band = (0.6 * mode.frequency, min(1.6 * mode.frequency, 0.48 / period))

@@ -154,6 +154,5 @@ def _recorded(sim: Simulator, progress: Callable[[float], None]) -> Recording:
     except KeyboardInterrupt:
         if sim.outcome is None:
             sim.end(Outcome.INTERRUPTED, f"stopped from the keyboard at {sim.time:.3f} s")
-    sink = sim.recorder.sink
-    time, signals = sink.collect() if isinstance(sink, MemorySink) else (np.zeros(0), {})
+    time, signals = sim.recorder.collect()
     return Recording(time, signals, recording_info(sim))

@@ -17,8 +17,7 @@ from ves_twin.procedures.one_axis import OneAxis
 from ves_twin.procedures.procedure import Account, Conduct, Procedure
 from ves_twin.procedures.stability_bench import StabilityBench
 from ves_twin.procedures.workers import carry_out_jobs
-from ves_twin.scenario.fields import Hertz, PerSecond, Seconds, named
-from ves_twin.scenario.load import scenario_questions
+from ves_twin.scenario.fields import Hertz, PerSecond, Seconds
 from ves_twin.scenario.schema import Scenario
 from ves_twin.simulator.outcome import Outcome
 from ves_twin.whole_file import write_whole
@@ -68,10 +67,11 @@ class StabilityMap(Procedure):
 
     The base is the scenario's, at rest; its damping, stiffness and rotational inertia stay. The
     limit comes from the Floquet multipliers of the whole sampled loop; at the gains of `confirm`
-    runs of `duration` measure the growth a tenth below and above it.
+    runs of `duration` measure the growth a tenth below and above it. `scenario` is a name or a
+    file.
     """
 
-    scenario: Annotated[str, named("scenario", scenario_questions())] = "beam_horizontal_truth"
+    scenario: str = "beam_horizontal_truth"
     gains: Annotated[tuple[Annotated[PerSecond, Field(gt=0)], ...], Field(min_length=1)]
     filters: Annotated[tuple[FilterPlace, ...], Field(min_length=1)] = tuple(FilterPlace)
     edge: Annotated[Hertz, Field(gt=0)] = EDGE
@@ -87,6 +87,7 @@ class StabilityMap(Procedure):
             raise InvalidInputError(
                 "lightest", self.lightest, f"less than heaviest {self.heaviest}"
             )
+        Scenario.load(self.scenario)  # refused before anything is written
         from ves_twin.procedures.stability_figure import draw_map  # matplotlib is slow to import
 
         plant = conduct.plant or Plant.load(self.plant)

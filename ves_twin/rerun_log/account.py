@@ -12,6 +12,7 @@ from ves_twin.rerun_log.series import shown
 from ves_twin.signals import SIGNALS
 from ves_twin.simulator.emulation_error import emulation_error
 from ves_twin.simulator.outcome import Outcome
+from ves_twin.types import FloatArray
 
 _NEEDED = ("truth.pose", "reference.pose", "reference.pose_leg_lag")
 
@@ -60,7 +61,9 @@ def _error_table(recording: Recording) -> str:
     pose = SIGNALS["truth.pose"]
     rows = []
     for (axis, error), unit in zip(
-        emulation_error([(truth, ideal, lag)]).items(), pose.units, strict=True
+        emulation_error([(truth, ideal, lag)], _home(recording.info)).items(),
+        pose.units,
+        strict=True,
     ):
         factor, label = shown("truth.pose", unit)
         values = (error.rms, error.peak, error.rms_leg_lag, error.rms_rest)
@@ -69,6 +72,16 @@ def _error_table(recording: Recording) -> str:
         rows.append((f"{axis} [{label}]", *numbers, relative))
     head = ("axis", "rms", "peak", "rms, leg lag alone", "rms, the rest", "peak / motion")
     return "Emulation error: true pose less zero-g reference\n\n" + _table(head, rows)
+
+
+def _home(info: RecordingInfo) -> FloatArray | None:
+    """Pose from which motion counts (6,), where the recording's scenario tells it."""
+    platform = settings_of(info).get("platform")
+    try:
+        home = np.array(platform.get("home") if isinstance(platform, dict) else None, float)
+    except (TypeError, ValueError):
+        return None
+    return home if home.shape == (6,) and np.all(np.isfinite(home)) else None
 
 
 def _table(head: tuple[str, ...], rows: Sequence[tuple[str, ...]]) -> str:

@@ -13,8 +13,19 @@ from typing import Any, get_args
 from pydantic import BaseModel, ValidationError
 
 from ves_twin.errors import InvalidInputError, UnknownNameError, VesTwinError
-from ves_twin.resources import find_resource, resource_folder
+from ves_twin.resources import beside, find_resource, resource_folder
 from ves_twin.toml_file import read_toml
+
+FILE_KEYS = (
+    ("plant",),
+    ("belief",),
+    ("scenario",),
+    ("platform", "emulated"),
+    ("platform", "motion", "file"),
+    ("gravity", "file"),
+    ("arm", "operator"),
+)
+"""Keys of scenarios and procedures that name a file."""
 
 
 def scenario_content(
@@ -88,13 +99,13 @@ def _read(path: Path) -> tuple[dict[str, Any], str]:
 
 
 def _find_beside(content: Mapping[str, Any], path: Path) -> None:
-    """Set-points that a scenario names lie beside its file, wherever it is run from."""
-    platform = content.get("platform")
-    motion = platform.get("motion") if isinstance(platform, dict) else None
-    if isinstance(motion, dict) and isinstance(file := motion.get("file"), str):
-        near = path.parent / file
-        if not Path(file).is_absolute() and near.is_file():
-            motion["file"] = str(near)
+    """Files that a scenario names lie beside its own file, wherever it is run from."""
+    for *parents, key in FILE_KEYS:
+        table: object = content
+        for parent in parents:
+            table = table.get(parent) if isinstance(table, dict) else None
+        if isinstance(table, dict) and isinstance(file := table.get(key), str):
+            table[key] = beside(path, file)
 
 
 def _with_key(content: Mapping[str, Any], key: str, value: object) -> dict[str, Any]:

@@ -158,7 +158,10 @@ def _calibrated(scenario: Scenario, belief: Belief, rig: Rig) -> Belief:
 def build_references(
     scenario: Scenario, plant: Plant, servo: Block
 ) -> dict[str, ZeroGravityReference]:
-    """The zero-g references of a micro-gravity run: the ideal one, and one with the legs' lag."""
+    """The zero-g references of a micro-gravity run: the ideal one, and one with the legs' lag.
+
+    They have the servo as it is now; no button of the laboratory takes its torque.
+    """
     emulated = emulated_of(scenario)
     if emulated is None or not scenario.has_reference:
         return {}
@@ -168,7 +171,7 @@ def build_references(
         name: ZeroGravityReference(
             plant=plant,
             emulated=emulated,
-            servo=servo,
+            servo=servo.copy(),
             start=np.array(scenario.platform.start),
             home=np.array(scenario.platform.home),
             arm_start=np.array(scenario.arm.start),

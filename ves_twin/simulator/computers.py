@@ -88,7 +88,8 @@ class Computers:
             0, or the number of the leg whose command would leave its travel; then nothing is sent.
 
         Raises:
-            ControllerError: a controller raised, or its command is not six finite numbers.
+            ControllerError: a controller or compensation raised, or what it gave is not six
+                finite numbers.
         """
         self.estimate_gravity(time)
         return self.send(tick, time, self._decide(time - since))
@@ -98,8 +99,12 @@ class Computers:
         return self._geometry.lengths(pose)
 
     def estimate_gravity(self, time: float) -> None:
-        """A new estimate goes into shared memory; the one of `age` cycles ago comes out."""
-        self._shared.append(self.gravity.wrench(time, self.readings))
+        """A new estimate goes into shared memory; the one of `age` cycles ago comes out.
+
+        Raises:
+            ControllerError: a compensation raised, or its estimate is not six finite numbers.
+        """
+        self._shared.append(self._gravity_wrench(time))
         self._estimate[:] = self._shared[0]
         self.hold_arm()
 
@@ -139,25 +144,46 @@ class Computers:
         if self._feedforward is not None:
             self._feedforward.restore(snapshot.feedforward)
 
+    def _gravity_wrench(self, time: float) -> FloatArray:
+        """A copy of the estimate of now: a compensation may use its array again."""
+        name = f"gravity compensation {type(self.gravity).__name__}"
+        try:
+            wrench = self.gravity.wrench(time, self.readings)
+        except VesTwinError:
+            raise
+        except Exception as error:
+            raise _raised(name, error, time) from error
+        if (
+            type(wrench) is not np.ndarray
+            or wrench.dtype != np.float64
+            or wrench.shape != (6,)
+            or not np.all(np.isfinite(wrench))
+        ):
+            raise _returned(name, wrench, time, "a wrench")
+        return wrench.copy()
+
     def _decide(self, time: float) -> FloatArray:
         try:
             pose = self.controller.update(time, self.readings)
         except VesTwinError:
             raise
         except Exception as error:
-            name = type(self.controller).__name__
-            raise ControllerError(
-                f"controller {name} raised {type(error).__name__} at t = {time:.3f} s:"
-                f" {one_line(error)}"
-            ) from error
+            raise _raised(f"controller {type(self.controller).__name__}", error, time) from error
         if type(pose) is not np.ndarray or pose.dtype != np.float64 or pose.ndim != 1:
             raise self._refusal(pose, time)
         return pose
 
     def _refusal(self, pose: object, time: float) -> ControllerError:
-        came = " ".join(repr(pose).split())
-        name = type(self.controller).__name__
-        return ControllerError(
-            f"controller {name} returned {came} at t = {time:.3f} s, expected a pose of 6"
-            " finite numbers"
-        )
+        return _returned(f"controller {type(self.controller).__name__}", pose, time, "a pose")
+
+
+def _raised(name: str, error: Exception, time: float) -> ControllerError:
+    what = f"{name} raised {type(error).__name__} at t = {time:.3f} s"
+    return ControllerError(f"{what}: {one_line(error)}")
+
+
+def _returned(name: str, came: object, time: float, kind: str) -> ControllerError:
+    text = " ".join(repr(came).split())
+    return ControllerError(
+        f"{name} returned {text} at t = {time:.3f} s, expected {kind} of 6 finite numbers"
+    )

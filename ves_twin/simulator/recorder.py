@@ -24,6 +24,8 @@ FLUSH_SECONDS = 0.5
 
 IDEAL, LEG_LAG = "reference.pose", "reference.pose_leg_lag"
 
+_NO_TIME = np.zeros(0)
+
 
 class Sink(Protocol):
     """Where rows go."""
@@ -170,6 +172,15 @@ class Recorder:
             self._add_reference(rows, time, name, reference, ticks, points)
         if len(time):
             self.sink.write(time, {name: rows[:, SLICES[name]] for name in self.names})
+
+    def collect(self) -> tuple[FloatArray, dict[str, FloatArray]]:
+        """All rows that are kept in memory: time [s] (n,) and every signal (n, width).
+
+        A run that ended before its first row has every signal, too, of no rows.
+        """
+        time, kept = self.sink.collect() if isinstance(self.sink, MemorySink) else (_NO_TIME, {})
+        empty = {name: np.zeros((0, SIGNALS[name].width)) for name in self.names}
+        return time, empty | kept
 
     def drop_references(self) -> None:
         """Stop integrating the zero-g references; their signals leave the recording."""

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Sequence
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -45,10 +46,11 @@ def replay(
 
     The loop is cut above the legs: commanded lengths and joint angles go in, so that two plants
     differ by their hardware and not by what an outer loop makes of it. Leg loops, joint servo
-    and sensor chain run as the scenario deploys them; the rig settles at the first set-point.
+    and sensor chain run as the scenario deploys them; the rig settles at the first set-point. Its
+    first cycle begins at the first row, wherever that lies in time: a window of a run replays.
 
     Args:
-        recording: the run, simulated or measured.
+        recording: the run, simulated or measured, its rows on the log clock of the scenario.
         plant: the rig that is tried, with its effects.
         drive: signals that are fed in; without the arm's command the arm stands.
         compare: signals that come back.
@@ -59,7 +61,8 @@ def replay(
 
     Raises:
         UnknownNameError: a signal that cannot be fed in or compared, or that is missing.
-        InvalidInputError: no set-points for the legs, or no scenario to go by.
+        InvalidInputError: no set-points for the legs, no scenario to go by, no rows, or rows that
+            are not those of the scenario's log clock (`run.log`).
         EndedEarlyError: the run ended early; says how.
     """
     for name in drive:
@@ -68,10 +71,14 @@ def replay(
     for name in compare:
         if name not in COMPARABLE:
             raise UnknownNameError("signal to compare", name, COMPARABLE)
-    played = replay_scenario(recording, scenario)
-    script = Rows(recording, played).script(drive, played)
+    if not len(recording):
+        raise InvalidInputError("recording", "0 rows", "one or more")
+    fed = replace(recording, time=recording.time - recording.time[0])
+    played = replay_scenario(fed, scenario)
+    script = Rows(fed, played).script(drive, played)
     played = _starting_at(played, script)
     sim = Simulator(plant, played, 0, MemorySink(), script=script)
+    _check_rows(fed, sim)
     while not sim.done:
         sim.advance(played.run.duration)
     return _collected(sim, recording, compare)
@@ -169,9 +176,20 @@ def _starting_at(scenario: Scenario, script: Script) -> Scenario:
     return scenario.model_copy(update={"platform": platform, "arm": arm})
 
 
+def _check_rows(recording: Recording, sim: Simulator) -> None:
+    """Refuse rows at other times than those that the simulator logs."""
+    clock, time = sim.rig.clock, recording.time
+    step = clock.log * clock.tick
+    off = np.abs(time - np.arange(len(time)) * step) > clock.tick
+    if np.any(off):
+        row = int(np.argmax(off))
+        log = f"every {step:.6g} s, the log clock '{sim.scenario.run.log}'"
+        came = f"row {row + 1} at {time[row]:.6g} s after the first"
+        raise InvalidInputError("recording", came, f"rows {log}; resample it, or set run.log")
+
+
 def _collected(sim: Simulator, recording: Recording, compare: Sequence[str]) -> Recording:
-    sink = sim.recorder.sink
-    time, signals = sink.collect() if isinstance(sink, MemorySink) else (np.zeros(0), {})
+    time, signals = sim.recorder.collect()
     if len(time) < len(recording):
         why = sim.events[-1].message if sim.events else "no event"
         raise EndedEarlyError(

@@ -24,7 +24,7 @@ from ves_twin.scenario.schema import Scenario
 from ves_twin.signals import SIGNALS
 from ves_twin.simulator.emulation_error import AxisError, emulation_error
 from ves_twin.simulator.outcome import Outcome
-from ves_twin.simulator.recorder import IDEAL, LEG_LAG, MemorySink, NoSink
+from ves_twin.simulator.recorder import IDEAL, LEG_LAG, NoSink
 from ves_twin.simulator.simulator import Simulator
 from ves_twin.simulator.tracking_error import TrackingError, tells_tracking, tracking_error
 from ves_twin.types import FloatArray
@@ -71,8 +71,8 @@ class Summary:
     timing: Timing
 
     def to_json(self) -> str:
-        """The summary as indented JSON."""
-        return json.dumps(asdict(self), indent=2)
+        """The summary as indented JSON; what is not finite is null."""
+        return json_text(asdict(self))
 
 
 def simulate(
@@ -97,8 +97,7 @@ def simulate(
     """
     sim = Simulator(plant, scenario, seed)
     _run(sim, progress)
-    sink = sim.recorder.sink
-    time, signals = sink.collect() if isinstance(sink, MemorySink) else (np.zeros(0), {})
+    time, signals = sim.recorder.collect()
     return Recording(time, signals, recording_info(sim))
 
 

@@ -96,11 +96,10 @@ class Simulator:
         belief = belief_of(scenario)
         noise = NoiseStreams(self.seed, scenario.run.noise)
         self.rig = Rig(self.plant, clock, scenario.legs, belief, noise)
-        self.computers = build_computers(scenario, belief, self.rig, script)
+        self.computers = build_computers(scenario, belief, self.rig, script, controller, arm)
         played = script is not None
         self.operator = build_operator(scenario, belief, self.rig, self.computers, played)
         self._standing = _at_rest(scenario, self.operator)
-        self.computers = build_computers(scenario, belief, self.rig, script, controller, arm)
         self.recorder = Recorder(
             clock,
             belief.geometry,

@@ -30,7 +30,7 @@ class Switches:
 
     Legs without power: their loop's gains are zero, so that the amplifiers give no current and
     the spools go to null. Arm without drive: the torque limit is zero. Brakes: dry friction of the
-    joints. Pump: the source's pressure. While everything is on, nothing is written.
+    joints. Pump: the source's pressure. While everything is on, what is written is what was there.
 
     Args:
         rig: the rig, settled with everything on.

@@ -13,6 +13,7 @@ from ves_twin.effects.registry import parse_effects
 from ves_twin.errors import FileAccessError, InvalidInputError
 from ves_twin.plant.plant import Plant
 from ves_twin.resources import find_resource
+from ves_twin.scenario.motions import SetpointMotion
 from ves_twin.scenario.schema import Scenario
 from ves_twin.simulator.simulate import versions
 from ves_twin.sweeps.draw import draw_points
@@ -146,10 +147,12 @@ def _named(scenario: Scenario) -> tuple[str, ...]:
         kind, folder = "gravity.file", "models/gravity"
         path = Path(gravity.file) if learned else find_resource(kind, folder, gravity.file)
         parts.append(_bytes_hash(path))
-    if arm.operator is not None:
-        parts.append(
-            _bytes_hash(find_resource("operator file", "scenarios/data", arm.operator, ".csv"))
-        )
+    played = [("operator file", arm.operator)]
+    if isinstance(motion := scenario.platform.motion, SetpointMotion):
+        played.append(("set-point file", motion.file))
+    for kind, file in played:
+        if file is not None:
+            parts.append(_bytes_hash(find_resource(kind, "scenarios/data", file, ".csv")))
     return tuple(parts)
 
 

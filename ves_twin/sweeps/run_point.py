@@ -35,24 +35,11 @@ def run_point(point: Point) -> PointResult:
     _check_program(point)
     begin = perf_counter()
     try:
-        recording = simulate(point.scenario, point.plant)
+        return _with_run(point, simulate(point.scenario, point.plant), begin)
     except VesTwinError as error:
         return _without_run(point, REFUSED, one_line(error))
     except Exception as error:
         return _without_run(point, ERROR, f"{type(error).__name__}: {one_line(error)}")
-    outcome, home = recording.info.outcome, np.array(point.scenario.platform.home)
-    return PointResult(
-        number=point.number,
-        run_id=point.run_id,
-        outcome=outcome,
-        reason="" if outcome == Outcome.COMPLETED else recording.info.events[-1].message,
-        duration=_duration(recording),
-        emulation_error=_errors(recording, home),
-        tracking_error=_tracking(recording, home) if tells_tracking(point.scenario) else {},
-        run_hash=run_hash(recording),
-        seconds=perf_counter() - begin,
-        host=_host(),
-    )
 
 
 def lost_point(point: Point, reason: str) -> PointResult:
@@ -83,6 +70,22 @@ def _check_program(point: Point) -> None:
             f"worker {_host()} builds plant {found} where the sweep has {point.plant_hash}; its"
             " model files differ"
         )
+
+
+def _with_run(point: Point, recording: Recording, begin: float) -> PointResult:
+    outcome, home = recording.info.outcome, np.array(point.scenario.platform.home)
+    return PointResult(
+        number=point.number,
+        run_id=point.run_id,
+        outcome=outcome,
+        reason="" if outcome == Outcome.COMPLETED else recording.info.events[-1].message,
+        duration=_duration(recording),
+        emulation_error=_errors(recording, home),
+        tracking_error=_tracking(recording, home) if tells_tracking(point.scenario) else {},
+        run_hash=run_hash(recording),
+        seconds=perf_counter() - begin,
+        host=_host(),
+    )
 
 
 def _without_run(point: Point, outcome: str, reason: str) -> PointResult:
