@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import platform as host
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import asdict, dataclass
@@ -17,6 +16,7 @@ import pyarrow.parquet as pq
 from ves_twin.control.controller import PlatformController
 from ves_twin.effects.registry import effects_table
 from ves_twin.errors import FileAccessError
+from ves_twin.json_text import json_text
 from ves_twin.plant.plant import Plant
 from ves_twin.recording.recording import Recording, RecordingInfo
 from ves_twin.recording.stream import RecordingStream
