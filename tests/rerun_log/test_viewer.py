@@ -17,9 +17,10 @@ from ves_twin.rerun_log.viewer import open_viewer
 from ves_twin.rerun_log.write import write_rrd
 
 SERVE = """
-import sys
+import signal, sys
 from pathlib import Path
 from ves_twin.rerun_log.viewer import open_viewer
+signal.signal(signal.SIGINT, signal.default_int_handler)  # a shell's background job ignores it
 sys.exit(open_viewer(Path(sys.argv[1]), web=True))
 """
 
@@ -67,5 +68,10 @@ def test_the_web_viewer_listens_on_loopback_only_and_ends_with_ctrl_c(file, monk
             assert not any(_answers("127.0.0.2", port) for port in ports)
         finally:
             process.send_signal(signal.SIGINT)
-        assert process.wait(20) == 0
+            try:
+                code = process.wait(20)
+            except subprocess.TimeoutExpired:
+                process.terminate()  # or the block would wait for ever
+                raise
+        assert code == 0
     assert not any(_answers("127.0.0.1", port) for port in ports)
