@@ -138,3 +138,18 @@ def test_where_a_delay_sits_cannot_be_told_from_rest_in_open_loop():
     v = diagnose(plant, [data], settings=Settings(nulls=60))
     assert v.verdict is Kind.AMBIGUOUS
     assert {f"{c.effect}@{c.target}" for c in v.causes} == {"delay@sensor", "delay@command"}
+
+
+@pytest.mark.slow
+def test_a_fault_that_was_repaired_meanwhile_extends_nothing(settings):
+    """Commissioning errors bent to mimic a spring do worse than the spring, and both are wrong."""
+    rng = np.random.default_rng(3)
+    usual = BENCH.commissioned(rng)
+    sick = {**usual, "joint.stiffness": 0.015}
+    train = BENCH.record(BlindRig(sick), "train", rng)
+    for values, confirmed in ((usual, False), (sick, True)):
+        held = BENCH.record(BlindRig(values), "held_out", rng)
+        v = diagnose(PLANT, [train], held_out=[held], settings=settings)
+        assert v.causes[0].effect == "joint_stiffness"
+        assert v.gain.passed == confirmed
+        assert v.gain.low > 0.0  # against the commissioning errors alone it would do

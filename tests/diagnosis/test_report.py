@@ -15,6 +15,7 @@ from ves_twin.diagnosis.linearise import linearise
 from ves_twin.diagnosis.next_experiment import separations
 from ves_twin.diagnosis.observe import observe
 from ves_twin.diagnosis.refine import refine
+from ves_twin.diagnosis.refusal import refusal
 from ves_twin.diagnosis.report.page import diagnosis_page
 from ves_twin.diagnosis.report.words import headline, spoken, tone
 from ves_twin.diagnosis.rivals import Standing
@@ -83,6 +84,10 @@ def test_a_gain_that_is_not_clear_takes_the_word_found_away(proven):
     doubtful = replace(proven, gain=Gain(0.5, -0.1, 1.1, 2.0, 1.5))
     assert "do not confirm it" in headline(doubtful)
     assert tone(doubtful) == "open"
+    repaired = replace(proven, gain=Gain(0.6, 0.4, 0.8, 2.0, 1.4, without=1.02))
+    assert "better without it" in headline(repaired)
+    assert "lack it" in refusal(repaired)
+    assert tone(repaired) == "open"
     blind = replace(proven, gain=Gain(None, None, None, 1.01, 1.0))
     assert "neither confirm nor refute it" in headline(blind)
     assert tone(blind) == "open"

@@ -110,6 +110,8 @@ def _doubt(verdict: Verdict) -> str:
         return f" {it} fits these recordings; no other recording has tested it."
     if verdict.gain is None or verdict.gain.share is None:
         return " The held-out recordings can neither confirm nor refute it."
+    if not verdict.gain.by_causes:
+        return " The held-out recordings are explained better without it."
     if not verdict.gain.passed:
         return " The held-out recordings do not confirm it."
     return " Held-out recordings confirm it."
@@ -236,6 +238,8 @@ def gain_sentence(verdict: Verdict) -> str:
     said = f"{_share(gain.share)} of the error beyond noise on held-out recordings ({span})"
     if gain.passed:
         return f"Gain: the extended plant takes away {said}."
+    if not gain.by_causes:
+        return f"Gain: {said}. But the same rig without the cause predicts them better."
     return f"Gain: {said}. That is no clear gain."
 
 
