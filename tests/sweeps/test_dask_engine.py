@@ -75,6 +75,15 @@ def test_a_scheduler_that_does_not_answer_is_one_line(small_plan, tmp_path, monk
         assert "\n" not in str(caught.value)
 
 
+def test_a_scheduler_without_workers_is_one_line(small_plan, tmp_path, monkeypatch):
+    monkeypatch.setattr("ves_twin.sweeps.dask_engine.MUSTER", 1.0)
+    with (
+        LocalCluster(n_workers=0, host=LOOPBACK, dashboard_address=f"{LOOPBACK}:0") as idle,
+        pytest.raises(ClusterError, match="no worker has joined"),
+    ):
+        carry_out_sweep(small_plan, tmp_path, DaskEngine(idle.scheduler_address, 1))
+
+
 def test_without_dask_the_missing_extra_is_named(monkeypatch):
     monkeypatch.setitem(__import__("sys").modules, "distributed", None)
     with pytest.raises(ClusterError, match=r"ves_twin\[cluster\]"):

@@ -25,6 +25,9 @@ AHEAD = 4
 PATIENCE = "10s"
 """How long a scheduler may take to answer."""
 
+MUSTER = 60.0
+"""How long it may take until a worker has joined [s]."""
+
 
 class ClusterError(VesTwinError):
     """A cluster that cannot be used."""
@@ -91,9 +94,17 @@ class DaskEngine:
                         silence_logs=logging.CRITICAL,  # a worker that is stopped complains
                     )
                 )
-            return stack.enter_context(Client(address, timeout=PATIENCE, set_as_default=False))
+            client = stack.enter_context(Client(address, timeout=PATIENCE, set_as_default=False))
         except (OSError, ValueError, ImportError) as error:
             raise ClusterError(f"scheduler {self._address}: {one_line(error)}") from None
+        try:
+            client.wait_for_workers(1, timeout=MUSTER)
+        except TimeoutError:
+            raise ClusterError(
+                f"scheduler {self._address}: no worker has joined it in {MUSTER:g} s; start some"
+                f" with `dask worker {self._address}` and sweep again"
+            ) from None
+        return client
 
 
 def _submit(client: Client, point: Point) -> Future:
