@@ -17,14 +17,13 @@ import sys
 import tempfile
 import time
 from collections.abc import Callable
-from functools import partial
 from pathlib import Path
 
 import numpy as np
 
 import ves_twin as vt
 from ves_twin.benches.diagnose_rig import diagnose_rig
-from ves_twin.benches.pendulum import Pendulum
+from ves_twin.benches.pendulum import START, STEP, Pendulum
 from ves_twin.blind import pendulum as generator
 from ves_twin.blind import rig as rig_generator
 from ves_twin.blind.bench import BlindRig
@@ -33,6 +32,7 @@ from ves_twin.blind.rig import BlindVes2
 from ves_twin.comparison.compare import Named, compare
 from ves_twin.comparison.report import comparison_page
 from ves_twin.diagnosis.diagnose import diagnose
+from ves_twin.diagnosis.forward import Programme
 from ves_twin.diagnosis.settings import Settings
 from ves_twin.diagnosis.verdict import Verdict
 from ves_twin.plant.plant import Plant
@@ -101,14 +101,16 @@ def compare_rows() -> None:
 
 
 def pendulum_rows(folder: Path) -> None:
-    generator.SECONDS = SECONDS
     # over 20 s the generator's disturbance is found as what it is: something that no model has
     generator.DISTURBANCE = 0.0
-    generator.asked_torque = partial(generator.asked_torque, amplitude=0.15)  # not over the top
+    torque = generator.asked_torque(1, amplitude=0.15, seconds=SECONDS)  # not over the top
+    start = np.zeros((len(torque), 2))
+    drive = {"joint.torque": torque[:, None], START.name: start}
+    fed = Programme("20 s", STEP * np.arange(len(torque)), drive)
     bench, plant = BlindPendulum(), Pendulum.with_command_delay()
     settings = Settings(cache=folder / "pendulum", workers=os.cpu_count() or 1)
     records = {
-        name: bench.record(drawn(bench, rig), "train", np.random.default_rng(5))
+        name: bench.play(drawn(bench, rig), fed, np.random.default_rng(5))
         for name, rig in PENDULUM.items()
     }
     rows = [("nothing, cold", "nothing"), *((f"{name}, warm", name) for name in records)]
