@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from ves_twin.machines.pendulum.forward import STEP, Pendulum
 
 from ves_twin.diagnosis.both_views import both_views
 from ves_twin.diagnosis.forward import Excitation
@@ -11,7 +12,6 @@ from ves_twin.diagnosis.gain import Gain
 from ves_twin.diagnosis.refusal import refusal
 from ves_twin.diagnosis.verdict import Basis, Cause, Kind, Statistics, Verdict
 from ves_twin.diagnosis.widened import LEAST, Widened, widening
-from ves_twin.machines.pendulum.forward import STEP, Pendulum
 from ves_twin.machines.ves2 import diagnose_rig
 from ves_twin.report.diagnosis.words import headline
 

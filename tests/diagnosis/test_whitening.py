@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from scipy.signal import lfilter
 from toy import Toy, programme
+from ves_twin.machines.pendulum.forward import STEP, Pendulum
 
 from ves_twin.core.errors import InvalidInputError
 from ves_twin.core.recording.recording import Recording, RecordingInfo
@@ -14,7 +15,6 @@ from ves_twin.diagnosis.forward import Excitation
 from ves_twin.diagnosis.grid import AnalysisGrid
 from ves_twin.diagnosis.runs import Runs
 from ves_twin.diagnosis.whitening import whitening_declared, whitening_measured
-from ves_twin.machines.pendulum.forward import STEP, Pendulum
 
 
 @pytest.fixture(scope="module")

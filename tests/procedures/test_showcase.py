@@ -4,6 +4,7 @@ import json
 
 import numpy as np
 import pytest
+from ves_twin.suites.judge import Judgement, judge
 
 from ves_twin.core.errors import InvalidInputError, UnknownNameError
 from ves_twin.core.recording.files import load_recording
@@ -12,7 +13,6 @@ from ves_twin.plant.plant import Plant
 from ves_twin.procedures.procedure import RunContext
 from ves_twin.procedures.registry import load_procedure
 from ves_twin.scenario.load import procedure_questions
-from ves_twin.suites.judge import Judgement, judge
 
 SHOWN = (
     *("nothing", "valve_deadband", "sensor_drift", "soft_leg", "filter_place"),

@@ -7,13 +7,13 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from ves_twin.suites.benches import bench_of
 
 from ves_twin.cli.main import main
 from ves_twin.core.errors import FileAccessError, InvalidInputError, UnknownNameError
 from ves_twin.core.recording.files import load_recording
 from ves_twin.diagnosis.runs import silent
 from ves_twin.suites.answers import Answer
-from ves_twin.suites.benches import bench_of
 from ves_twin.suites.draw import LOUDNESS, PAIR_LOUDNESS
 from ves_twin.suites.make import make_suite
 from ves_twin.suites.rate import Rate

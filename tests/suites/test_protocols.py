@@ -5,6 +5,12 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
+from ves_twin.machines.pendulum.excitations import pendulum_menu
+from ves_twin.machines.pendulum.forward import CHANNELS, START, STEP, Pendulum
+from ves_twin.machines.pendulum.inputs import prepare_pendulum
+from ves_twin.suites.achievable import true_energy
+from ves_twin.suites.bench import BlindRig
+from ves_twin.suites.pendulum import BlindPendulum, asked_torque
 
 from ves_twin.cli.main import main
 from ves_twin.core.errors import InvalidInputError, UnknownNameError
@@ -13,16 +19,10 @@ from ves_twin.core.recording.recording import Recording, RecordingInfo
 from ves_twin.diagnosis.forward import Excitation
 from ves_twin.diagnosis.runs import silent
 from ves_twin.diagnosis.settings import Settings
-from ves_twin.machines.pendulum.excitations import pendulum_menu
-from ves_twin.machines.pendulum.forward import CHANNELS, START, STEP, Pendulum
-from ves_twin.machines.pendulum.inputs import prepare_pendulum
-from ves_twin.suites.achievable import true_energy
 from ves_twin.suites.answer import answer_suite
 from ves_twin.suites.answers import Answer, write_answers
-from ves_twin.suites.bench import BlindRig
 from ves_twin.suites.make import make_suite
 from ves_twin.suites.material import Material, Use
-from ves_twin.suites.pendulum import BlindPendulum, asked_torque
 from ves_twin.suites.play import play_next, played_file
 from ves_twin.suites.recipe import Recipe
 from ves_twin.suites.score import mark, read_truths

@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 import numpy as np
+from ves_twin.machines.pendulum.forward import STEP, Pendulum
 
 from ves_twin.core.recording.recording import Recording, RecordingInfo
 from ves_twin.diagnosis.forward import Excitation
-from ves_twin.machines.pendulum.forward import STEP, Pendulum
 
 ROWS: dict[str, tuple[Mapping[str, float], str]] = {
     "none": ({}, "-"),

@@ -5,6 +5,10 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from rows import EXPECTED, ROWS, row_record
+from ves_twin.machines.pendulum.forward import STEP, Pendulum, edited
+from ves_twin.suites.bench import BlindRig
+from ves_twin.suites.benches import bench_of
+from ves_twin.suites.pendulum import asked_torque
 
 from ves_twin.diagnosis.detectability import detectability
 from ves_twin.diagnosis.diagnose import diagnose
@@ -14,10 +18,6 @@ from ves_twin.diagnosis.runs import Runs
 from ves_twin.diagnosis.settings import Settings
 from ves_twin.diagnosis.verdict import Kind
 from ves_twin.diagnosis.whitening import whitening_declared
-from ves_twin.machines.pendulum.forward import STEP, Pendulum, edited
-from ves_twin.suites.bench import BlindRig
-from ves_twin.suites.benches import bench_of
-from ves_twin.suites.pendulum import asked_torque
 
 TORQUE = asked_torque(1)
 TIME = STEP * np.arange(len(TORQUE))

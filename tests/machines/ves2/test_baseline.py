@@ -2,14 +2,14 @@
 
 import numpy as np
 import pytest
+from ves_twin.machines.pendulum.forward import Pendulum
+from ves_twin.suites.bench import BlindRig
+from ves_twin.suites.pendulum import BlindPendulum
 
 from ves_twin.core.errors import InvalidInputError
 from ves_twin.diagnosis.diagnose import diagnose
 from ves_twin.diagnosis.settings import Settings
 from ves_twin.diagnosis.verdict import Kind
-from ves_twin.machines.pendulum.forward import Pendulum
-from ves_twin.suites.bench import BlindRig
-from ves_twin.suites.pendulum import BlindPendulum
 
 PLANT = Pendulum()
 BENCH = BlindPendulum()

@@ -2,6 +2,8 @@
 
 import numpy as np
 import pytest
+from ves_twin.suites.bench import BlindRig
+from ves_twin.suites.rig import BlindVes2
 
 import ves_twin as vt
 from ves_twin.control.leg_loop import FilterPlace
@@ -13,8 +15,6 @@ from ves_twin.machines.ves2.filter_place import WithFilterPlaces
 from ves_twin.machines.ves2.forward import DRIVE, RigForward
 from ves_twin.scenario.schema import Scenario
 from ves_twin.simulator.replay import replay_scenario
-from ves_twin.suites.bench import BlindRig
-from ves_twin.suites.rig import BlindVes2
 
 SHORT = {"run.duration": 1.5, "run.settle": 0.3, "arm.moves": []}
 

@@ -11,14 +11,14 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from scipy.signal import lfilter
+from ves_twin.machines.pendulum.forward import PARAMETERS, Pendulum
+from ves_twin.suites.bench import BlindRig
+from ves_twin.suites.pendulum import BlindPendulum
 
 from ves_twin.core.recording.recording import Recording
 from ves_twin.diagnosis.diagnose import diagnose
 from ves_twin.diagnosis.settings import Settings
-from ves_twin.machines.pendulum.forward import PARAMETERS, Pendulum
 from ves_twin.suites.answers import Answer
-from ves_twin.suites.bench import BlindRig
-from ves_twin.suites.pendulum import BlindPendulum
 from ves_twin.suites.score import mark
 from ves_twin.suites.truth import Hidden, HiddenCause, Truth
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 from time import perf_counter
 
 from ves_twin.core.recording.recording import Recording
@@ -13,9 +14,11 @@ from ves_twin.diagnosis.refusal import refusal
 from ves_twin.diagnosis.runs import Progress, silent
 from ves_twin.diagnosis.settings import Settings
 from ves_twin.diagnosis.verdict import Verdict
+from ves_twin.machines.mjcf.excitations import excitations
 from ves_twin.machines.mjcf.extend import extended
 from ves_twin.machines.mjcf.forward import MjcfForward
 from ves_twin.machines.mjcf.machine import Rig
+from ves_twin.machines.mjcf.started import started
 
 WORTH_A_PROCESS = 0.3
 """Time of one prediction [s] from which other processes, which take seconds to begin, pay."""
@@ -67,6 +70,9 @@ def diagnose_mjcf(
         UnknownNameError: an unknown cause in `exclude`, or a signal that is not recorded.
     """
     told = rig.description
+    nominal = rig
+    rig, groups = started(rig, recordings, held_out, commissioning, baseline)
+    recordings, held_out, commissioning, baseline = groups
     forward = MjcfForward.of(rig)
     for recording in recordings:
         forward.check_noise(recording.signals)
@@ -80,11 +86,12 @@ def diagnose_mjcf(
         commissioning=commissioning,
         standstill=standstill,
         baseline=baseline,
+        next_programmes=partial(excitations, rig),
         exclude=exclude,
         settings=chosen,
         progress=progress,
     )
-    new = extended(rig, verdict) if verdict.verdict.names_a_plant else None
+    new = extended(nominal, verdict) if verdict.verdict.names_a_plant else None
     verdict = replace(verdict, causes=tuple(c.shortened for c in verdict.causes))
     if new is None:
         return MjcfDiagnosis(verdict, None, f"the verdict is {verdict.verdict.value}")

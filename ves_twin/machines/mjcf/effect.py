@@ -45,6 +45,8 @@ class RigEffect(ABC):
     """Attribute of the model that it changes; its nominal value is then that of the model."""
     source: ClassVar[str] = "assumed: sizes follow from the typical ones of the rig's file"
     linear: ClassVar[bool] = False
+    steady: ClassVar[bool] = False
+    """Whether `resist` is the same effort at any speed."""
     transient: ClassVar[bool] = False
     """Whether its sizes belong to one stretch of time and say nothing of later ones."""
 

@@ -96,6 +96,7 @@ class ForceOffset(RigEffect):
     kind: ClassVar[str] = "force_offset"
     element: ClassVar[Element] = Element.JOINT
     size: ClassVar[Size] = Size("offset", EFFORT, lambda p: 0.5 * p.effort)
+    steady: ClassVar[bool] = True
 
     def resist(self, speed: FloatArray, slow: float) -> FloatArray:
         """The offset."""

@@ -70,6 +70,10 @@ def typical_speed(joint: str, told: RigDescription, model: mujoco.MjModel) -> fl
 def _signal(target: str, told: RigDescription, kind: str) -> Place:
     count = COLUMNS.get(kind, 1)
     parts = target.split(".")
+    if kind == "sensor_delay":
+        groups = {signal.partition(".")[0] for signal in told.signals}
+        _known("signal", target, {*told.signals, *groups})
+        return Place(Element.SIGNAL, target, unit="s")
     name = ".".join(parts[:-count] if count else parts)
     _known("signal", name, told.signals)
     column = told.signals[name]

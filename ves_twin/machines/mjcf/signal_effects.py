@@ -114,7 +114,7 @@ class SensorDrift(RigEffect):
 @final
 @dataclass(frozen=True)
 class SensorDelay(RigEffect):
-    """A whole signal is read late."""
+    """A signal is read late, or all signals of a part, by one computer: target "joint"."""
 
     delay: float = 0.0
 
