@@ -61,7 +61,7 @@ scorecard: .venv/.run
 	cp runs/scorecard/thesis-scorecard.md docs/thesis-scorecard.md
 
 diagnosis-scorecard: .venv/.run
-	$(BIN)/python benchmarks/diagnosis_scorecard.py docs/diagnosis-scorecard.md
+	$(BIN)/python benchmarks/suites.py --size full --folder runs/blind --page docs/diagnosis-scorecard.md
 
 figures: .venv/.dev
 	$(BIN)/python -m pytest -n 0 --figures docs/figures.md \

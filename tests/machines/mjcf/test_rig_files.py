@@ -134,7 +134,7 @@ def test_options_that_a_rig_does_not_have_are_refused(tmp_path, capsys):
 
 def test_a_rig_is_told_from_a_form_of_ves_ii(tmp_path):
     assert is_rig(str(write_files(tmp_path)))
-    assert shipped_rigs() == ["emps", "ft_wrist"]
+    assert shipped_rigs() == ["emps", "ft_wrist", "pendulum"]
     assert all(is_rig(name) for name in shipped_rigs())
     assert not is_rig("ves2")
 
@@ -143,6 +143,12 @@ def test_a_rig_is_told_from_a_form_of_ves_ii(tmp_path):
 def test_every_rig_that_comes_with_the_twin_loads(name):
     """A set of rigs, or any other file that is none, does not lie among them."""
     assert Rig.load(name).description.name == name
+
+
+def test_rigs_that_moved_are_still_found_where_they_were():
+    for name in ("emps", "ft_wrist"):
+        before, now = Rig.load(f"models/rigs/{name}.toml"), Rig.load(name)
+        assert before.identity == now.identity
 
 
 def test_a_set_of_rigs_is_no_rig(tmp_path, capsys):

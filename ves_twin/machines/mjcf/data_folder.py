@@ -10,7 +10,7 @@ from ves_twin.core.errors import FileAccessError, InvalidInputError
 from ves_twin.machines.mjcf.machine import Rig
 
 VARIABLE = "VES_TWIN_DATA"
-"""Environment variable with the folder of public data sets; see models/rigs/README.md."""
+"""Environment variable with the folder of public data sets; see models/machines/README.md."""
 
 
 def find_data(name: str, rig: Rig, folder: str | None = None) -> Path:
