@@ -12,7 +12,7 @@ import pytest
 # threads of small matrix products wait for each other where workers share the cores
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
-pytest_plugins = ["costs", "once"]
+pytest_plugins = ["costs", "once", "shipped"]
 
 
 @dataclass(frozen=True)

@@ -19,8 +19,6 @@ from typing import ParamSpec, TypeVar
 
 import pytest
 
-import ves_twin as vt
-
 FOLDER = "VES_TWIN_TESTS_ONCE"
 
 Arguments = ParamSpec("Arguments")
@@ -56,15 +54,3 @@ def pytest_configure(config: pytest.Config) -> None:
 def pytest_unconfigure(config: pytest.Config) -> None:
     if not hasattr(config, "workerinput"):
         shutil.rmtree(os.environ.pop(FOLDER), ignore_errors=True)
-
-
-@pytest.fixture(scope="session")
-def beam_minute() -> vt.Recording:
-    """The beam scenario as shipped, 60 s."""
-    return once(vt.simulate, vt.Scenario.load("beam_horizontal_truth"))
-
-
-@pytest.fixture(scope="session")
-def beam_short() -> vt.Recording:
-    """Three seconds of the beam scenario: the arm's move."""
-    return once(vt.simulate, vt.Scenario.load("beam_horizontal_truth", {"run.duration": 3.0}))
