@@ -49,7 +49,7 @@ def plot(recording: Recording, names: Iterable[str]) -> Figure:
         axis.set_ylabel(f"{name} [{unit}]", fontsize="small")
         axis.grid(alpha=0.3)
         if signal.width > 1:
-            axis.legend(loc="upper right", ncols=3, fontsize="x-small")
+            axis.legend(loc="center left", bbox_to_anchor=(1.0, 0.5), fontsize="x-small")
     axes[-1].set_xlabel("time [s]")
     return figure
 
