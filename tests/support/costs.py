@@ -128,6 +128,8 @@ def pytest_configure(config: pytest.Config) -> None:
 
 
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
+    # what takes minutes goes first, so that no worker waits for it at the end
+    items.sort(key=lambda item: item.get_closest_marker("timeout") is None)
     if config.getoption("--nightly"):
         return
     left_out = [item for item in items if item.get_closest_marker("nightly")]
