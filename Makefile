@@ -65,7 +65,7 @@ diagnosis-scorecard: .venv/.run
 
 figures: .venv/.dev
 	$(BIN)/python -m pytest -n 0 --figures docs/figures.md \
-		tests/kinematics/test_stewart.py tests/plant tests/simulator
+		tests/mechanics/kinematics/test_stewart.py tests/plant tests/simulator
 
 fidelity: .venv/.dev
 	$(BIN)/python benchmarks/fidelity.py docs/fidelity.md

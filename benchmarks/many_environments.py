@@ -24,8 +24,8 @@ import mujoco
 import numpy as np
 
 from ves_twin.envs import ENVIRONMENTS
+from ves_twin.envs.chunked_vector_env import ChunkedVectorEnv
 from ves_twin.envs.rig_env import CYCLES
-from ves_twin.envs.shared_out import SharedOut
 
 COPIES = 8
 """Environments side by side."""
@@ -96,7 +96,7 @@ class Bare:
 def measure(name: str, plant: str, rounds: int) -> str:
     """A row of the table."""
     one = gym.make(name, plant=plant)
-    shared = SharedOut(name, COPIES, plant=plant)
+    shared = ChunkedVectorEnv(name, COPIES, plant=plant)
     own = gym.make_vec(
         name,
         num_envs=COPIES,

@@ -10,14 +10,14 @@ from scipy.signal import lfilter
 from scipy.stats import binomtest
 from toy import CAUSES, NUISANCES, QUICK, SD, Toy, programme, record, shape
 
+from ves_twin.core.errors import InvalidInputError, UnknownNameError
+from ves_twin.core.recording.recording import Recording
 from ves_twin.diagnosis import diagnose as verb
 from ves_twin.diagnosis.diagnose import diagnose
 from ves_twin.diagnosis.forward import Parameter
 from ves_twin.diagnosis.settings import Settings
 from ves_twin.diagnosis.verdict import Kind
 from ves_twin.diagnosis.whitening import Whitening
-from ves_twin.errors import InvalidInputError, UnknownNameError
-from ves_twin.recording.recording import Recording
 
 
 @pytest.fixture(scope="module")

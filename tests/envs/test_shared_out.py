@@ -5,9 +5,9 @@ import numpy as np
 import pytest
 from short_episodes import make_short, short
 
-from ves_twin.envs.shared_out import SharedOut
+from ves_twin.core.errors import InvalidInputError, UnknownNameError, VesTwinError
+from ves_twin.envs.chunked_vector_env import ChunkedVectorEnv
 from ves_twin.envs.wrappers import LateObservations
-from ves_twin.errors import InvalidInputError, UnknownNameError, VesTwinError
 
 DAMPING = "VesTwin/VibrationDamping-v0"
 COUNT = 3  # over two processes: shares of one and of two
@@ -32,7 +32,7 @@ def same(found, expected):
 
 @pytest.fixture(scope="module")
 def envs():
-    made = SharedOut(
+    made = ChunkedVectorEnv(
         DAMPING,
         COUNT,
         processes=2,
@@ -114,16 +114,16 @@ def test_attributes_are_told_and_set_in_order(envs):
 
 def test_what_cannot_be_made_leaves_no_process():
     with pytest.raises(UnknownNameError, match="ves3"):
-        SharedOut(DAMPING, 2, plant="ves3")
+        ChunkedVectorEnv(DAMPING, 2, plant="ves3")
     with pytest.raises(InvalidInputError, match="num_envs"):
-        SharedOut(DAMPING, 0)
+        ChunkedVectorEnv(DAMPING, 0)
     with pytest.raises(UnknownNameError, match="did you mean 'NextStep'"):
-        SharedOut(DAMPING, 2, autoreset_mode="next_step")
+        ChunkedVectorEnv(DAMPING, 2, autoreset_mode="next_step")
 
 
 def test_within_the_last_step_and_when_closed():
     options = {"plant": "ves2_fast", "scenario": short("vibration_damping")}
-    found = SharedOut(DAMPING, 2, processes=2, autoreset_mode="SameStep", **options)
+    found = ChunkedVectorEnv(DAMPING, 2, processes=2, autoreset_mode="SameStep", **options)
     mode = {"autoreset_mode": "SameStep"}
     expected = gym.make_vec(
         DAMPING, num_envs=2, vectorization_mode="sync", vector_kwargs=mode, **options
@@ -143,7 +143,7 @@ def test_within_the_last_step_and_when_closed():
 
 
 def test_a_process_that_dies_is_told_and_the_others_end():
-    envs = SharedOut(
+    envs = ChunkedVectorEnv(
         DAMPING, 2, processes=2, plant="ves2_fast", scenario=short("vibration_damping")
     )
     envs.processes[0].kill()

@@ -17,7 +17,7 @@ import pytest
 from mutate import mutate_bytes, mutate_text
 from targets import TARGETS, Target
 
-from ves_twin.errors import VesTwinError
+from ves_twin.core.errors import VesTwinError
 
 ROOM = 3 * 2**30
 """Memory that reading harmed files may take on top of what the process has [bytes]."""

@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 
 import ves_twin as vt
-from ves_twin.errors import InvalidInputError
-from ves_twin.gravity_model.learned import LearnedGravity
-from ves_twin.procedures.procedure import Conduct
+from ves_twin.core.errors import InvalidInputError
+from ves_twin.mechanics.gravity.learned import LearnedGravity
+from ves_twin.procedures.procedure import RunContext
 from ves_twin.procedures.registry import load_procedure
 from ves_twin.simulator.outcome import Outcome
 
@@ -23,7 +23,7 @@ SHORT = {
 
 def learned(folder, plant=None, **changes):
     procedure = load_procedure("beam_learning_method", {**SHORT, **changes})
-    return procedure.carry_out(Conduct(folder, plant or vt.Plant.load("ves2_fast")))
+    return procedure.carry_out(RunContext(folder, plant or vt.Plant.load("ves2_fast")))
 
 
 @pytest.fixture(scope="module")

@@ -5,14 +5,14 @@ import json
 import numpy as np
 import pytest
 
-from ves_twin.blind.judge import Judgement, judge
+from ves_twin.core.errors import InvalidInputError, UnknownNameError
+from ves_twin.core.recording.files import load_recording
 from ves_twin.diagnosis.verdict import Basis, Cause, Kind, Statistics, Verdict
-from ves_twin.errors import InvalidInputError, UnknownNameError
 from ves_twin.plant.plant import Plant
-from ves_twin.procedures.procedure import Conduct
+from ves_twin.procedures.procedure import RunContext
 from ves_twin.procedures.registry import load_procedure
-from ves_twin.recording.files import load_recording
 from ves_twin.scenario.load import procedure_questions
+from ves_twin.suites.judge import Judgement, judge
 
 SHOWN = (
     *("nothing", "valve_deadband", "sensor_drift", "soft_leg", "filter_place"),
@@ -21,7 +21,7 @@ SHOWN = (
 
 
 def carried_out(name, folder, changes=None, **conduct):
-    return load_procedure(name, changes).carry_out(Conduct(folder, **conduct))
+    return load_procedure(name, changes).carry_out(RunContext(folder, **conduct))
 
 
 @pytest.fixture(autouse=True)

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 import ves_twin as vt
-from ves_twin.rerun_log.rig import DrawnRig
-from ves_twin.rerun_log.write import write_rrd
+from ves_twin.report.rerun.rig import DrawnRig
+from ves_twin.report.rerun.write import write_rrd
 from ves_twin.scenario.load import scenario_questions
 from ves_twin.simulator.emulation_error import emulation_error
 

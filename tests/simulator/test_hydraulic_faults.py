@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import ves_twin as vt
-from ves_twin.errors import InvalidInputError
+from ves_twin.core.errors import InvalidInputError
 
 GAIN, FULL_SPEED = 12.6, 0.5
 NEUTRAL = {

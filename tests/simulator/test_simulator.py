@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 import ves_twin as vt
-from ves_twin.errors import ControllerError, UnreachableError
+from ves_twin.core.errors import ControllerError, UnreachableError
 from ves_twin.scenario.load import scenario_questions
 from ves_twin.simulator.outcome import Outcome
 
@@ -252,7 +252,7 @@ def test_plant_given_beside_a_scenario_takes_the_scenario_s_parameters():
 
 
 def test_cycle_longer_than_a_block_of_noise_is_refused():
-    from ves_twin.errors import InvalidInputError
+    from ves_twin.core.errors import InvalidInputError
 
     scenario = vt.Scenario.load("position_sine", {**SHORT, "parameters.clock.tick": 1e-6})
     with pytest.raises(InvalidInputError, match=r"platform\.rate"):

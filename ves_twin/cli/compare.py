@@ -6,11 +6,11 @@ import argparse
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from ves_twin.json_text import json_text
+from ves_twin.core.json_text import json_text
 
 if TYPE_CHECKING:
-    from ves_twin.comparison.compare import Named
-    from ves_twin.comparison.result import Comparison
+    from ves_twin.machines.ves2.compare import Named
+    from ves_twin.machines.ves2.comparison_result import Comparison
 
 from ves_twin.cli.rig_recordings import add_rig_arguments, means_rig
 
@@ -43,7 +43,7 @@ def execute(arguments: argparse.Namespace) -> int:
         return _rig(arguments)
     from ves_twin.cli.rig_recordings import refuse_rig_options
     from ves_twin.cli.run import output_folder
-    from ves_twin.comparison.report import comparison_page
+    from ves_twin.report.comparison.page import comparison_page
     from ves_twin.report.page import write_page
     from ves_twin.simulator.simulate import make_folder
 
@@ -63,10 +63,10 @@ def _rig(arguments: argparse.Namespace) -> int:
     """A rig of two files: its own mode, and closed loop where it has controllers."""
     from ves_twin.cli.rig_recordings import rig_recordings
     from ves_twin.cli.run import output_folder
-    from ves_twin.errors import InvalidInputError
+    from ves_twin.core.errors import InvalidInputError
+    from ves_twin.machines.mjcf.compare_mjcf import SCHEMA, compare_mjcf
+    from ves_twin.report.comparison.mjcf_page import comparison_lines, rig_comparison_page
     from ves_twin.report.page import write_page
-    from ves_twin.rigs.compare_mjcf import SCHEMA, compare_mjcf
-    from ves_twin.rigs.compare_page import comparison_lines, rig_comparison_page
     from ves_twin.simulator.simulate import make_folder
 
     for option in ("against", "tolerance", "standstill"):
@@ -89,8 +89,8 @@ def _rig(arguments: argparse.Namespace) -> int:
 
 def _compare(arguments: argparse.Namespace) -> Comparison:
     from ves_twin.cli.progress import RunProgress
-    from ves_twin.comparison.compare import compare
-    from ves_twin.comparison.tolerance import Tolerance
+    from ves_twin.machines.ves2.compare import compare
+    from ves_twin.machines.ves2.tolerance import Tolerance
     from ves_twin.plant.plant import Plant
     from ves_twin.scenario.experiment import Experiment
 
@@ -109,21 +109,21 @@ def _compare(arguments: argparse.Namespace) -> Comparison:
 
 
 def _named(path: str) -> Named:
-    from ves_twin.comparison.compare import Named
-    from ves_twin.recording.files import load_recording, recording_name
+    from ves_twin.core.recording.files import load_recording, recording_name
+    from ves_twin.machines.ves2.compare import Named
 
     return Named(recording_name(path), load_recording(path))
 
 
 def _text(comparison: Comparison, folder: Path) -> str:
-    from ves_twin.comparison.words import (
+    from ves_twin.data.quality.check import Grade
+    from ves_twin.report.comparison.words import (
         cost_sentence,
         gap_sentence,
         place_sentence,
         tolerance_sentence,
         trust_sentence,
     )
-    from ves_twin.quality.check import Grade
 
     lines = []
     for r in comparison.recordings:

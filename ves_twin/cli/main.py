@@ -29,7 +29,7 @@ from ves_twin.cli import (
     trend,
     view,
 )
-from ves_twin.errors import UnknownNameError, VesTwinError, one_line
+from ves_twin.core.errors import UnknownNameError, VesTwinError, one_line
 
 COMMANDS = {
     "scenarios": scenarios,

@@ -9,7 +9,7 @@ from typing import Any
 
 from tqdm import tqdm
 
-from ves_twin.compiled import cache_folder
+from ves_twin.core.compiled import cache_folder
 
 
 class RunProgress:

@@ -72,8 +72,8 @@ def execute(arguments: argparse.Namespace) -> int:
 
 def _draw(folder: Path, video: Path) -> str:
     """Draw a run whose summary is told, and say so; one without rows has nothing to draw."""
+    from ves_twin.core.recording.files import load_recording
     from ves_twin.envs.film import write_gif
-    from ves_twin.recording.files import load_recording
 
     recording = load_recording(folder)
     if not len(recording):
@@ -98,8 +98,8 @@ def run_scenario(arguments: argparse.Namespace) -> tuple[Summary, Path]:
         controller = load_controller(arguments)
         summary = record(scenario, folder, plant, arguments.seed, progress, controller)
     if not arguments.no_rrd and summary.duration > 0:
-        from ves_twin.recording.files import load_recording
-        from ves_twin.rerun_log.write import write_rrd
+        from ves_twin.core.recording.files import load_recording
+        from ves_twin.report.rerun.write import write_rrd
 
         write_rrd(load_recording(folder), folder / "run.rrd")
     return summary, folder
@@ -111,7 +111,7 @@ def load(arguments: argparse.Namespace) -> tuple[Scenario, Plant | None]:
     Raises:
         VesTwinError: anything in them that cannot be used.
     """
-    from ves_twin.errors import InvalidInputError
+    from ves_twin.core.errors import InvalidInputError
     from ves_twin.plant.plant import Plant
     from ves_twin.scenario.load import parse_setting
     from ves_twin.scenario.schema import Scenario
@@ -133,8 +133,8 @@ def load_controller(arguments: argparse.Namespace) -> type[PlatformController] |
     """
     if arguments.controller is None:
         return None
-    from ves_twin.code_file import load_class
     from ves_twin.control.controller import PlatformController
+    from ves_twin.core.code_file import load_class
 
     found: type[PlatformController] = load_class(arguments.controller, PlatformController)
     return found

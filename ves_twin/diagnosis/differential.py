@@ -8,17 +8,17 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from ves_twin.core.errors import InvalidInputError
+from ves_twin.core.recording.recording import Recording
+from ves_twin.core.types import FloatArray, SingleArray
 from ves_twin.diagnosis.evidence import Evidence
-from ves_twin.diagnosis.forward import Channel, Forward, Hypothesis, Parameter, Programme
-from ves_twin.diagnosis.lacking import CHANGE, PARAMETERS, Lacking
+from ves_twin.diagnosis.forward import Channel, Excitation, Forward, Hypothesis, Parameter
 from ves_twin.diagnosis.linearise import linearise, with_bends
-from ves_twin.diagnosis.observe import Observed, observe
+from ves_twin.diagnosis.preprocess import Dataset, preprocess
 from ves_twin.diagnosis.refine import refine
 from ves_twin.diagnosis.runs import Runs
+from ves_twin.diagnosis.unmodelled_dynamics import CHANGE, PARAMETERS, Lacking
 from ves_twin.diagnosis.whitening import Whitening
-from ves_twin.errors import InvalidInputError
-from ves_twin.recording.recording import Recording
-from ves_twin.types import FloatArray, SingleArray
 
 KEPT = 0.3
 """Share of a commissioning sd that a rig is allowed to change by between two recordings."""
@@ -36,14 +36,14 @@ class Differential:
         noise: sd of its noise against that of one recording.
     """
 
-    seen: Observed
+    seen: Dataset
     noise: float
 
 
 def differential(
-    seen: Observed,
+    seen: Dataset,
     baseline: Sequence[Recording],
-    again: Callable[[Forward], Observed],
+    again: Callable[[Forward], Dataset],
     whitening: Whitening,
 ) -> Differential:
     """Tune the commissioning parameters on the baseline, and take what then stays off the record.
@@ -143,7 +143,7 @@ class Tuned:
         return self.forward.hypotheses
 
     def simulate(
-        self, programme: Programme, values: Mapping[str, float], refined: bool = False
+        self, programme: Excitation, values: Mapping[str, float], refined: bool = False
     ) -> FloatArray:
         """As the forward, at the rig's own values where nothing else is said."""
         own = {p.name: p.nominal for p in self.tuned if not p.per_recording} | dict(values)
@@ -155,11 +155,11 @@ class Tuned:
         return rows
 
 
-def _usual(seen: Observed, baseline: Sequence[Recording]) -> tuple[SingleArray, int]:
+def _usual(seen: Dataset, baseline: Sequence[Recording]) -> tuple[SingleArray, int]:
     """Mean baseline of each programme (rows, c), and the fewest recordings of one."""
     runs = seen.runs
     rate = runs.programmes[0].rate
-    others = [observe(runs.forward, [recording], runs.workers, rate) for recording in baseline]
+    others = [preprocess(runs.forward, [recording], runs.workers, rate) for recording in baseline]
     pieces, fewest = [], len(others)
     for k, programme in enumerate(runs.programmes):
         same = [

@@ -9,8 +9,8 @@ from functools import cached_property
 
 import numpy as np
 
-from ves_twin.diagnosis.forward import Channel, Forward, Hypothesis, Parameter, Programme
-from ves_twin.types import FloatArray
+from ves_twin.core.types import FloatArray
+from ves_twin.diagnosis.forward import Channel, Excitation, Forward, Hypothesis, Parameter
 
 STEP = 1.2
 """Ratio of the factors that tolerances are widened by, so that banks are used again."""
@@ -58,7 +58,7 @@ class Widened:
         return self.forward.hypotheses
 
     def simulate(
-        self, programme: Programme, values: Mapping[str, float], refined: bool = False
+        self, programme: Excitation, values: Mapping[str, float], refined: bool = False
     ) -> FloatArray:
         """As the forward."""
         return self.forward.simulate(programme, values, refined)

@@ -11,9 +11,9 @@ from typing import Any, get_args
 
 from pydantic import BaseModel, ValidationError
 
-from ves_twin.errors import InvalidInputError, UnknownNameError, VesTwinError
-from ves_twin.resources import beside, find_resource, resource_folder
-from ves_twin.toml_file import parse_toml, read_toml
+from ves_twin.core.errors import InvalidInputError, UnknownNameError, VesTwinError
+from ves_twin.core.resources import beside, find_resource, resource_folder
+from ves_twin.core.toml_file import parse_toml, read_toml
 
 FILE_KEYS = (
     ("plant",),

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import numpy as np
 
-from ves_twin.compiled import compiled
 from ves_twin.control.arm_servo import servo_torque, spline
 from ves_twin.control.leg_loop import control_legs
-from ves_twin.kinematics.rotations import angles_from_matrix, matrix_from_quaternion
+from ves_twin.core.compiled import compiled
+from ves_twin.core.types import Block, FloatArray, Record, SingleArray
+from ves_twin.mechanics.kinematics.rotations import angles_from_matrix, matrix_from_quaternion
 from ves_twin.plant.hydraulics import PRESSURE_FORM
 from ves_twin.plant.physics.chambers import push_rods_by_pressure
 from ves_twin.plant.physics.cylinder import push_rods
@@ -30,7 +31,6 @@ from ves_twin.simulator.codes import (
     WRENCH_OUT_OF_RANGE,
 )
 from ves_twin.simulator.engine import NO_CALL, call_engine
-from ves_twin.types import Block, FloatArray, Record, SingleArray
 
 
 @compiled

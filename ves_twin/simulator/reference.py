@@ -17,15 +17,15 @@ import mujoco
 import numpy as np
 from scipy.linalg import block_diag
 
-from ves_twin.compiled import compiled
 from ves_twin.control.arm_servo import servo_torque, spline
-from ves_twin.control.emulated import EmulatedSystem
-from ves_twin.errors import InvalidInputError
-from ves_twin.kinematics.rotations import rate_matrix
+from ves_twin.core.compiled import compiled
+from ves_twin.core.errors import InvalidInputError
+from ves_twin.core.types import Block, ComplexArray, FloatArray, Record
+from ves_twin.mechanics.emulated import EmulatedSystem
+from ves_twin.mechanics.kinematics.rotations import rate_matrix
 from ves_twin.plant.assembly import assemble_free_arm, compile_model
 from ves_twin.plant.plant import Plant
 from ves_twin.simulator.engine import address_of, call_engine, handles
-from ves_twin.types import Block, ComplexArray, FloatArray, Record
 
 SIZE = 33
 """State: base Y (6), Y' (6); platform P (6), P' (6); joints q (3), q' (3), integrator (3)."""

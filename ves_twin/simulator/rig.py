@@ -9,17 +9,17 @@ import mujoco
 import numpy as np
 
 from ves_twin.control.belief import Belief
+from ves_twin.core.types import Block, FloatArray
 from ves_twin.plant.assembly import assemble, compile_model
 from ves_twin.plant.layout import Layout
 from ves_twin.plant.plant import Plant
 from ves_twin.scenario.schema import Legs
 from ves_twin.simulator.blocks import STATE, parameter_block
-from ves_twin.simulator.board import Board
 from ves_twin.simulator.clock import Clock
 from ves_twin.simulator.engine import NO_CALL, address_of, handles
 from ves_twin.simulator.loop import run_ticks
 from ves_twin.simulator.noise import NoiseStreams
-from ves_twin.types import Block, FloatArray
+from ves_twin.simulator.signal_bus import SignalBus
 
 
 @dataclass(frozen=True)
@@ -65,7 +65,7 @@ class Rig:
         self.layout = Layout.of(self.model)
         self.parameters = parameter_block(plant, self.layout, clock, legs, belief)
         self.state: Block = np.zeros(1, STATE)
-        self.board = Board()
+        self.board = SignalBus()
         self.noise = noise
         self.tick = 0
         self._engine = (*_step_of(self.layout), *handles(self.model, self.data))
