@@ -82,8 +82,8 @@ ROOMS = (
         tuple(
             f"tests/diagnosis/test_{name}.py"
             for name in (
-                "whitening", "refine", "search", "diagnose", "build_up", "bad_input",
-                "differential", "grid", "plan",
+                "whitening", "refine", "search", "gain", "assess", "explain", "diagnose",
+                "build_up", "bad_input", "differential", "grid", "plan", "forecast", "lacking",
             )
         ),
         False,
@@ -95,6 +95,7 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
     parser.add_argument("file", type=Path, help="results, a JSON line for each mutant")
     parser.add_argument("--sample", type=int, default=SAMPLE, help="mutants of all")
+    parser.add_argument("--module", default="", help="only those with this in their path")
     parser.add_argument("--again", action="store_true", help="run the survivors once more")
     parser.add_argument("--report", action="store_true", help="run nothing, print what is known")
     options = parser.parse_args()
@@ -103,6 +104,7 @@ def main() -> None:
     if not options.report:
         again = {SURVIVED} if options.again else set()
         left = [m for m in chosen if m.key not in done or done[m.key] in again]
+        left = [m for m in left if options.module in m.module]
         _run(left, options.file)
         done = _done(options.file)
     print(_report(chosen, total, done))
