@@ -6,7 +6,7 @@ PYTHON ?= $(shell for p in python3.12 python3.11 python3 python; do \
 BIN := .venv/bin
 PIP := $(BIN)/python -m pip install --quiet --disable-pip-version-check
 
-.PHONY: demo demo-diagnosis test check fast fuzz types lint layers bench figures fidelity scorecard diagnosis-scorecard picture docs clean
+.PHONY: demo demo-diagnosis test nightly check fast fuzz types lint layers bench figures fidelity scorecard diagnosis-scorecard picture docs clean
 
 demo: .venv/.run
 	$(BIN)/ves-twin run beam_horizontal_truth --out runs/demo
@@ -15,14 +15,19 @@ demo: .venv/.run
 HIDDEN := runs/demo-diagnosis
 demo-diagnosis: .venv/.run
 	rm -rf $(HIDDEN) $(HIDDEN).key
-	$(BIN)/ves-twin blind make --bench ves2_fast --cases 1 --none 0 --outside 0 --pair 0 --out $(HIDDEN)
+	$(BIN)/ves-twin blind make --machine ves2_fast --cases 1 --none 0 --outside 0 --pair 0 --out $(HIDDEN)
 	$(BIN)/ves-twin diagnose $(HIDDEN)/case-0001/recording.parquet --plant ves2_pressure_fast \
 		--held-out $(HIDDEN)/case-0001/held_out.parquet \
 		--out $(HIDDEN)/diagnosis
 	$(BIN)/ves-twin blind reveal --out $(HIDDEN)
 
 test: .venv/.dev lint layers types
-	$(BIN)/python -m pytest -n 2 --dist loadgroup
+	$(BIN)/python -m pytest -n 2 --dist loadgroup --durations=25 --costs runs/test-costs.csv
+
+# Statistical suites at full size as well; ends with one table of them.
+nightly: .venv/.dev lint layers types
+	$(BIN)/python -m pytest -n 2 --dist loadgroup --nightly --costs runs/nightly-costs.csv
+	$(BIN)/python benchmarks/suites.py --size full --folder runs/blind
 
 check: .venv/.dev lint layers types fast
 

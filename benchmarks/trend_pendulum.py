@@ -28,6 +28,7 @@ from ves_twin.suites.machines import machine_of
 
 MARK = "## Measured on the pendulum"
 MACHINE = machine_of("pendulum")
+FORWARD = MACHINE.forward
 FRICTION, DAMPING = "coulomb_friction@joint:level", "viscous_friction@joint:damping"
 DAYS = (0.0, 3.0, 7.0, 10.0, 14.0, 17.0)
 CHANGED = (Answer.STEP, Answer.RAMP, Answer.VARIES)
@@ -69,12 +70,12 @@ def series(case: Case, seed: int) -> list[Recording]:
     """One rig, its start and its drive's zero drawn anew each day; some days another rig."""
     rng = np.random.default_rng([seed, 77])
     rigs = [MACHINE.commissioned(rng) for _ in range(2)]
-    daily = [p for p in MACHINE.forward.parameters if p.per_recording]
+    daily = [p for p in FORWARD.parameters if p.per_recording]
     found = []
     for k, day in enumerate(DAYS):
         values = dict(rigs[k in case.other])
         values |= {p.name: p.nominal + p.sd * rng.standard_normal() for p in daily}
-        nominal = next(p.nominal for p in MACHINE.forward.parameters if p.name == case.parameter)
+        nominal = next(p.nominal for p in FORWARD.parameters if p.name == case.parameter)
         values[case.parameter] = values.get(case.parameter, nominal) + case.size(day)
         found.append(MACHINE.record(BlindRig(values), "train", rng))
     return found
@@ -86,7 +87,7 @@ def right(case: Case, found: Trend) -> bool:
         return False
     if found.cause is None or found.answer is Answer.MIXED:
         return True
-    hidden = {h.label for h in MACHINE.forward.hypotheses if case.parameter in h.parameters}
+    hidden = {h.label for h in FORWARD.hypotheses if case.parameter in h.parameters}
     return bool(hidden & {found.cause.label, *found.cause.equals})
 
 
