@@ -87,7 +87,7 @@ def excitations(rig: Rig) -> tuple[Excitation, ...]:
 def multisine(
     rig: Rig, rng: np.random.Generator, duration: float, one: Multisine | None = None
 ) -> Excitation:
-    """Tones drawn for every actuator, or for every set-point in closed loop.
+    """Tones drawn for every command, set-point or position that is fed in.
 
     Args:
         rig: the two files.
@@ -114,13 +114,15 @@ def multisine(
 def driven(rig: Rig) -> list[tuple[str, Place, float]]:
     """Signals that are fed in, the joint that each moves, and its typical size in that signal.
 
-    Of a command, what gives the typical effort; of a set-point, a share of the typical travel
-    such that all tones together stay within it.
+    Of a command, what gives the typical effort; of a position, a share of the typical travel such
+    that all tones together stay within it.
     """
     told, model = rig.description, rig.model
-    if told.drive.mode is Mode.REFERENCE:
-        loops = told.controllers.values()
-        places = [(c.reference, joint_of(rig, c.joint)) for c in loops]
+    if told.drive.mode is not Mode.CONTROL:
+        fed = [(c.reference, c.joint) for c in told.controllers.values()]
+        if told.drive.mode is Mode.MOTION:
+            fed = [(signal, joint) for joint, signal in told.drive.joints.items()]
+        places = [(signal, joint_of(rig, joint)) for signal, joint in fed]
         return [(signal, at, at.travel / TONES) for signal, at in places]
     found = []
     for name, signal in told.drive.actuators.items():
