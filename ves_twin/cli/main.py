@@ -29,6 +29,7 @@ from ves_twin.cli import (
     trend,
     view,
 )
+from ves_twin.cli.exit_codes import BAD_INPUT, DONE, INTERRUPTED
 from ves_twin.core.errors import UnknownNameError, VesTwinError, one_line
 
 COMMANDS = {
@@ -59,9 +60,6 @@ begin with:
 exit codes: 0 done, 2 bad input, 3 the run ended early, 4 out of tolerance, 130 interrupted
 """
 """What stands below the commands."""
-
-DONE, BAD_INPUT, ENDED_EARLY, INTERRUPTED = 0, 2, 3, 130
-"""Exit codes."""
 
 
 class Parser(argparse.ArgumentParser):

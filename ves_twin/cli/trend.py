@@ -57,8 +57,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def execute(arguments: argparse.Namespace) -> int:
     """Read, follow, write page and JSON, print the answer."""
     from ves_twin.cli.diagnose import diagnosis_settings
+    from ves_twin.cli.output_folder import output_folder
     from ves_twin.cli.progress import RunProgress
-    from ves_twin.cli.run import output_folder
     from ves_twin.core.errors import InvalidInputError
     from ves_twin.machines.mjcf.trend_mjcf import trend_mjcf
     from ves_twin.plant.plant import Plant
