@@ -27,6 +27,7 @@ test: .venv/.dev lint layers types
 # Statistical suites at full size as well; ends with one table of them.
 nightly: .venv/.dev lint layers types
 	$(BIN)/python -m pytest -n 2 --dist loadgroup --nightly --costs runs/nightly-costs.csv
+	$(MAKE) attack
 
 check: .venv/.dev lint layers types fast
 
