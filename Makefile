@@ -6,7 +6,7 @@ PYTHON ?= $(shell for p in python3.12 python3.11 python3 python; do \
 BIN := .venv/bin
 PIP := $(BIN)/python -m pip install --quiet --disable-pip-version-check
 
-.PHONY: demo demo-diagnosis test check fast fuzz types lint layers bench figures fidelity scorecard diagnosis-scorecard picture docs clean
+.PHONY: demo demo-diagnosis test nightly check fast fuzz types lint layers bench figures fidelity scorecard diagnosis-scorecard picture docs clean
 
 demo: .venv/.run
 	$(BIN)/ves-twin run beam_horizontal_truth --out runs/demo
@@ -22,7 +22,11 @@ demo-diagnosis: .venv/.run
 	$(BIN)/ves-twin blind reveal --out $(HIDDEN)
 
 test: .venv/.dev lint layers types
-	$(BIN)/python -m pytest -n 2 --dist loadgroup
+	$(BIN)/python -m pytest -n 2 --dist loadgroup --durations=25 --costs runs/test-costs.csv
+
+# Statistical suites at full size as well; ends with one table of them.
+nightly: .venv/.dev lint layers types
+	$(BIN)/python -m pytest -n 2 --dist loadgroup --nightly --costs runs/nightly-costs.csv
 
 check: .venv/.dev lint layers types fast
 
