@@ -111,7 +111,7 @@ def test_a_gain_by_the_true_cause_passes_and_its_interval_holds_it(held_out):
     assert gain.passed
     assert gain.carries_on
     assert gain.low < gain.share < gain.high
-    assert 0.8 < gain.low
+    assert gain.low > 0.8
     assert gain.high < 1.1
 
 
