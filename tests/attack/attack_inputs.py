@@ -109,6 +109,8 @@ def attack(name: str, seeds: range, use: Callable[[Path], object] | None = None)
         seeds: one for each input.
         use: in place of what a user does with such a file, for tests of this program.
     """
+    import kinds  # noqa: F401  here, so that no child must import it anew
+
     found: list[Outcome] = []
     left = list(seeds)
     while left:

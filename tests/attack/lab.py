@@ -83,7 +83,7 @@ def _column(chance: random.Random, rows: int) -> pa.Array:
         lambda: plain.dictionary_encode(), lambda: pa.nulls(rows),
         lambda: pa.array([b"\xff" * (i % 5) for i in range(rows)]),
         lambda: pa.array([[1.0] * (i % 4) for i in range(rows)], pa.list_(pa.float64())),
-        lambda: pa.array([{"a": i, "x": [i]} for i in range(rows)], pa.struct(
+        lambda: pa.array([{"a": i, "x": [i % 100]} for i in range(rows)], pa.struct(
             {"a": pa.int64(), "x": pa.list_(pa.int8())})),
         lambda: pa.array([[("k", i)] for i in range(rows)], pa.map_(pa.string(), pa.int64())),
         lambda: pa.array([None if i % 3 else 1.5 for i in range(rows)], pa.float64()),

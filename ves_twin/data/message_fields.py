@@ -93,8 +93,8 @@ def _stamp(value: Any) -> int | None:
     parts = dict(fields_of(value))
     if set(parts) not in STAMPS:
         return None
-    seconds, nanoseconds = (parts[name] for name in sorted(parts, key=lambda n: n[0], reverse=True))
+    nanoseconds, seconds = (parts[name] for name in sorted(parts, key=str))
     whole = isinstance(seconds, int) and isinstance(nanoseconds, int)
     if not whole or abs(seconds) > LATEST or abs(nanoseconds) > LATEST:
         return None
-    return seconds * 10**9 + nanoseconds
+    return int(seconds * 10**9 + nanoseconds)
