@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from toy import SD, Toy, programme
@@ -50,6 +52,30 @@ def test_a_point_has_chi2_of_its_residual_and_of_the_priors(search):
     assert point.chi2 == pytest.approx(
         residual @ residual + errors @ errors + point.delta**2, rel=1e-4
     )
+
+
+class Fragile(Toy):
+    """It fails beyond a slope: there are no channels there."""
+
+    def simulate(self, programme, values, refined=False):
+        rows = super().simulate(programme, values, refined)
+        return np.full_like(rows, np.nan) if values.get("plant.slope", 0.0) > 0.02 else rows
+
+
+def test_a_point_where_the_plant_fails_is_infinitely_bad(evidence):
+    runs = Runs(Fragile(), (FED,), (0, 1))
+    made = Search(
+        replace(evidence, runs=runs), runs.indices(FRICTION), linearise(runs, runs.origin)
+    )
+    shift = runs.origin
+    shift[runs.nuisances] += runs.sd[runs.nuisances]
+    point = made.at(shift, 0.25)
+    assert point.chi2 == np.inf
+    assert point.delta == 0.25
+    assert np.array_equal(point.shift, shift)
+    found, jacobian = made.run(point)
+    assert found is point
+    assert jacobian.shape == (0, len(made.unit))
 
 
 def test_priors_weigh_nuisances_and_the_step_but_no_cause(begun):
