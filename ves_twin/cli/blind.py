@@ -116,9 +116,10 @@ def _beside(folder: Path, given: str | None, ending: str) -> Path:
 def _make(arguments: argparse.Namespace, folder: Path, key: Path) -> int:
     from ves_twin.blind.make import make_suite
     from ves_twin.cli.progress import RunProgress
+    from ves_twin.held_folder import hold_folder
 
     recipe = _recipe(arguments)
-    with RunProgress("blind make", 1.0, unit="share") as progress:
+    with hold_folder(folder), RunProgress("blind make", 1.0, unit="share") as progress:
         suite = make_suite(recipe, folder, key, progress.share, os.cpu_count() or 1)
     print(f"{len(suite.cases)} cases in {folder}/, key in {key}")
     return 0
@@ -168,13 +169,14 @@ def _answer(arguments: argparse.Namespace, folder: Path, answers: Path) -> int:
     from ves_twin.cli.progress import RunProgress
     from ves_twin.compiled import cache_folder
     from ves_twin.diagnosis.settings import Settings
+    from ves_twin.held_folder import hold_file
 
     use = Use(not arguments.no_commissioning, not arguments.no_baseline, arguments.after or "")
     if use.after and not arguments.answers:
         answers = _after(answers, use.after)
     cache = cache_folder().parent / "banks"
     settings = Settings(workers=arguments.workers, cache=cache, nulls=arguments.nulls)
-    with RunProgress("blind answer", 1.0, unit="share") as progress:
+    with hold_file(answers), RunProgress("blind answer", 1.0, unit="share") as progress:
         found = answer_suite(folder, answers, settings, progress.share, use)
     print(f"{len(found)} answers in {answers}")
     return 0
@@ -190,9 +192,10 @@ def _play(folder: Path, key: Path, answers: Path, choice: str) -> int:
     from ves_twin.blind.mark import read_truths
     from ves_twin.blind.play import play_next
     from ves_twin.cli.progress import RunProgress
+    from ves_twin.held_folder import hold_folder
 
     secret = _read_key(key)
-    with RunProgress("blind play", 1.0, unit="share") as progress:
+    with hold_folder(folder), RunProgress("blind play", 1.0, unit="share") as progress:
         played = play_next(
             folder,
             secret,
@@ -233,6 +236,7 @@ def _score(arguments: argparse.Namespace, folder: Path, key: Path, answers: Path
     from ves_twin.blind.answers import read_answers
     from ves_twin.blind.mark import mark, read_truths
     from ves_twin.blind.mark_gain import mark_gain
+    from ves_twin.whole_file import write_whole
 
     truths, given = read_truths(folder, _read_key(key)), read_answers(answers)
     other = read_answers(Path(arguments.against)) if arguments.against else None
@@ -243,7 +247,7 @@ def _score(arguments: argparse.Namespace, folder: Path, key: Path, answers: Path
     marks = replace(marks, rows={**marks.rows, **more})
     text = _text(marks) + (_correlation(after) if after else "")
     if arguments.page:
-        Path(arguments.page).write_text(text, encoding="utf-8")
+        write_whole(Path(arguments.page), text)
     if arguments.json:
         counted = {**marks.rows, _COVER: marks.coverage}
         rows = {name: {"hits": r.hits, "of": r.of} for name, r in counted.items() if r.of}

@@ -6,9 +6,11 @@ import argparse
 import os
 import re
 import sys
+import warnings
 from collections.abc import Sequence
 from functools import partial
-from typing import NoReturn
+from itertools import pairwise
+from typing import NoReturn, TextIO
 
 from ves_twin import __version__
 from ves_twin.cli import (
@@ -28,7 +30,13 @@ from ves_twin.cli import (
     trend,
     view,
 )
-from ves_twin.errors import UnknownNameError, VesTwinError, one_line
+from ves_twin.errors import (
+    InvalidInputError,
+    UnknownNameError,
+    VesTwinError,
+    VesTwinWarning,
+    one_line,
+)
 
 COMMANDS = {
     "scenarios": scenarios,
@@ -58,6 +66,9 @@ begin with:
 exit codes: 0 done, 2 bad input, 3 the run ended early, 4 out of tolerance, 130 interrupted
 """
 """What stands below the commands."""
+
+EMPTY = re.compile(r"--[a-z-]+=")
+"""An option without its value, as a shell makes of one whose variable is not set."""
 
 DONE, BAD_INPUT, ENDED_EARLY, INTERRUPTED = 0, 2, 3, 130
 """Exit codes."""
@@ -109,7 +120,29 @@ def main(arguments: Sequence[str] | None = None) -> int:
         0 done; 2 bad input; 3 the run ended early; 4 out of tolerance; 130 interrupted.
     """
     words = list(sys.argv[1:] if arguments is None else arguments)
+    with warnings.catch_warnings():
+        warnings.simplefilter("always", VesTwinWarning)
+        warnings.showwarning = _show_warning
+        return _main(words)
+
+
+def _show_warning(
+    message: Warning | str,
+    category: type[Warning],
+    filename: str,
+    lineno: int,
+    file: TextIO | None = None,
+    line: str | None = None,
+) -> None:
+    """A warning as one line, without the place in the code that gives it."""
+    print(f"ves-twin: {' '.join(str(message).split())}", file=sys.stderr)
+
+
+def _main(words: list[str]) -> int:
     try:
+        for before, word in pairwise(["ves-twin", *words]):
+            if not word.strip() or EMPTY.fullmatch(word):
+                raise InvalidInputError(word[:-1] if word.strip() else before, "", "a value")
         if words and not words[0].startswith("-") and words[0] not in COMMANDS:
             raise UnknownNameError("command", words[0], COMMANDS)
         parser = build_parser()

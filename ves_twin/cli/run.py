@@ -4,11 +4,15 @@ from __future__ import annotations
 
 import argparse
 import sys
+from collections.abc import Iterator
+from contextlib import ExitStack, contextmanager, suppress
+from itertools import count
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from ves_twin.control.controller import PlatformController
+    from ves_twin.held_folder import HeldFolder
     from ves_twin.plant.plant import Plant
     from ves_twin.scenario.schema import Scenario
     from ves_twin.simulator.outcome import Outcome
@@ -58,15 +62,15 @@ def execute(arguments: argparse.Namespace) -> int:
         from ves_twin.envs.film import check_video
 
         check_video(video, load(arguments)[0].run.duration)
-    summary, folder = run_scenario(arguments)
-    if arguments.json:
-        print(summary.to_json())
-    else:
-        from ves_twin.cli.summary_text import summary_text
+    with run_scenario(arguments) as (summary, folder):
+        if arguments.json:
+            print(summary.to_json())
+        else:
+            from ves_twin.cli.summary_text import summary_text
 
-        print(summary_text(summary, folder))
-    if video is not None:
-        print(_draw(folder, video), file=sys.stderr if arguments.json else sys.stdout)
+            print(summary_text(summary, folder))
+        if video is not None:
+            print(_draw(folder, video), file=sys.stderr if arguments.json else sys.stdout)
     return exit_code(summary.outcome)
 
 
@@ -87,22 +91,23 @@ def exit_code(outcome: Outcome) -> int:
     return {"completed": 0, "interrupted": 130}.get(outcome.value, 3)
 
 
-def run_scenario(arguments: argparse.Namespace) -> tuple[Summary, Path]:
-    """Run the scenario that the arguments name into its output folder."""
+@contextmanager
+def run_scenario(arguments: argparse.Namespace) -> Iterator[tuple[Summary, Path]]:
+    """Run the scenario that the arguments name; its folder is held until the block ends."""
     from ves_twin.cli.progress import RunProgress
     from ves_twin.simulator.simulate import record
 
     scenario, plant = load(arguments)
-    folder = output_folder(arguments.out, scenario.name)
-    with RunProgress(scenario.name, scenario.run.duration) as progress:
-        controller = load_controller(arguments)
-        summary = record(scenario, folder, plant, arguments.seed, progress, controller)
-    if not arguments.no_rrd and summary.duration > 0:
-        from ves_twin.recording.files import load_recording
-        from ves_twin.rerun_log.write import write_rrd
+    controller = load_controller(arguments)
+    with output_folder(arguments.out, scenario.name) as held:
+        with RunProgress(scenario.name, scenario.run.duration) as progress:
+            summary = record(scenario, held, plant, arguments.seed, progress, controller)
+        if not arguments.no_rrd and summary.duration > 0:
+            from ves_twin.recording.files import load_recording
+            from ves_twin.rerun_log.write import write_rrd
 
-        write_rrd(load_recording(folder), folder / "run.rrd")
-    return summary, folder
+            write_rrd(load_recording(held.path), held.path / "run.rrd")
+        yield summary, held.path
 
 
 def load(arguments: argparse.Namespace) -> tuple[Scenario, Plant | None]:
@@ -140,12 +145,22 @@ def load_controller(arguments: argparse.Namespace) -> type[PlatformController] |
     return found
 
 
-def output_folder(given: str | None, name: str) -> Path:
-    """The folder asked for, or the next free runs/NAME, runs/NAME-2, ..."""
-    if given is not None:
-        return Path(given)
-    folder, number = Path("runs") / name, 1
-    while folder.exists():
-        number += 1
-        folder = Path("runs") / f"{name}-{number}"
-    return folder
+@contextmanager
+def output_folder(given: str | None, name: str) -> Iterator[HeldFolder]:
+    """The folder asked for, or the next free runs/NAME, runs/NAME-2, ..., held meanwhile.
+
+    Raises:
+        FileAccessError: it cannot be written, or another command writes it.
+    """
+    from ves_twin.held_folder import hold_folder
+
+    with ExitStack() as stack:
+        if given is not None:
+            yield stack.enter_context(hold_folder(Path(given)))
+            return
+        for number in count(1):
+            folder = Path("runs") / (name if number == 1 else f"{name}-{number}")
+            with suppress(FileExistsError):
+                held = stack.enter_context(hold_folder(folder, new=True))
+                break
+        yield held

@@ -4,15 +4,18 @@ from __future__ import annotations
 
 import hashlib
 import json
+from contextlib import suppress
 from dataclasses import asdict, dataclass
 from functools import lru_cache
 from pathlib import Path
 
 from ves_twin.compiled import cache_folder
+from ves_twin.errors import FileAccessError
 from ves_twin.resources import resource_folder
 from ves_twin.simulator.simulate import versions
 from ves_twin.thesis.context import Context
 from ves_twin.thesis.evaluation import Evaluation
+from ves_twin.whole_file import write_whole
 
 
 @dataclass(frozen=True)
@@ -42,13 +45,9 @@ class Store:
     def put(self, context: Context, claim: str, found: Evaluation) -> None:
         """Keep an evaluation; a folder that cannot be written is passed over."""
         path = self._path(context, claim)
-        try:
+        with suppress(OSError, FileAccessError):
             path.parent.mkdir(parents=True, exist_ok=True)
-            draft = path.with_suffix(".draft")
-            draft.write_text(json.dumps(asdict(found)), encoding="utf-8")
-            draft.replace(path)
-        except OSError:
-            return
+            write_whole(path, json.dumps(asdict(found)))
 
     def _path(self, context: Context, claim: str) -> Path:
         world = f"{context.plant.hash} {context.plant_name} {context.models} {context.quick}"
