@@ -166,15 +166,15 @@ def _background(text: str) -> tuple[str, float]:
 def _answer(arguments: argparse.Namespace, folder: Path, answers: Path) -> int:
     from ves_twin.blind.answer import answer_suite
     from ves_twin.blind.material import Use
+    from ves_twin.cache_folder import cache_folder
     from ves_twin.cli.progress import RunProgress
-    from ves_twin.compiled import cache_folder
     from ves_twin.diagnosis.settings import Settings
     from ves_twin.held_folder import hold_file
 
     use = Use(not arguments.no_commissioning, not arguments.no_baseline, arguments.after or "")
     if use.after and not arguments.answers:
         answers = _after(answers, use.after)
-    cache = cache_folder().parent / "banks"
+    cache = cache_folder("diagnosis")
     settings = Settings(workers=arguments.workers, cache=cache, nulls=arguments.nulls)
     with hold_file(answers), RunProgress("blind answer", 1.0, unit="share") as progress:
         found = answer_suite(folder, answers, settings, progress.share, use)

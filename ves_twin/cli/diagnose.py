@@ -149,10 +149,10 @@ def _mjcf(arguments: argparse.Namespace) -> tuple[MjcfDiagnosis, Callable[[Path,
 
 def diagnosis_settings() -> Settings:
     """All cores, banks kept beside the compiled code."""
-    from ves_twin.compiled import cache_folder
+    from ves_twin.cache_folder import cache_folder
     from ves_twin.diagnosis.settings import Settings
 
-    return Settings(workers=os.cpu_count() or 1, cache=cache_folder().parent / "banks")
+    return Settings(workers=os.cpu_count() or 1, cache=cache_folder("diagnosis"))
 
 
 def _told(

@@ -51,7 +51,7 @@ def execute(arguments: argparse.Namespace) -> int:
 
 def general_content() -> dict[str, object]:
     """Versions, plants, emulated systems, controllers, plugins, scenarios, signals."""
-    from ves_twin.compiled import cache_folder
+    from ves_twin.compiled import compiled_folder
     from ves_twin.control.registry import GRAVITY_COMPENSATIONS, PLATFORM_CONTROLLERS
     from ves_twin.effects.registry import EFFECTS
     from ves_twin.envs import ENVIRONMENTS
@@ -85,7 +85,7 @@ def general_content() -> dict[str, object]:
             s.name: f"{s.width} {', '.join(dict.fromkeys(s.units))}; {s.role.value}; {s.meaning}"
             for s in SIGNALS.values()
         },
-        "compiled code": str(cache_folder()),
+        "compiled code": str(compiled_folder()),
     }
 
 

@@ -9,7 +9,7 @@ from typing import Any
 
 from tqdm import tqdm
 
-from ves_twin.compiled import cache_folder
+from ves_twin.compiled import compiled_folder
 
 
 class RunProgress:
@@ -42,7 +42,7 @@ class RunProgress:
         self(done)
 
     def __enter__(self) -> RunProgress:
-        if not any(cache_folder().iterdir()):
+        if not any(compiled_folder().iterdir()):
             print("compiling the inner loop, once: about half a minute", file=sys.stderr)
         self._before = signal.signal(signal.SIGINT, self._stop)
         return self

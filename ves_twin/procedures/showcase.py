@@ -18,7 +18,7 @@ from ves_twin.blind.pendulum import BlindPendulum
 from ves_twin.blind.rig import BlindVes2
 from ves_twin.blind.save_bare import save_bare
 from ves_twin.blind.suite import HELD_OUT, RECORDING, STANDSTILL
-from ves_twin.compiled import cache_folder
+from ves_twin.cache_folder import cache_folder
 from ves_twin.control.leg_loop import FilterPlace
 from ves_twin.diagnosis.diagnose import diagnose
 from ves_twin.diagnosis.report.page import diagnosis_page
@@ -133,7 +133,7 @@ class Showcase(Procedure):
         """The verdict on the files, and what became of the extended plant."""
         folder = conduct.folder
         settings = Settings(
-            workers=os.cpu_count() or 1, cache=cache_folder().parent / "banks", nulls=self.nulls
+            workers=os.cpu_count() or 1, cache=cache_folder("diagnosis"), nulls=self.nulls
         )
         record, held_out = load_recording(folder / RECORDING), load_recording(folder / HELD_OUT)
         material: dict[str, Any] = {"held_out": [held_out], "settings": settings}

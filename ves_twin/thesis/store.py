@@ -9,7 +9,7 @@ from dataclasses import asdict, dataclass
 from functools import lru_cache
 from pathlib import Path
 
-from ves_twin.compiled import cache_folder
+from ves_twin.cache_folder import cache_folder
 from ves_twin.errors import FileAccessError
 from ves_twin.resources import resource_folder
 from ves_twin.simulator.simulate import versions
@@ -27,7 +27,7 @@ class Store:
     @staticmethod
     def of_user() -> Store:
         """The user's cache folder of the present code and data."""
-        return Store(cache_folder().parent / f"thesis-{code_hash()}")
+        return Store(cache_folder(f"thesis-{code_hash()}"))
 
     def get(self, context: Context, claim: str) -> Evaluation | None:
         """What was kept for a claim in a context, if anything."""
