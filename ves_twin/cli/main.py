@@ -8,11 +8,13 @@ import re
 import sys
 import warnings
 from collections.abc import Sequence
+from contextlib import suppress
 from functools import partial
 from itertools import pairwise
 from typing import NoReturn, TextIO
 
 from ves_twin import __version__
+from ves_twin.cache_folder import cache_folder
 from ves_twin.cli import (
     blind,
     compare,
@@ -123,7 +125,15 @@ def main(arguments: Sequence[str] | None = None) -> int:
     with warnings.catch_warnings():
         warnings.simplefilter("always", VesTwinWarning)
         warnings.showwarning = _show_warning
+        _give_matplotlib_a_folder()
         return _main(words)
+
+
+def _give_matplotlib_a_folder() -> None:
+    """Where there is no home to write: it would warn, and look for its fonts in every command."""
+    if "MPLCONFIGDIR" not in os.environ and not os.access(os.path.expanduser("~"), os.W_OK):
+        with suppress(OSError):  # no place at all: whoever needs one says so
+            os.environ["MPLCONFIGDIR"] = str(cache_folder("matplotlib"))
 
 
 def _show_warning(

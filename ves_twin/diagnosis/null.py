@@ -11,7 +11,7 @@ from scipy.stats import chi2
 
 from ves_twin.diagnosis.adequacy import cells, misfit_floor
 from ves_twin.diagnosis.assess import assess, first_look, pull_limit
-from ves_twin.diagnosis.bank import Bank, bank_key, write_arrays
+from ves_twin.diagnosis.bank import Bank, bank_key, read_arrays, write_arrays
 from ves_twin.diagnosis.linearise import STEP_SD
 from ves_twin.diagnosis.prewhitened import Prewhitened
 from ves_twin.diagnosis.runs import Progress, silent
@@ -182,11 +182,11 @@ def cached_thresholds(
     content += b"".join(bad.tobytes() for bad in bank.base.runs.holes if bad.any())
     content += bank.base.prediction.tobytes()  # as stored: another one where the code has changed
     path = settings.cache / f"null-{bank_key(bank.base.runs, content)}.npz"
-    if path.is_file():
-        with np.load(path) as kept:
-            effect, level = float(kept["effect"]), float(kept["misfit"])
-            bends = 0.0 if settings.simulated_nulls else BENDS
-            return Thresholds(effect, level, kept["effects"], kept["misfits"], bends)
+    kept = read_arrays(path)
+    if kept is not None:
+        effect, level = float(kept["effect"]), float(kept["misfit"])
+        bends = 0.0 if settings.simulated_nulls else BENDS
+        return Thresholds(effect, level, kept["effects"], kept["misfits"], bends)
     found = compute()
     write_arrays(
         path,

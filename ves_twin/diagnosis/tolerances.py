@@ -9,7 +9,7 @@ import numpy as np
 from scipy.optimize import brentq
 from scipy.stats import chi2, norm
 
-from ves_twin.diagnosis.bank import Bank, bank_key, still_predicts, write_arrays
+from ves_twin.diagnosis.bank import Bank, bank_key, read_arrays, still_predicts, write_arrays
 from ves_twin.diagnosis.evidence import Evidence
 from ves_twin.diagnosis.linearise import linearise
 from ves_twin.diagnosis.refine import bare_residual, refine, residual_about
@@ -77,9 +77,9 @@ def cached_scale(rigs: Sequence[tuple[Runs, SingleArray]], folder: Path | None) 
         return tolerance_scale(rigs)
     content = "".join(bank_key(runs, measured.tobytes()) for runs, measured in rigs)
     path = folder / f"scale-{bank_key(rigs[0][0], content.encode())}.npz"
-    if path.is_file():
-        with np.load(path) as kept:
-            scale, told = float(kept["scale"]), kept["predictions"]
+    kept = read_arrays(path)
+    if kept is not None:
+        scale, told = float(kept["scale"]), kept["predictions"]
         parts = np.split(told, np.cumsum([measured.size for _, measured in rigs])[:-1])
         if all(
             still_predicts(runs, part.reshape(measured.shape))
