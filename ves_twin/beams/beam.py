@@ -11,6 +11,7 @@ from ves_twin.beams.formulas import bent_compliance, rotation_from_z, straight_c
 from ves_twin.beams.reduced import consistent_mass
 from ves_twin.beams.section import Tube, check_positive
 from ves_twin.errors import InvalidInputError
+from ves_twin.read_only import ReadOnly
 from ves_twin.types import FloatArray
 
 DAMPING_RATIO = 0.05
@@ -24,7 +25,7 @@ TORSIONAL_INERTIA_IN_DAMPING = 0.143
 
 
 @dataclass(frozen=True)
-class BeamMatrices:
+class BeamMatrices(ReadOnly):
     """M Y'' + B Y' + K Y = W at the free end, Y = (X, Y, Z, phiX, phiY, phiZ).
 
     Attributes:

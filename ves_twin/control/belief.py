@@ -7,11 +7,12 @@ from dataclasses import dataclass
 from ves_twin.gravity_model.gravity_model import GravityModel
 from ves_twin.kinematics.puma560 import Puma560
 from ves_twin.kinematics.stewart import StewartGeometry
+from ves_twin.read_only import ReadOnly
 from ves_twin.types import FloatArray
 
 
 @dataclass(frozen=True)
-class Belief:
+class Belief(ReadOnly):
     """Frozen numbers that controllers work with.
 
     Attributes:

@@ -9,11 +9,12 @@ from ves_twin.control.belief import Belief
 from ves_twin.control.emulated import EmulatedSystem
 from ves_twin.control.motion import PlatformMotion
 from ves_twin.control.readings import Readings
+from ves_twin.read_only import ReadOnly
 from ves_twin.types import FloatArray
 
 
 @dataclass(frozen=True)
-class ControlTask:
+class ControlTask(ReadOnly):
     """What a platform controller is told when it is built.
 
     Attributes:

@@ -11,6 +11,7 @@ import numpy as np
 
 from ves_twin.control.emulated_beam import beam_matrices
 from ves_twin.errors import InvalidInputError, UnknownNameError
+from ves_twin.read_only import ReadOnly
 from ves_twin.resources import find_resource
 from ves_twin.toml_file import check_schema, read_toml
 from ves_twin.types import FloatArray
@@ -32,7 +33,7 @@ class Coupling(StrEnum):
 
 
 @dataclass(frozen=True)
-class EmulatedSystem:
+class EmulatedSystem(ReadOnly):
     """A linear base with six coordinates Y = (X, Y, Z, phiX, phiY, phiZ).
 
     Attributes:

@@ -13,6 +13,7 @@ from ves_twin.errors import InvalidInputError, UnknownNameError
 from ves_twin.gravity_model.first_moments import FirstMoments
 from ves_twin.gravity_model.gravity_model import GravityModel
 from ves_twin.gravity_model.identify import Identification
+from ves_twin.read_only import ReadOnly
 from ves_twin.resources import find_resource
 from ves_twin.toml_file import check_schema, read_toml
 from ves_twin.types import FloatArray
@@ -23,7 +24,7 @@ _KEYS = {"schema", "name", "source", "sensor", "arm", "model"}
 
 
 @dataclass(frozen=True)
-class GravityCalibration:
+class GravityCalibration(ReadOnly):
     """What the computers load before an experiment (thesis Appendix E, step 8).
 
     Attributes:

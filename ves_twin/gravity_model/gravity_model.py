@@ -8,11 +8,12 @@ import numpy as np
 
 from ves_twin.gravity_model.chain import DhChain
 from ves_twin.gravity_model.first_moments import FirstMoments
+from ves_twin.read_only import ReadOnly
 from ves_twin.types import FloatArray
 
 
 @dataclass(frozen=True)
-class GravityModel:
+class GravityModel(ReadOnly):
     """F_g = M_total g, M_g = G(q, g) P, about the origin of the platform top frame t.
 
     Attributes:

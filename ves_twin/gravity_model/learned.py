@@ -11,6 +11,7 @@ import pyarrow as pa
 import pyarrow.parquet as pq
 
 from ves_twin.errors import FileAccessError, InvalidInputError, VersionError, one_line
+from ves_twin.read_only import ReadOnly
 from ves_twin.types import FloatArray
 from ves_twin.whole_file import whole_file
 
@@ -27,7 +28,7 @@ JOINTS = ("q1", "q2", "q3")
 
 
 @dataclass(frozen=True)
-class PlannedExperiment:
+class PlannedExperiment(ReadOnly):
     """What W_g belongs to: it holds for these commands on this emulated system and no other.
 
     Attributes:
@@ -46,7 +47,7 @@ class PlannedExperiment:
 
 
 @dataclass(frozen=True)
-class LearnedGravity:
+class LearnedGravity(ReadOnly):
     """W_g(s) of the Learning Method in sensor axes, in the time of the full-speed motion.
 
     Attributes:

@@ -9,6 +9,7 @@ import numpy as np
 from ves_twin.compiled import compiled
 from ves_twin.errors import UnreachableError
 from ves_twin.kinematics.rotations import matrix_from_angles, rate_matrix
+from ves_twin.read_only import ReadOnly
 from ves_twin.types import FloatArray
 
 FK_TOLERANCE = 1e-12
@@ -142,7 +143,7 @@ def track_poses(
 
 
 @dataclass(frozen=True)
-class StewartGeometry:
+class StewartGeometry(ReadOnly):
     """Joint positions of a six-leg platform.
 
     Attributes:

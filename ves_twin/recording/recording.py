@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from ves_twin.errors import InvalidInputError, UnknownNameError
+from ves_twin.read_only import ReadOnly
 from ves_twin.signals import SIGNALS, Role, Signal
 from ves_twin.types import FloatArray
 
@@ -111,7 +112,7 @@ def _signal(content: Mapping[str, Any]) -> Signal:
 
 
 @dataclass(frozen=True)
-class Recording:
+class Recording(ReadOnly):
     """Named signals on one clock.
 
     Attributes:
@@ -128,6 +129,7 @@ class Recording:
     info: RecordingInfo
 
     def __post_init__(self) -> None:
+        super().__post_init__()
         if not np.all(np.isfinite(self.time)) or np.any(np.diff(self.time) <= 0):
             raise InvalidInputError(
                 "recording time", "a step back or a gap", "strictly increasing times"

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ves_twin.errors import InvalidInputError
+from ves_twin.read_only import ReadOnly
 from ves_twin.resources import find_resource
 from ves_twin.scenario.columns import read_columns
 from ves_twin.scenario.fields import TURNS
@@ -21,7 +22,7 @@ FEWEST = 4
 
 
 @dataclass(frozen=True)
-class Setpoints:
+class Setpoints(ReadOnly):
     """What was, or is to be, commanded.
 
     Attributes:
