@@ -72,7 +72,8 @@ class LearnedGravity(ReadOnly):
             VersionError: another version of the format.
         """
         try:
-            table = pq.read_table(path)
+            with open(path, "rb") as file:  # pyarrow takes names of files in UTF-8 alone
+                table = pq.read_table(file)
         except OSError as error:
             raise FileAccessError(f"gravity.file {path}: {one_line(error)}") from None
         except pa.ArrowException as error:
@@ -106,8 +107,8 @@ class LearnedGravity(ReadOnly):
         columns |= dict(zip(WRENCH, self.wrenches.T, strict=True))
         columns |= dict(zip(JOINTS, self.experiment.commands.T, strict=True))
         table = pa.table({name: pa.array(values) for name, values in columns.items()})
-        with whole_file(path) as partial:
-            pq.write_table(table.replace_schema_metadata({KEY: json.dumps(head)}), partial)
+        with whole_file(path) as partial, partial.open("wb") as file:
+            pq.write_table(table.replace_schema_metadata({KEY: json.dumps(head)}), file)
 
     def check(self, planned: PlannedExperiment) -> None:
         """Raise InvalidInputError unless it was learned for this experiment."""
