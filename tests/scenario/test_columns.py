@@ -3,7 +3,7 @@
 import pytest
 
 from ves_twin.cli.main import main
-from ves_twin.errors import InvalidInputError
+from ves_twin.core.errors import InvalidInputError
 from ves_twin.scenario.columns import read_columns
 
 SECRET = "root:x:0:0"

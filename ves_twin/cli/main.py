@@ -14,7 +14,6 @@ from itertools import pairwise
 from typing import NoReturn, TextIO
 
 from ves_twin import __version__
-from ves_twin.cache_folder import cache_folder
 from ves_twin.cli import (
     blind,
     compare,
@@ -32,7 +31,9 @@ from ves_twin.cli import (
     trend,
     view,
 )
-from ves_twin.errors import (
+from ves_twin.cli.exit_codes import BAD_INPUT, DONE, INTERRUPTED
+from ves_twin.core.cache_folder import cache_folder
+from ves_twin.core.errors import (
     InvalidInputError,
     UnknownNameError,
     VesTwinError,
@@ -71,9 +72,6 @@ exit codes: 0 done, 2 bad input, 3 the run ended early, 4 out of tolerance, 130 
 
 EMPTY = re.compile(r"--[a-z-]+=")
 """An option without its value, as a shell makes of one whose variable is not set."""
-
-DONE, BAD_INPUT, ENDED_EARLY, INTERRUPTED = 0, 2, 3, 130
-"""Exit codes."""
 
 
 class Parser(argparse.ArgumentParser):
@@ -122,11 +120,30 @@ def main(arguments: Sequence[str] | None = None) -> int:
         0 done; 2 bad input; 3 the run ended early; 4 out of tolerance; 130 interrupted.
     """
     words = list(sys.argv[1:] if arguments is None else arguments)
+    noted: list[tuple[Warning | str, type[Warning], str, int]] = []
+
+    def note(
+        message: Warning | str,
+        category: type[Warning],
+        filename: str,
+        lineno: int,
+        file: TextIO | None = None,
+        line: str | None = None,
+    ) -> None:
+        """What the user should know, at once and in one line; others' warnings at the end."""
+        if issubclass(category, VesTwinWarning):
+            print(f"ves-twin: {' '.join(str(message).split())}", file=sys.stderr)
+        else:
+            noted.append((message, category, filename, lineno))
+
     with warnings.catch_warnings():
         warnings.simplefilter("always", VesTwinWarning)
-        warnings.showwarning = _show_warning
+        warnings.showwarning = note
         _give_matplotlib_a_folder()
-        return _main(words)
+        code = _answered(words)
+    for one in noted if code != BAD_INPUT else ():  # a refusal is one line
+        warnings.showwarning(*one)
+    return code
 
 
 def _give_matplotlib_a_folder() -> None:
@@ -136,19 +153,7 @@ def _give_matplotlib_a_folder() -> None:
             os.environ["MPLCONFIGDIR"] = str(cache_folder("matplotlib"))
 
 
-def _show_warning(
-    message: Warning | str,
-    category: type[Warning],
-    filename: str,
-    lineno: int,
-    file: TextIO | None = None,
-    line: str | None = None,
-) -> None:
-    """A warning as one line, without the place in the code that gives it."""
-    print(f"ves-twin: {' '.join(str(message).split())}", file=sys.stderr)
-
-
-def _main(words: list[str]) -> int:
+def _answered(words: list[str]) -> int:
     try:
         for before, word in pairwise(["ves-twin", *words]):
             if not word.strip() or EMPTY.fullmatch(word):

@@ -7,7 +7,7 @@ from contextlib import nullcontext
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from ves_twin.json_text import json_text
+from ves_twin.core.json_text import json_text
 
 if TYPE_CHECKING:
     from ves_twin.thesis.context import Context
@@ -40,9 +40,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def execute(arguments: argparse.Namespace) -> int:
     """Evaluate what was asked for and print it."""
-    from ves_twin.cli.run import output_folder
+    from ves_twin.cli.output_folder import output_folder
     from ves_twin.cli.scorecard_text import figure_text, scorecard_text
-    from ves_twin.errors import UnknownNameError
+    from ves_twin.core.errors import UnknownNameError
     from ves_twin.thesis.claim import load_claims
     from ves_twin.thesis.figures.registry import FIGURES
 
@@ -101,8 +101,8 @@ def _score(arguments: argparse.Namespace, chosen: list[str], context: Context) -
 
 
 def _write(folder: Path, card: Scorecard, text: str) -> None:
+    from ves_twin.core.whole_file import write_whole
     from ves_twin.thesis.page import scorecard_page
-    from ves_twin.whole_file import write_whole
 
     write_whole(folder / JSON_NAME, text + "\n")
     write_whole(folder / PAGE_NAME, scorecard_page(card))

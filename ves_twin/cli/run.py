@@ -5,17 +5,14 @@ from __future__ import annotations
 import argparse
 import sys
 from collections.abc import Iterator
-from contextlib import ExitStack, contextmanager, suppress
-from itertools import count
+from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from ves_twin.control.controller import PlatformController
-    from ves_twin.held_folder import HeldFolder
     from ves_twin.plant.plant import Plant
     from ves_twin.scenario.schema import Scenario
-    from ves_twin.simulator.outcome import Outcome
     from ves_twin.simulator.simulate import Summary
 
 SUMMARY = "run a scenario and write its recording"
@@ -52,6 +49,7 @@ def add_run_options(parser: argparse.ArgumentParser) -> None:
 
 def execute(arguments: argparse.Namespace) -> int:
     """Run the scenario or procedure; the exit code tells how it ended."""
+    from ves_twin.cli.exit_codes import exit_code
     from ves_twin.cli.run_procedure import run_procedure
 
     ended = run_procedure(arguments)
@@ -76,8 +74,8 @@ def execute(arguments: argparse.Namespace) -> int:
 
 def _draw(folder: Path, video: Path) -> str:
     """Draw a run whose summary is told, and say so; one without rows has nothing to draw."""
+    from ves_twin.core.recording.files import load_recording
     from ves_twin.envs.film import write_gif
-    from ves_twin.recording.files import load_recording
 
     recording = load_recording(folder)
     if not len(recording):
@@ -86,14 +84,10 @@ def _draw(folder: Path, video: Path) -> str:
     return f"  video     {video}"
 
 
-def exit_code(outcome: Outcome) -> int:
-    """0 completed, 130 interrupted, 3 any other end."""
-    return {"completed": 0, "interrupted": 130}.get(outcome.value, 3)
-
-
 @contextmanager
 def run_scenario(arguments: argparse.Namespace) -> Iterator[tuple[Summary, Path]]:
     """Run the scenario that the arguments name; its folder is held until the block ends."""
+    from ves_twin.cli.output_folder import output_folder
     from ves_twin.cli.progress import RunProgress
     from ves_twin.simulator.simulate import record
 
@@ -103,8 +97,8 @@ def run_scenario(arguments: argparse.Namespace) -> Iterator[tuple[Summary, Path]
         with RunProgress(scenario.name, scenario.run.duration) as progress:
             summary = record(scenario, held, plant, arguments.seed, progress, controller)
         if not arguments.no_rrd and summary.duration > 0:
-            from ves_twin.recording.files import load_recording
-            from ves_twin.rerun_log.write import write_rrd
+            from ves_twin.core.recording.files import load_recording
+            from ves_twin.report.rerun.write import write_rrd
 
             write_rrd(load_recording(held.path), held.path / "run.rrd")
         yield summary, held.path
@@ -116,7 +110,7 @@ def load(arguments: argparse.Namespace) -> tuple[Scenario, Plant | None]:
     Raises:
         VesTwinError: anything in them that cannot be used.
     """
-    from ves_twin.errors import InvalidInputError
+    from ves_twin.core.errors import InvalidInputError
     from ves_twin.plant.plant import Plant
     from ves_twin.scenario.load import parse_setting
     from ves_twin.scenario.schema import Scenario
@@ -138,29 +132,8 @@ def load_controller(arguments: argparse.Namespace) -> type[PlatformController] |
     """
     if arguments.controller is None:
         return None
-    from ves_twin.code_file import load_class
     from ves_twin.control.controller import PlatformController
+    from ves_twin.core.code_file import load_class
 
     found: type[PlatformController] = load_class(arguments.controller, PlatformController)
     return found
-
-
-@contextmanager
-def output_folder(given: str | None, name: str) -> Iterator[HeldFolder]:
-    """The folder asked for, or the next free runs/NAME, runs/NAME-2, ..., held meanwhile.
-
-    Raises:
-        FileAccessError: it cannot be written, or another command writes it.
-    """
-    from ves_twin.held_folder import hold_folder
-
-    with ExitStack() as stack:
-        if given is not None:
-            yield stack.enter_context(hold_folder(Path(given)))
-            return
-        for number in count(1):
-            folder = Path("runs") / (name if number == 1 else f"{name}-{number}")
-            with suppress(FileExistsError):
-                held = stack.enter_context(hold_folder(folder, new=True))
-                break
-        yield held

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from ves_twin.gravity_model.gravity_model import GravityModel
-from ves_twin.kinematics.puma560 import Puma560
-from ves_twin.kinematics.stewart import StewartGeometry
-from ves_twin.read_only import ReadOnly
-from ves_twin.types import FloatArray
+from ves_twin.core.read_only import ReadOnly
+from ves_twin.core.types import FloatArray
+from ves_twin.mechanics.gravity.gravity_model import GravityModel
+from ves_twin.mechanics.kinematics.puma560 import Puma560
+from ves_twin.mechanics.kinematics.stewart import StewartGeometry
 
 
 @dataclass(frozen=True)

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from ves_twin.diagnosis.explain import Desk, Explanation, judge, suspects_at
+from ves_twin.core.types import FloatArray
+from ves_twin.diagnosis.explain import Explanation, FitContext, judge, suspects_at
 from ves_twin.diagnosis.forward import Hypothesis
 from ves_twin.diagnosis.gain import Gain
 from ves_twin.diagnosis.refine import Fit, refine
-from ves_twin.types import FloatArray
 
 ADDS = 0.25
 """Share of the held-out excess without it that each cause must take, lower end."""
@@ -20,7 +20,7 @@ Proof = Callable[[Fit, Fit], Gain]
 """Held-out gain from one fit to another."""
 
 
-def build_up(desk: Desk, start: Explanation, proof: Proof) -> Explanation:
+def build_up(desk: FitContext, start: Explanation, proof: Proof) -> Explanation:
     """Add the best further cause until none is a gain; then drop those that are not proved.
 
     While causes are missing their trace hides what one more is worth, so the strict proof is last.
@@ -51,14 +51,14 @@ def _adds(gain: Gain) -> bool:
     return gain.low is not None and gain.low > ADDS
 
 
-def _more(desk: Desk, here: Explanation) -> Explanation | None:
+def _more(desk: FitContext, here: Explanation) -> Explanation | None:
     """The best explanation with one cause more."""
     fits = _with_one(desk, here, here.best)
     return judge(desk, fits) if fits else None
 
 
 def _with_one(
-    desk: Desk, here: Explanation, fit: Fit, but: Hypothesis | None = None, rounds: int = 1
+    desk: FitContext, here: Explanation, fit: Fit, but: Hypothesis | None = None, rounds: int = 1
 ) -> list[Fit]:
     """Fits of further causes, but one, beside those of a fit, by a bank linearised there."""
     rest, suspects = suspects_at(desk, here.evidence, fit)
@@ -84,7 +84,7 @@ def _without(here: Explanation, kept: tuple[Hypothesis, ...]) -> Fit:
     return refine(here.evidence, kept, shift, here.best.local, 1)
 
 
-def _unproved(desk: Desk, here: Explanation, proof: Proof) -> Hypothesis | None:
+def _unproved(desk: FitContext, here: Explanation, proof: Proof) -> Hypothesis | None:
     """The cause that held-out recordings miss least, if they do not miss it or take another."""
     causes = here.best.causes
     without = {c: _without(here, tuple(h for h in causes if h is not c)) for c in causes}

@@ -7,7 +7,7 @@ from concurrent.futures import ProcessPoolExecutor, as_completed
 from multiprocessing import get_context
 from typing import TypeVar
 
-from ves_twin.workers import single_threads
+from ves_twin.core.workers import single_threads
 
 Job = TypeVar("Job")
 Result = TypeVar("Result")

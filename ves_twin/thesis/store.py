@@ -9,13 +9,13 @@ from dataclasses import asdict, dataclass
 from functools import lru_cache
 from pathlib import Path
 
-from ves_twin.cache_folder import cache_folder
-from ves_twin.errors import FileAccessError
-from ves_twin.resources import resource_folder
+from ves_twin.core.cache_folder import cache_folder
+from ves_twin.core.errors import FileAccessError
+from ves_twin.core.resources import resource_folder
+from ves_twin.core.whole_file import write_whole
 from ves_twin.simulator.simulate import versions
 from ves_twin.thesis.context import Context
 from ves_twin.thesis.evaluation import Evaluation
-from ves_twin.whole_file import write_whole
 
 
 @dataclass(frozen=True)
