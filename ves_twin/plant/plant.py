@@ -14,7 +14,6 @@ from ves_twin.core.errors import InvalidInputError, UnknownNameError
 from ves_twin.core.resources import beside, find_resource, resource_folder
 from ves_twin.effects.effect import Effect
 from ves_twin.effects.registry import parse_effects
-from ves_twin.mechanics.gravity.chain import DhChain
 from ves_twin.mechanics.gravity.gravity_model import GravityModel
 from ves_twin.mechanics.kinematics.puma560 import Puma560
 from ves_twin.mechanics.kinematics.stewart import StewartGeometry
@@ -183,7 +182,7 @@ class Plant:
         """M_total and P of the arm's own masses."""
         array = self.parameters.array
         return GravityModel.of(
-            DhChain.of_puma560(self.arm),
+            self.arm.chain,
             array("arm.mass"),
             array("arm.com"),
             self.parameters.number("gravity"),

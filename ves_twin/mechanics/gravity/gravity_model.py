@@ -7,8 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from ves_twin.core.types import FloatArray
-from ves_twin.mechanics.gravity.chain import DhChain
 from ves_twin.mechanics.gravity.first_moments import FirstMoments
+from ves_twin.mechanics.kinematics.dh_chain import DhChain
 
 
 @dataclass(frozen=True)
