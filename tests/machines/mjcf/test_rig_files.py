@@ -186,7 +186,7 @@ def test_stretches_alternate_and_poses_keep_their_order(tmp_path):
 def test_an_extended_rig_is_written_as_a_file_that_loads_as_the_same_rig(tmp_path):
     rig = Rig.load(str(write_files(tmp_path)))
     sizes = {"coulomb_friction@rail:level": 1.25, "mass_centre@arm.x:shift": 0.06}
-    sizes |= {f"sensor_drift@load.force.3:p{k}": 0.1 * k for k in (1, 2, 3)}
+    sizes |= {f"sensor_wander@load.force.3:p{k}": 0.1 * k for k in (1, 2, 3)}
     sizes |= {"backlash@swing:gap": 0.01}
     causes = tuple(
         Cause(
