@@ -11,7 +11,7 @@ import numpy as np
 from pydantic import Field, JsonValue, field_validator, model_validator
 
 from ves_twin.control.leg_loop import FilterPlace
-from ves_twin.core.compiled import cache_folder
+from ves_twin.core.cache_folder import cache_folder
 from ves_twin.core.errors import InvalidInputError, UnknownNameError
 from ves_twin.diagnosis.forward import Hypothesis
 from ves_twin.diagnosis.settings import Settings
@@ -20,7 +20,7 @@ from ves_twin.machines.mjcf.extend import write_rig
 from ves_twin.machines.mjcf.machine import Rig
 from ves_twin.plant.plant import Plant
 from ves_twin.plant.write_plant import write_plant
-from ves_twin.procedures.procedure import Account, Procedure, RunContext
+from ves_twin.procedures.procedure import Procedure, Result, RunContext
 from ves_twin.report.diagnosis.page import diagnosis_page
 from ves_twin.report.diagnosis.words import headline
 from ves_twin.report.page import write_page
@@ -103,7 +103,7 @@ class Showcase(Procedure):
             raise ValueError(str(error)) from None
         return name
 
-    def carry_out(self, conduct: RunContext) -> Account:
+    def carry_out(self, conduct: RunContext) -> Result:
         """Record, diagnose, write `verdict.json` and `report.html`, hold against the truth.
 
         Raises:
@@ -145,13 +145,13 @@ class Showcase(Procedure):
 
     def _diagnosed(self, nominal: Rig | Plant, conduct: RunContext) -> Diagnosed:
         """What the files say."""
-        cache = cache_folder().parent / "banks"
+        cache = cache_folder("diagnosis")
         settings = Settings(workers=os.cpu_count() or 1, cache=cache, nulls=self.nulls)
         has_standstill = isinstance(nominal, Rig)
         material = Material.in_folder(conduct.folder, standstill=has_standstill)
         return diagnosed(nominal, material, settings, progress=conduct.progress)
 
-    def _account(self, verdict: Verdict, folder: Path) -> Account:
+    def _account(self, verdict: Verdict, folder: Path) -> Result:
         labels = [part.label for part in self.hidden]
         if self.deployed_filter is not None:
             labels.append(f"filter_place@{self.deployed_filter.value}")
@@ -180,7 +180,7 @@ class Showcase(Procedure):
             "judged": judged.value,
             "held_out_gain": gain,
         }
-        return Account(Outcome.COMPLETED, values, tuple(lines))
+        return Result(Outcome.COMPLETED, values, tuple(lines))
 
 
 def _hidden(part: HiddenPart, library: Mapping[str, Hypothesis]) -> HiddenCause:

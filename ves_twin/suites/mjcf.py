@@ -17,8 +17,8 @@ from ves_twin.core.recording.recording import Recording, RecordingInfo
 from ves_twin.core.types import FloatArray
 from ves_twin.core.units import to_si
 from ves_twin.diagnosis.forward import Excitation
+from ves_twin.effects.joints import Backlash
 from ves_twin.machines.mjcf.description import Mode
-from ves_twin.machines.mjcf.effect import play
 from ves_twin.machines.mjcf.excitations import Multisine, driven, excitations, joint_of, multisine
 from ves_twin.machines.mjcf.forward import MjcfForward
 from ves_twin.machines.mjcf.machine import Rig
@@ -264,6 +264,6 @@ def _misread(
         late = time > time[-1] * rng.uniform(0.3, 0.7)
         column = column + span * rig.odd("offset_step") * late
     column = column + span * rig.odd("line") * np.sin(2.0 * np.pi * 9.0 * time)
-    column = play(column, span * rig.odd("encoder_hysteresis"))
+    column = Backlash("", gap=span * rig.odd("encoder_hysteresis")).edit_position(column)
     held = max(1, round(rig.odd("stuck_samples")))
     return np.asarray(column[np.arange(n) // held * held])

@@ -76,15 +76,18 @@ def load_suite(folder: Path) -> Suite:
         raise InvalidInputError(str(path), "no JSON", "what `ves-twin blind make` writes") from None
     if not isinstance(content, dict) or content.get("schema") != SCHEMA:
         raise InvalidInputError(str(path), content, f"a suite of schema {SCHEMA}")
-    excluded = {case: tuple(names) for case, names in content["excluded"].items()}
-    name = str(content["machine"] if "machine" in content else content["bench"])
-    return Suite(
-        str(folder / name) if _is_file(name) else name,
-        tuple(content["cases"]),
-        excluded,
-        int(content.get("commissioned", 0)),
-        bool(content.get("baseline", False)),
-    )
+    try:
+        name = str(content["machine"] if "machine" in content else content["bench"])
+        return Suite(
+            str(folder / name) if _is_file(name) else name,
+            tuple(map(str, content["cases"])),
+            {case: tuple(map(str, names)) for case, names in content["excluded"].items()},
+            int(content.get("commissioned", 0)),
+            bool(content.get("baseline", False)),
+        )
+    except (KeyError, TypeError, ValueError, AttributeError, OverflowError) as error:
+        came = f"{type(error).__name__} at {error}"
+        raise InvalidInputError(str(path), came, "machine, cases, excluded") from None
 
 
 OF_VES2 = {"ves2": "ves2_pressure", "ves2_fast": "ves2_pressure_fast"}

@@ -14,6 +14,7 @@ from ves_twin.diagnosis.refusal import refusal
 from ves_twin.diagnosis.runs import Progress, silent
 from ves_twin.diagnosis.settings import Settings
 from ves_twin.diagnosis.verdict import Verdict
+from ves_twin.effects.registry import causes_anywhere
 from ves_twin.machines.mjcf.excitations import excitations
 from ves_twin.machines.mjcf.extend import extended
 from ves_twin.machines.mjcf.forward import MjcfForward
@@ -87,7 +88,7 @@ def diagnose_mjcf(
         standstill=standstill,
         baseline=baseline,
         next_programmes=partial(excitations, rig),
-        exclude=exclude,
+        exclude=causes_anywhere(exclude),
         settings=chosen,
         progress=progress,
     )

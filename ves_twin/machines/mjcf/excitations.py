@@ -7,11 +7,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from ves_twin.diagnosis.forward import Excitation
+from ves_twin.effects.joints import ForceOffset
+from ves_twin.effects.place import Place
 from ves_twin.machines.mjcf.description import Mode
-from ves_twin.machines.mjcf.element import Element
 from ves_twin.machines.mjcf.forward import MjcfForward
 from ves_twin.machines.mjcf.machine import Rig
-from ves_twin.machines.mjcf.place import Place
 from ves_twin.machines.mjcf.places import place_of
 from ves_twin.machines.mjcf.started import start_signal
 
@@ -138,7 +138,7 @@ def joint_of(rig: Rig, joint: str) -> Place:
     Raises:
         InvalidInputError: the file says none.
     """
-    return place_of(Element.JOINT, joint, rig.description, rig.model, "")
+    return place_of(ForceOffset(joint), rig.description, rig.model)
 
 
 def _stays(forward: MjcfForward, programme: Excitation) -> bool:
