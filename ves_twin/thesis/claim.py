@@ -104,8 +104,10 @@ def _claim(name: str, entry: Any, path: Path) -> Claim:
     for key in _TEXTS:
         if not isinstance(entry.get(key), str) or not entry[key]:
             raise InvalidInputError(f"{path.name}: {name}.{key}", entry.get(key), "a text")
-    if entry.get("kind") not in set(Kind):
+    if entry.get("kind") not in list(Kind):
         raise UnknownNameError(f"kind of {name}", str(entry.get("kind")), set(Kind))
+    if not isinstance(entry.get("errata", []), list):
+        raise InvalidInputError(f"{path.name}: {name}.errata", entry["errata"], "a list")
     return Claim(
         id=name,
         **{key: entry[key] for key in _TEXTS},
@@ -123,7 +125,7 @@ def _claim(name: str, entry: Any, path: Path) -> Claim:
 def _tolerance(entry: Any, what: str) -> Tolerance | None:
     if entry is None:
         return None
-    if not isinstance(entry, Mapping) or entry.get("kind") not in set(Comparison):
+    if not isinstance(entry, Mapping) or entry.get("kind") not in list(Comparison):
         raise InvalidInputError(what, entry, f"a table with kind = {', '.join(Comparison)}")
     bounds = {key: _numbers(entry[key], what)[0] for key in ("low", "high") if key in entry}
     return Tolerance(Comparison(entry["kind"]), _numbers(entry.get("limit", ()), what), **bounds)
