@@ -20,6 +20,8 @@ from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
+from ves_twin.machines.ves2.compare import Named, compare
+from ves_twin.machines.ves2.diagnose_rig import diagnose_rig
 
 import ves_twin as vt
 from ves_twin.diagnosis.diagnose import diagnose
@@ -27,8 +29,6 @@ from ves_twin.diagnosis.forward import Excitation
 from ves_twin.diagnosis.settings import Settings
 from ves_twin.diagnosis.verdict import Verdict
 from ves_twin.machines.pendulum.forward import START, STEP, Pendulum
-from ves_twin.machines.ves2.compare import Named, compare
-from ves_twin.machines.ves2.diagnose_rig import diagnose_rig
 from ves_twin.plant.plant import Plant
 from ves_twin.report.comparison.page import comparison_page
 from ves_twin.suites import pendulum as generator

@@ -5,6 +5,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from ves_twin.machines.ves2.diagnose_rig import RigDiagnosis
 
 import ves_twin as vt
 from ves_twin.cli.main import main
@@ -14,7 +15,6 @@ from ves_twin.diagnosis.diagnose import diagnose
 from ves_twin.diagnosis.forward import Excitation
 from ves_twin.diagnosis.settings import Settings
 from ves_twin.machines.pendulum.forward import Pendulum
-from ves_twin.machines.ves2.diagnose_rig import RigDiagnosis
 from ves_twin.machines.ves2.forward import DRIVE
 
 SHORT = {"run.duration": 2.0, "run.settle": 0.3}

@@ -12,6 +12,7 @@ from tempfile import TemporaryDirectory, mkdtemp
 import numpy as np
 import pyarrow as pa
 import pyarrow.parquet as pq
+from ves_twin.machines.ves2.tolerance import Tolerance
 
 import ves_twin as vt
 from ves_twin.core.recording.files import load_recording, save_recording
@@ -20,7 +21,6 @@ from ves_twin.core.resources import resource_folder
 from ves_twin.data.import_log import import_log
 from ves_twin.data.import_map import ImportMap
 from ves_twin.data.open_log import open_log
-from ves_twin.machines.ves2.tolerance import Tolerance
 from ves_twin.mechanics.emulated import EmulatedSystem
 from ves_twin.mechanics.gravity.calibration import GravityCalibration
 from ves_twin.mechanics.gravity.learned import LearnedGravity

@@ -1,9 +1,9 @@
 """Tolerances: limits in SI by signal or column, and bad files answered in one line."""
 
 import pytest
+from ves_twin.machines.ves2.tolerance import Tolerance
 
 from ves_twin.core.errors import VesTwinError
-from ves_twin.machines.ves2.tolerance import Tolerance
 
 
 def write(tmp_path, text):

@@ -4,14 +4,14 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from ves_twin.machines.mjcf.compare_mjcf import compare_mjcf
+from ves_twin.machines.mjcf.data_folder import find_data
+from ves_twin.machines.mjcf.diagnose_mjcf import diagnose_mjcf
 
 from ves_twin.diagnosis.settings import Settings
 from ves_twin.diagnosis.verdict import Kind
 from ves_twin.machines.mjcf.columns import read_rig_recording
-from ves_twin.machines.mjcf.compare_mjcf import compare_mjcf
-from ves_twin.machines.mjcf.data_folder import find_data
 from ves_twin.machines.mjcf.description import Mode
-from ves_twin.machines.mjcf.diagnose_mjcf import diagnose_mjcf
 from ves_twin.machines.mjcf.interleaved_split import alternate
 from ves_twin.machines.mjcf.machine import Rig
 

@@ -8,6 +8,7 @@ import mujoco
 import numpy as np
 import pytest
 from two_link import MODEL, TIME, programme, write_files
+from ves_twin.machines.mjcf.tell import rig_of, tell
 
 from ves_twin.cli.main import main
 from ves_twin.core.errors import VesTwinError
@@ -19,7 +20,6 @@ from ves_twin.machines.mjcf.experiment import RigExperiment
 from ves_twin.machines.mjcf.forward import MjcfForward
 from ves_twin.machines.mjcf.machine import Rig
 from ves_twin.machines.mjcf.read import read_recording
-from ves_twin.machines.mjcf.tell import rig_of, tell
 
 MAP = """
 schema = 1

@@ -8,13 +8,13 @@ from pathlib import Path
 import numpy as np
 import pytest
 from two_link import programme, write_files
+from ves_twin.machines.mjcf.data_folder import find_data
 
 from ves_twin.cli.main import main
 from ves_twin.core.errors import VesTwinError
 from ves_twin.core.recording.recording import POSES
 from ves_twin.diagnosis.verdict import Basis, Cause, Estimate, Kind, Statistics, Verdict
 from ves_twin.machines.mjcf.columns import read_rig_recording
-from ves_twin.machines.mjcf.data_folder import find_data
 from ves_twin.machines.mjcf.description import is_rig, shipped_rigs
 from ves_twin.machines.mjcf.extend import extended, write_rig
 from ves_twin.machines.mjcf.forward import MjcfForward

@@ -9,6 +9,7 @@ from typing import ClassVar, final
 import numpy as np
 import pytest
 from two_link import TIME, programme, rig, write_files
+from ves_twin.machines.mjcf.tell import tell
 
 from ves_twin.core.recording.recording import Recording, RecordingInfo
 from ves_twin.diagnosis.forward import Excitation
@@ -22,7 +23,6 @@ from ves_twin.machines.mjcf.inverse import efforts_of_motion
 from ves_twin.machines.mjcf.machine import Rig
 from ves_twin.machines.mjcf.part_effects import ActuatorDelay
 from ves_twin.machines.mjcf.stepping import motion_of_drive
-from ves_twin.machines.mjcf.tell import tell
 from ves_twin.machines.mjcf.work import Work
 
 INNER = slice(200, -200)

@@ -2,12 +2,12 @@
 
 import numpy as np
 import pytest
+from ves_twin.machines.ves2.told import tell
 
 import ves_twin as vt
 from ves_twin.core.errors import VesTwinError
 from ves_twin.core.recording.files import save_recording
 from ves_twin.core.recording.recording import RecordingInfo
-from ves_twin.machines.ves2.told import tell
 from ves_twin.mechanics.kinematics.stewart import leg_lengths
 from ves_twin.scenario.experiment import Experiment
 

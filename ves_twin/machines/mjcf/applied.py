@@ -1,9 +1,8 @@
-"""tell: a rig and its recordings made ready as an experiment file says."""
+"""applied: an MJCF machine and a recording of it as an experiment file says."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 
@@ -19,68 +18,32 @@ from ves_twin.machines.mjcf.machine import Rig
 from ves_twin.machines.mjcf.registry import RIG_EFFECTS
 from ves_twin.scenario.experiment import StartState
 
-DECLARED = ("declared", "auto")
-"""Noise as the rig's file has it; nothing is learnt from a part that stands still."""
 
-
-@dataclass(frozen=True)
-class Told:
-    """What a comparison or diagnosis needs.
-
-    Attributes:
-        recordings: in the order in which they were given.
-        rigs: of each of them.
-        standstill: file of the recording that tells the noise; empty if none.
-    """
-
-    recordings: tuple[Recording, ...]
-    rigs: tuple[Rig, ...]
-    standstill: str
-
-    @property
-    def rig(self) -> Rig:
-        """The one rig of all recordings.
-
-        Raises:
-            InvalidInputError: recordings of rigs that differ.
-        """
-        first = self.rigs[0]
-        for recording, rig in zip(self.recordings, self.rigs, strict=True):
-            if rig.identity != first.identity:
-                came = "another payload, start or other parameters than the first recording"
-                name = recording.info.scenario
-                raise InvalidInputError(name, came, "one rig in all recordings of a diagnosis")
-        return first
-
-
-def tell(recordings: Mapping[str, Recording], experiment: RigExperiment, rig: Rig) -> Told:
-    """Apply an experiment to recordings of a rig.
+def applied(
+    name: str, recording: Recording, experiment: RigExperiment, rig: Rig
+) -> tuple[Recording, Rig, float]:
+    """Apply what an experiment says of one recording.
 
     Args:
-        recordings: by name.
-        experiment: how they were made.
-        rig: the two files.
+        name: of the recording.
+        recording: of the machine.
+        experiment: how recordings were made.
+        rig: the machine as its file has it.
+
+    Returns:
+        The stretch that is compared, the machine as it was, and where the stretch begins [s].
 
     Raises:
-        UnknownNameError: a recording, signal, joint, body or attribute that is not there.
-        InvalidInputError: signals that no mode of the rig feeds in, an empty window, or noise
-            sources that differ.
+        UnknownNameError: a signal, joint, body or attribute that is not there.
+        InvalidInputError: signals that no mode of the machine feeds in, or an empty window.
     """
-    experiment.check_names(list(recordings))
-    ready, rigs, noises = [], [], set()
-    for name, recording in recordings.items():
-        told = experiment.of(name)
-        own = rig_of(told, rig)
-        start = told.window.start
-        if told.start.state is StartState.ESTIMATED:
-            start = max(start, told.start.forget)
-        drive = MjcfForward.of(own).drive
-        ready.append(compared_stretch(recording, start, told.window.stop, drive, name))
-        rigs.append(own)
-        noises.add("" if told.noise in DECLARED else told.noise)
-    if len(noises) > 1:
-        raise InvalidInputError("noise", sorted(noises), "one noise source in all recordings")
-    return Told(tuple(ready), tuple(rigs), noises.pop() if noises else "")
+    told = experiment.of(name)
+    own = rig_of(told, rig)
+    start = told.window.start
+    if told.start.state is StartState.ESTIMATED:
+        start = max(start, told.start.forget)
+    drive = MjcfForward.of(own).drive
+    return compared_stretch(recording, start, told.window.stop, drive, name), own, start
 
 
 def rig_of(experiment: RigExperiment, rig: Rig) -> Rig:
