@@ -1,6 +1,6 @@
 """Eight environments in processes against one, beside what two processes gain at bare mj_step.
 
-Run by `make bench`. Rounds in turn: one environment here, eight by `SharedOut`, eight by
+Run by `make bench`. Rounds in turn: one environment here, eight by `ChunkedVectorEnv`, eight by
 Gymnasium's `AsyncVectorEnv`, bare mj_step in one process and in all. Prints medians over rounds of
 steps a second by the clock on the wall over those of one, and processor time of a step with all
 processes counted.
@@ -152,7 +152,7 @@ def main() -> None:
     given = parser.parse_args()
     print(f"{CORES} cores, load {os.getloadavg()[0]:.1f} before it began")
     print(
-        f"{'environment':<31}{'plant':<9}{'one/s':>6} {'eight, SharedOut':>19}"
+        f"{'environment':<31}{'plant':<9}{'one/s':>6} {'eight, ChunkedVectorEnv':>19}"
         f"{'eight, Async':>22}{f'bare, {CORES} processes':>23}   ms: one, shared, async"
     )
     for name in ENVIRONMENTS:

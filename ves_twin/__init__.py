@@ -72,3 +72,8 @@ def __getattr__(name: str) -> object:
     value = getattr(importlib.import_module(home), inner or name)
     globals()[name] = value
     return value
+
+
+def __dir__() -> list[str]:
+    """The public names, also those that were not used yet, for tab completion."""
+    return sorted({*__all__, "__version__", "effects"})

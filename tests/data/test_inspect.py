@@ -3,8 +3,11 @@
 import json
 
 import numpy as np
+import pyarrow as pa
+import pyarrow.feather as feather
 import pytest
 
+from ves_twin.data.clock_report import usual_step
 from ves_twin.data.draft_map import draft_map
 from ves_twin.data.import_log import import_log
 from ves_twin.data.import_map import ImportMap
@@ -114,3 +117,14 @@ def test_a_drafted_map_guesses_in_comments_and_never_twice(tmp_path):
     ]
     assert len(set(goals)) == len(goals)
     assert '# [signals."motor_temp"]   # a signal of your own needs a unit' in lines
+
+
+def test_two_steps_that_are_not_alike_have_the_step_between_them():
+    assert usual_step(np.array([0.0, 1.0, 11.0])) == 5.5
+
+
+def test_a_table_without_numbers_is_told_as_such(tmp_path):
+    feather.write_feather(pa.table({"who": ["a", "b"]}), tmp_path / "a.feather")
+    (table,) = inspect_log(open_log(tmp_path / "a.feather")).tables
+    assert table.clock is None
+    assert [c.kind for c in table.channels] == ["text"]

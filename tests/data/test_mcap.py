@@ -10,6 +10,7 @@ from mcap_protobuf.writer import Writer as ProtobufWriter
 from ves_twin.core.errors import InvalidInputError, VesTwinError
 from ves_twin.data import mcap_log
 from ves_twin.data.inspect_log import inspect_log
+from ves_twin.data.message_fields import number_at, number_paths
 from ves_twin.data.open_log import open_log
 from ves_twin.data.ros1_messages import ros1_decoder
 
@@ -110,3 +111,18 @@ def test_without_the_extra_packages_one_line_names_them(monkeypatch, mcap_file):
     monkeypatch.setitem(sys.modules, "mcap_ros2.decoder", None)
     with pytest.raises(VesTwinError, match=r"pip install 'ves_twin\[mcap\]'"):
         open_log(path)
+
+
+def test_a_stamp_is_one_in_any_order_and_only_of_whole_numbers():
+    seconds = {"sec": 5, "nanosec": 250_000_000}
+    for message in ({"stamp": seconds}, {"stamp": dict(reversed(seconds.items()))}):
+        assert list(number_paths(message)) == [("stamp",)]
+        assert number_at(message, ("stamp",), 10**9) == pytest.approx(4.25, abs=1e-9)
+    for wrong in ("a", 1e300, None, 10**30):
+        message = {"stamp": {"sec": 5, "nanosec": wrong}}
+        assert ("stamp",) not in number_paths(message)
+        assert np.isnan(number_at(message, ("stamp",), 0))
+
+
+def test_an_integer_beyond_doubles_is_no_number():
+    assert np.isnan(number_at({"x": 10**400}, ("x",), 0))

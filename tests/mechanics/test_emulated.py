@@ -232,6 +232,10 @@ def test_six_numbers_are_a_diagonal(load):
     np.testing.assert_array_equal(load().mass, np.diag([1.0, 2.0, 3.0, 4.0, 5.0, 6.0]))
 
 
+def test_numbers_near_the_end_of_doubles_do_not_overflow(load):
+    assert load(mass=str([1e300] * 6), stiffness=str([1e300] * 6)).mass[0, 0] == 1e300
+
+
 def unsymmetric():
     mass = np.eye(6)
     mass[0, 1] = 0.5

@@ -11,12 +11,11 @@ from ves_twin.core.json_text import json_text
 if TYPE_CHECKING:
     from ves_twin.machines.comparison import Comparison
 
+from ves_twin.cli.exit_codes import DONE, OUT_OF_TOLERANCE
 from ves_twin.cli.given import Given, add_machine_options
 
 SUMMARY = "show where measured recordings and the simulation part"
 JSON_NAME, PAGE_NAME = "compare.json", "report.html"
-OUT_OF_TOLERANCE = 4
-"""Exit code if a limit of the tolerance is not kept."""
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -35,7 +34,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def execute(arguments: argparse.Namespace) -> int:
     """Compare, write page and JSON, print the answer."""
-    from ves_twin.cli.run import output_folder
+    from ves_twin.cli.output_folder import output_folder
     from ves_twin.report.comparison.page import comparison_page
     from ves_twin.report.page import write_page
     from ves_twin.simulator.simulate import make_folder
@@ -48,7 +47,7 @@ def execute(arguments: argparse.Namespace) -> int:
     write_page(folder / JSON_NAME, text + "\n")
     write_page(folder / PAGE_NAME, page)
     print(text if arguments.json else _text(comparison, folder))
-    return OUT_OF_TOLERANCE if comparison.in_tolerance is False else 0
+    return OUT_OF_TOLERANCE if comparison.in_tolerance is False else DONE
 
 
 def _compare(arguments: argparse.Namespace) -> Comparison:

@@ -48,8 +48,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def execute(arguments: argparse.Namespace) -> int:
     """Diagnose, write verdict and plant, print the verdict."""
+    from ves_twin.cli.output_folder import output_folder
     from ves_twin.cli.progress import RunProgress
-    from ves_twin.cli.run import output_folder
     from ves_twin.machines.diagnose import diagnose_prepared
     from ves_twin.simulator.simulate import make_folder
 

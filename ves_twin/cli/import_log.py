@@ -6,6 +6,7 @@ import argparse
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from ves_twin.cli.limit import add_limit
 from ves_twin.core.json_text import json_text
 
 if TYPE_CHECKING:
@@ -27,6 +28,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         default="ves2",
         help="whose ranges tell mixed units; a rig of two files: whose signals they are, too",
     )
+    add_limit(parser)
     parser.add_argument("--json", action="store_true", help="the account as JSON on stdout")
 
 
@@ -35,6 +37,7 @@ def execute(arguments: argparse.Namespace) -> int:
     from ves_twin.core.recording.files import save_recording
     from ves_twin.data.import_log import import_log
     from ves_twin.data.import_map import ImportMap
+    from ves_twin.data.limits import Limits
     from ves_twin.data.open_log import open_log
     from ves_twin.machines.load import open_machine
     from ves_twin.simulator.simulate import make_folder
@@ -43,9 +46,8 @@ def execute(arguments: argparse.Namespace) -> int:
     window = _window(arguments, told.window)
     machine = open_machine(arguments.plant)
     path = _target(arguments.out)
-    imported = import_log(
-        open_log(arguments.file), told, window, machine.ranges, machine.own_signals
-    )
+    log = open_log(arguments.file, Limits.of(arguments.limit))
+    imported = import_log(log, told, window, machine.ranges, machine.own_signals)
     make_folder(path.parent)
     save_recording(imported.recording, path)
     if arguments.json:

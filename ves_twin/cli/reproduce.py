@@ -102,7 +102,7 @@ def _score(arguments: argparse.Namespace, chosen: list[str], context: Context) -
 def _figures(
     arguments: argparse.Namespace, names: list[str], context: Context
 ) -> list[FigureResult]:
-    from ves_twin.cli.run import output_folder
+    from ves_twin.cli.output_folder import output_folder
     from ves_twin.simulator.simulate import make_folder
     from ves_twin.thesis.figures.registry import FIGURES
 

@@ -11,7 +11,6 @@ if TYPE_CHECKING:
     from ves_twin.control.controller import PlatformController
     from ves_twin.plant.plant import Plant
     from ves_twin.scenario.schema import Scenario
-    from ves_twin.simulator.outcome import Outcome
     from ves_twin.simulator.simulate import Summary
 
 SUMMARY = "run a scenario and write its recording"
@@ -48,6 +47,7 @@ def add_run_options(parser: argparse.ArgumentParser) -> None:
 
 def execute(arguments: argparse.Namespace) -> int:
     """Run the scenario or procedure; the exit code tells how it ended."""
+    from ves_twin.cli.exit_codes import exit_code
     from ves_twin.cli.run_procedure import run_procedure
 
     ended = run_procedure(arguments)
@@ -82,13 +82,9 @@ def _draw(folder: Path, video: Path) -> str:
     return f"  video     {video}"
 
 
-def exit_code(outcome: Outcome) -> int:
-    """0 completed, 130 interrupted, 3 any other end."""
-    return {"completed": 0, "interrupted": 130}.get(outcome.value, 3)
-
-
 def run_scenario(arguments: argparse.Namespace) -> tuple[Summary, Path]:
     """Run the scenario that the arguments name into its output folder."""
+    from ves_twin.cli.output_folder import output_folder
     from ves_twin.cli.progress import RunProgress
     from ves_twin.simulator.simulate import record
 
@@ -138,14 +134,3 @@ def load_controller(arguments: argparse.Namespace) -> type[PlatformController] |
 
     found: type[PlatformController] = load_class(arguments.controller, PlatformController)
     return found
-
-
-def output_folder(given: str | None, name: str) -> Path:
-    """The folder asked for, or the next free runs/NAME, runs/NAME-2, ..."""
-    if given is not None:
-        return Path(given)
-    folder, number = Path("runs") / name, 1
-    while folder.exists():
-        number += 1
-        folder = Path("runs") / f"{name}-{number}"
-    return folder

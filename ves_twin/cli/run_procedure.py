@@ -17,8 +17,9 @@ def run_procedure(arguments: argparse.Namespace) -> int | None:
     Raises:
         VesTwinError: options that cannot be carried out, or a folder that cannot be written.
     """
+    from ves_twin.cli.exit_codes import exit_code
+    from ves_twin.cli.output_folder import output_folder
     from ves_twin.cli.progress import RunProgress
-    from ves_twin.cli.run import exit_code, output_folder
     from ves_twin.core.errors import InvalidInputError
     from ves_twin.core.whole_file import write_whole
     from ves_twin.plant.plant import Plant

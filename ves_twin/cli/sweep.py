@@ -58,7 +58,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def execute(arguments: argparse.Namespace) -> int:
     """Carry out the sweep; 0 when every point has a result, 3 where some were lost."""
-    from ves_twin.cli.main import DONE, ENDED_EARLY
+    from ves_twin.cli.exit_codes import DONE, ENDED_EARLY
     from ves_twin.cli.progress import RunProgress
     from ves_twin.sweeps.sweep import carry_out_sweep
 

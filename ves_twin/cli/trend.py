@@ -53,8 +53,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def execute(arguments: argparse.Namespace) -> int:
     """Read, follow, write page and JSON, print the answer."""
+    from ves_twin.cli.output_folder import output_folder
     from ves_twin.cli.progress import RunProgress
-    from ves_twin.cli.run import output_folder
     from ves_twin.machines.trend import trend_prepared
     from ves_twin.report.diagnosis.trend_page import trend_page
     from ves_twin.report.page import write_page

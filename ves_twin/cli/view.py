@@ -11,7 +11,8 @@ import time
 from collections.abc import Sequence
 from pathlib import Path
 
-from ves_twin.cli.run import add_run_options, exit_code, load, load_controller, run_scenario
+from ves_twin.cli.exit_codes import exit_code
+from ves_twin.cli.run import add_run_options, load, load_controller, run_scenario
 from ves_twin.core.errors import FileAccessError, InvalidInputError, UnknownNameError, VesTwinError
 
 OF_A_RUN = {

@@ -105,6 +105,7 @@ def _asked(log: Log, told: ImportMap, targets: tuple[Target, ...]) -> Iterator[P
             if full not in names:
                 raise UnknownNameError(f"column in {log.path.name}", full, names)
             table, column = names[full]
+            _check_numbers(log, column)
             places.append((table.name, column.name))
             if on.column is not None:
                 places.append((table.name, _named(log, table.name, on.column).name))
@@ -121,9 +122,16 @@ def _named(log: Log, table: str, name: str) -> Column:
     here = log.table(table)
     for column in here.columns:
         if name in (column.name, here.full_name(column.name)):
+            _check_numbers(log, column)
             return column
     what = f"time column in table {table}" if table else f"time column in {log.path.name}"
     raise UnknownNameError(what, name, [c.name for c in here.columns])
+
+
+def _check_numbers(log: Log, column: Column) -> None:
+    if column.kind is Kind.TEXT:
+        what = f"column in {log.path.name} {column.name}"
+        raise InvalidInputError(what, "a text, list or other thing", "times or numbers")
 
 
 def _line(

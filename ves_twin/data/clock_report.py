@@ -152,4 +152,5 @@ def usual_step(time: FloatArray) -> float:
     if not len(steps):
         return 0.0
     median = float(np.median(steps))
-    return float(np.mean(steps[np.abs(steps - median) < (GAP - 1.0) * median]))
+    near = steps[np.abs(steps - median) < (GAP - 1.0) * median]
+    return float(np.mean(near)) if len(near) else median

@@ -5,10 +5,9 @@ from __future__ import annotations
 import csv
 import re
 from dataclasses import dataclass
-from itertools import pairwise
 
 from ves_twin.core.errors import InvalidInputError
-from ves_twin.data.log import Column, Kind
+from ves_twin.data.log import Column, Kind, unique_names
 from ves_twin.data.unit_names import is_unit, spelled, unit_of_name
 
 MISSING = ("", "nan", "NaN", "NAN", "NA", "N/A", "#N/A", "null", "NULL", "None", "-", "--")
@@ -157,7 +156,7 @@ def _columns(texts: list[str], split: _Split) -> tuple[tuple[Column, ...], froze
     if len(rows) > 1 and _is_unit_row(rows[-1]):
         units = [spelled(cell.strip("[]()")) for cell in rows.pop()]
     names = rows[-1] if rows else [f"column_{i + 1}" for i in range(split.width)]
-    names = _unique([name or f"column_{i + 1}" for i, name in enumerate(names)])
+    names = unique_names([name or f"column_{i + 1}" for i, name in enumerate(names)])
     sample = [split_line(t, split.separator) for t in texts[split.first : split.first + SAMPLE]]
     sample = [row for row in sample if len(row) == split.width]
     columns, zoned = [], set()
@@ -178,13 +177,3 @@ def _columns(texts: list[str], split: _Split) -> tuple[tuple[Column, ...], froze
 def _is_unit_row(cells: list[str]) -> bool:
     bare = [cell.strip("[]()") for cell in cells]
     return all(not cell or is_unit(cell) for cell in bare) and any(bare)
-
-
-def _unique(names: list[str]) -> list[str]:
-    seen: dict[str, int] = {}
-    result = []
-    for name in names:
-        seen[name] = seen.get(name, 0) + 1
-        result.append(name if seen[name] == 1 else f"{name}.{seen[name]}")
-    doubled = [a for a, b in pairwise(sorted(result)) if a == b]
-    return _unique([f"{n}_" if n in doubled else n for n in result]) if doubled else result

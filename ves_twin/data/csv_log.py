@@ -16,6 +16,7 @@ import pyarrow.csv as pcsv
 from ves_twin.core.errors import InvalidInputError
 from ves_twin.core.types import FloatArray
 from ves_twin.data.csv_layout import FORMATS, MISSING, SPACES, CsvLayout
+from ves_twin.data.limits import Limits
 from ves_twin.data.log import Block, Kind, Log, Table
 
 PIECE = 1 << 23
@@ -33,7 +34,7 @@ NUMBER = r"^\s*[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?\s*$"
 class CsvLog(Log):
     """Rows of numbers in text: comma, semicolon, tab, bar or blanks; decimal point or comma."""
 
-    def __init__(self, path: Path) -> None:
+    def __init__(self, path: Path, limits: Limits | None = None) -> None:
         try:
             with pa.input_stream(str(path)) as stream:
                 head = stream.read(HEAD)
@@ -41,7 +42,7 @@ class CsvLog(Log):
         except (pa.ArrowInvalid, OSError) as error:
             raise InvalidInputError(path.name, str(error), FORMATS) from None
         self._layout = CsvLayout.of(bytes(head), path.name, whole)
-        super().__init__(path, "CSV", [Table("", self._layout.columns)])
+        super().__init__(path, "CSV", [Table("", self._layout.columns)], limits)
 
     def blocks(self, table: str, columns: Sequence[str]) -> Iterator[Block]:
         """Pieces in the file's order; rows and cells that cannot be read count as faults."""
@@ -63,7 +64,7 @@ class CsvLog(Log):
         return block
 
     def _pieces(self) -> Iterator[bytes]:
-        rest = b""
+        rest, size = bytearray(), 0
         with pa.input_stream(str(self.path)) as stream:
             stream.read(self._layout.start)
             while True:
@@ -74,24 +75,31 @@ class CsvLog(Log):
                     read = b""
                 if not read:
                     break
-                last = read.rfind(b"\n")
-                if last < 0:
-                    rest += read
+                size += len(read)
+                self.limits.check_unfolded(self.path, size)
+                whole, end, tail = read.rpartition(b"\n")
+                first = whole.find(b"\n") if b"\n" in whole else len(whole or tail)
+                self.limits.check_line(self.path, len(rest) + first)
+                if not end:
+                    rest += tail
                     continue
-                yield rest + read[: last + 1]
-                rest = read[last + 1 :]
+                rest += whole + end
+                yield bytes(rest)
+                rest = bytearray(tail)
+        self.limits.check_line(self.path, len(rest))
         if rest.strip(b" \r\n\t\0"):
-            yield rest
+            yield bytes(rest)
 
     def _parsed(self, piece: bytes, wanted: Sequence[str]) -> tuple[Block, _Count]:
         count = _Count()
+        if not piece.isascii():  # the parser shows rows of another width as text, which must be one
+            piece = piece.decode("utf-8", "replace").encode()
         if self._layout.separator == SPACES:
             piece = re.sub(rb"(?m)^ | $|\r", b"", re.sub(rb"[ \t]+", b" ", piece))
         try:
             table = self._table(piece, wanted, count, texts=False)
         except pa.ArrowInvalid:
             count = _Count()
-            piece = piece.decode("utf-8", "replace").encode()
             table = self._table(piece, wanted, count, texts=True)
         return {name: self._numbers(table.column(name), name, count) for name in wanted}, count
 
@@ -149,12 +157,16 @@ class CsvLog(Log):
             return np.full(len(column), np.nan)
 
 
+TICKS = {"s": 1, "ms": 10**3, "us": 10**6, "ns": 10**9}
+"""Unit of Arrow's times -> ticks a second."""
+
+
 def seconds_of(column: pa.ChunkedArray) -> FloatArray:
     """Stamps as seconds since 1970, good to a quarter of a microsecond; NaN where missing."""
-    whole = column.cast(pa.timestamp("ns", tz=column.type.tz)).cast(pa.int64())
+    whole = column.cast(pa.int64())
     missing = whole.is_null().to_numpy()
-    ticks = whole.fill_null(0).to_numpy()
-    return np.asarray(np.where(missing, np.nan, ticks // 10**9 + (ticks % 10**9) * 1e-9))
+    ticks, each = whole.fill_null(0).to_numpy(), TICKS[column.type.unit]
+    return np.asarray(np.where(missing, np.nan, ticks // each + (ticks % each) / each))
 
 
 class _Count:

@@ -150,7 +150,8 @@ def _signals(
             signals[name] = np.full((len(rows), target.signal.width), np.nan)
         line = aligned.line(target)
         raw = aligned.values.pop(target.place)[line.rows]
-        values = channel.sign * _converted(channel.scale * raw + channel.offset, target)
+        with np.errstate(over="ignore", invalid="ignore"):  # counted as missing below
+            values = channel.sign * _converted(channel.scale * raw + channel.offset, target)
         found = resample(
             values, line.time, line.period, rows, step, channel.way, target.signal.role, told.gaps
         )

@@ -91,9 +91,10 @@ def _table(log: Log, table: Table) -> TableReport:
     known = log.known_ranges(table.name)
     names = [c.name for c in table.columns if c.kind is not Kind.TEXT]
     pieces = log.blocks(table.name, names)
-    first = next(pieces, None)
+    first = next(pieces, None) if names else None
     if first is None:
-        return TableReport(table.name, 0, None, (), EVERY_ROW, _channels(table, {}, known, ""))
+        rows = table.rows or 0
+        return TableReport(table.name, rows, None, (), EVERY_ROW, _channels(table, {}, known, ""))
     fields = clock_fields(table.columns, first)
     counter = _counter(fields[0]) if fields and not fields[0].counter else None
     counts = {name: _Counter() for name in names}

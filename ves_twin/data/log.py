@@ -6,12 +6,14 @@ from abc import ABC, abstractmethod
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from enum import StrEnum
+from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
 
 from ves_twin.core.errors import UnknownNameError
 from ves_twin.core.types import FloatArray
+from ves_twin.data.limits import Limits
 
 Block = Mapping[str, FloatArray]
 """A piece of some columns of one table: name -> rows (n,), NaN where the file holds nothing."""
@@ -77,10 +79,14 @@ class Log(ABC):
         path: the file.
         form: kind of file, for people.
         tables: what is in it.
+        limits: beyond which it is refused.
     """
 
-    def __init__(self, path: Path, form: str, tables: Sequence[Table]) -> None:
+    def __init__(
+        self, path: Path, form: str, tables: Sequence[Table], limits: Limits | None = None
+    ) -> None:
         self.path = path
+        self.limits = limits or Limits()
         self.form = form
         self.tables = tuple(tables)
         self._faults: dict[str, str] = {}
@@ -117,12 +123,26 @@ class Log(ABC):
         return {t.full_name(c.name): (t, c) for t in self.tables for c in t.columns}
 
     def read(self, table: str, columns: Sequence[str]) -> dict[str, FloatArray]:
-        """Whole columns (n,) of a table."""
+        """Whole columns (n,) of a table; raises InvalidInputError where they are beyond limits."""
         pieces: dict[str, list[FloatArray]] = {name: [] for name in columns}
+        size = 0
         for block in self.blocks(table, columns):
+            size += sum(rows.nbytes for rows in block.values())
+            self.limits.check_unfolded(self.path, size)
             for name in columns:
                 pieces[name].append(block[name])
         return {
             name: np.concatenate(pieces.pop(name)) if pieces[name] else np.zeros(0)
             for name in columns
         }
+
+
+def unique_names(names: list[str]) -> list[str]:
+    """Names with a number behind those that repeat: x, x.2; as many as came."""
+    seen: dict[str, int] = {}
+    result = []
+    for name in names:
+        seen[name] = seen.get(name, 0) + 1
+        result.append(name if seen[name] == 1 else f"{name}.{seen[name]}")
+    doubled = [a for a, b in pairwise(sorted(result)) if a == b]
+    return unique_names([f"{n}_" if n in doubled else n for n in result]) if doubled else result

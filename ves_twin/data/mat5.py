@@ -17,6 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ves_twin.core.errors import VesTwinError, one_line
+from ves_twin.data.limits import Limits
 
 HEADER = 128
 MATRIX, COMPRESSED = 14, 15
@@ -82,8 +83,13 @@ class DamagedError(VesTwinError):
     """Bytes that are no sound variable."""
 
 
-def mat_variables(path: Path) -> Iterator[MatValue | DamagedError]:
-    """Variables one by one; a damaged one comes as what is wrong with it."""
+def mat_variables(path: Path, limits: Limits | None = None) -> Iterator[MatValue | DamagedError]:
+    """Variables one by one; a damaged one comes as what is wrong with it.
+
+    Raises:
+        InvalidInputError: together they unfold to more than they may.
+    """
+    unfolded = 0
     with path.open("rb") as file:
         head = file.read(HEADER)
         order = ">" if head[126:128] == b"MI" else "<"
@@ -96,7 +102,8 @@ def mat_variables(path: Path) -> Iterator[MatValue | DamagedError]:
                 if len(content) < size:
                     raise DamagedError(f"cut: {len(content)} of {size} bytes")
                 if kind == COMPRESSED:
-                    kind, content = _unpacked(content, order)
+                    kind, content = _unpacked(content, order, path, limits or Limits(), unfolded)
+                    unfolded += len(content)
                 if kind != MATRIX:
                     raise DamagedError(f"element of type {kind}, expected a matrix")
                 yield _Reader(content, order).matrix()
@@ -106,10 +113,19 @@ def mat_variables(path: Path) -> Iterator[MatValue | DamagedError]:
                 yield DamagedError(one_line(error))
 
 
-def _unpacked(content: bytes, order: str) -> tuple[int, bytes]:
-    whole = zlib.decompress(content)
-    kind, size = struct.unpack_from(f"{order}II", whole)
-    return kind, whole[8 : 8 + size]
+def _unpacked(
+    content: bytes, order: str, path: Path, limits: Limits, before: int
+) -> tuple[int, bytes]:
+    """Type and bytes of a compressed element, unfolded no further than the limits."""
+    stream = zlib.decompressobj()
+    kind, size = struct.unpack(f"{order}II", stream.decompress(content, 8))
+    most = min(size, limits.most(path) - before + 1)
+    whole = stream.decompress(stream.unconsumed_tail, max(most, 1))
+    limits.check_unfolded(path, before + len(whole))
+    stream.decompress(stream.unconsumed_tail, 8)  # padding, and the sum that proves the rest
+    if not stream.eof:
+        raise DamagedError("compressed data beyond its size")
+    return kind, whole
 
 
 class _Reader:

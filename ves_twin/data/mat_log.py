@@ -10,6 +10,7 @@ import scipy.io
 
 from ves_twin.core.errors import InvalidInputError, one_line
 from ves_twin.data.array_log import ArrayLog
+from ves_twin.data.limits import Limits
 from ves_twin.data.mat5 import DamagedError, MatKind, MatValue, mat_variables
 
 SAVE_V7 = "load('{name}'); save('{stem}_v7.mat', '-v7')"
@@ -32,14 +33,15 @@ CONVERT = {
 ANY = "S = struct({x}); save('{x}.mat', '-struct', 'S', '-v7')"
 
 
-def mat_log(path: Path) -> ArrayLog:
+def mat_log(path: Path, limits: Limits | None = None) -> ArrayLog:
     """A MAT file as a log; a damaged variable costs only itself.
 
     Raises:
-        InvalidInputError: version 7.3 (HDF5), or nothing in it can be read.
+        InvalidInputError: version 7.3 (HDF5), beyond limits, or nothing in it can be read.
     """
+    limits = limits or Limits()
     found = _Found()
-    for number, value in enumerate(_variables(path), 1):
+    for number, value in enumerate(_variables(path, limits), 1):
         if isinstance(value, DamagedError):
             found.faults.append(f"variable {number}: cut or damaged, left out: {value}")
         elif value.name and not value.name.startswith("__"):
@@ -47,13 +49,13 @@ def mat_log(path: Path) -> ArrayLog:
     if not found.groups:
         words = "; ".join(found.faults) or "0 variables"
         raise InvalidInputError(path.name, words, "arrays of numbers")
-    return ArrayLog(path, "MAT", found.groups, found.units, found.faults)
+    return ArrayLog(path, "MAT", found.groups, found.units, found.faults, limits)
 
 
-def _variables(path: Path) -> Iterator[MatValue | DamagedError]:
+def _variables(path: Path, limits: Limits) -> Iterator[MatValue | DamagedError]:
     with path.open("rb") as file:
         if file.read(8) == b"MATLAB 5":
-            yield from mat_variables(path)
+            yield from mat_variables(path, limits)
             return
     try:
         content = scipy.io.loadmat(str(path))

@@ -5,7 +5,10 @@ from __future__ import annotations
 import json
 import struct
 from collections.abc import Callable, Iterator, Sequence
+from contextlib import redirect_stderr
 from dataclasses import dataclass
+from io import StringIO
+from itertools import islice
 from pathlib import Path
 from typing import IO, Any
 
@@ -13,6 +16,7 @@ import numpy as np
 
 from ves_twin.core.errors import InvalidInputError, VesTwinError, one_line
 from ves_twin.core.types import FloatArray
+from ves_twin.data.limits import Limits
 from ves_twin.data.log import Block, Column, Extremes, KnownRanges, Log, Table
 from ves_twin.data.message_fields import Path as FieldPath
 from ves_twin.data.message_fields import long_arrays, number_at, number_paths, path_name
@@ -20,11 +24,12 @@ from ves_twin.data.ros1_messages import ros1_decoder
 
 try:
     from mcap.data_stream import ReadDataStream
-    from mcap.reader import SeekingReader
-    from mcap.records import Channel, Chunk, ChunkIndex, Message, Schema
-    from mcap.stream_reader import StreamReader, breakup_chunk
+    from mcap.records import Channel, Chunk, ChunkIndex, McapRecord, Message, Schema, Statistics
+    from mcap.stream_reader import StreamReader
     from mcap_protobuf.decoder import DecoderFactory as ProtobufFactory
     from mcap_ros2.decoder import DecoderFactory as Ros2Factory
+
+    from ves_twin.data.mcap_chunk import records_in, summary_in, unfold
 except ImportError as error:
     raise VesTwinError(
         f"MCAP files need packages that are not installed ({error.name}):"
@@ -39,6 +44,9 @@ SAMPLED = 2000
 """Messages whose ranges stand for a topic with many more."""
 
 MANY = 10_000
+
+WIDEST = 4096
+"""Numbers of a message that become columns; a topic with more is left out."""
 
 DECODED = "JSON, protobuf, ROS 2 (cdr with ros2msg) and ROS 1 (ros1msg)"
 
@@ -55,14 +63,14 @@ class _Topic:
 class McapLog(Log):
     """Times are seconds since the first message was logged, exact to a nanosecond in a day."""
 
-    def __init__(self, path: Path) -> None:
+    def __init__(self, path: Path, limits: Limits | None = None) -> None:
         self._channels: dict[int, Channel] = {}
         self._schemas: dict[int, Schema] = {}
         self._counts: dict[int, int] = {}
         self._chunks: list[ChunkIndex] = []
         self._topics: dict[str, _Topic] = {}
         self.origin = 0
-        super().__init__(path, "MCAP", [])
+        super().__init__(path, "MCAP", [], limits)
         with path.open("rb") as stream:
             self._survey(stream)
         factories = (Ros2Factory(), ProtobufFactory())
@@ -108,14 +116,16 @@ class McapLog(Log):
     def _survey(self, stream: IO[bytes]) -> None:
         """Channels and counts: from the summary at the end, else by reading all there is."""
         try:
-            summary = SeekingReader(stream).get_summary()
+            records = list(summary_in(stream))
         except Exception:  # as below
-            summary = None
-        if summary is not None and summary.chunk_indexes and summary.statistics is not None:
-            self._channels, self._schemas = summary.channels, summary.schemas
-            self._chunks = sorted(summary.chunk_indexes, key=lambda c: c.chunk_start_offset)
-            self._counts = summary.statistics.channel_message_counts
-            self.origin = summary.statistics.message_start_time
+            records = []
+        chunks = [r for r in records if isinstance(r, ChunkIndex)]
+        statistics = [r for r in records if isinstance(r, Statistics)]
+        if chunks and statistics:
+            self._note(records)
+            self._chunks = sorted(chunks, key=lambda c: c.chunk_start_offset)
+            self._counts = statistics[-1].channel_message_counts
+            self.origin = statistics[-1].message_start_time
             return
         first = None
         for message in self._linear(stream):
@@ -126,51 +136,77 @@ class McapLog(Log):
     def _linear(self, stream: IO[bytes]) -> Iterator[Message]:
         """Messages up to the end or to the first damage."""
         stream.seek(0)
+        size = 0
         try:
-            for record in StreamReader(stream).records:
-                if isinstance(record, Channel):
-                    self._channels[record.id] = record
-                elif isinstance(record, Schema):
-                    self._schemas[record.id] = record
-                elif isinstance(record, Message):
-                    yield record
+            for record in StreamReader(stream, emit_chunks=True).records:
+                inside: Iterator[McapRecord] = iter([record])
+                if isinstance(record, Chunk):
+                    content = self._unfolded(record, size)
+                    size += len(content)
+                    inside = records_in(content)
+                for one in inside:
+                    self._note([one])
+                    if isinstance(one, Message):
+                        yield one
+        except VesTwinError:
+            raise
         except Exception as error:  # each compression raises its own
             words = one_line(error).removeprefix("EndOfFile")
             self.note_fault("cut", f"cut or damaged; messages up to there are kept: {words}")
+
+    def _unfolded(self, chunk: Chunk, before: int) -> bytes:
+        """What a chunk holds, behind others that hold so many bytes."""
+        content = unfold(chunk, self.limits.most(self.path) - before)
+        self.limits.check_unfolded(self.path, before + len(content))
+        return content
+
+    def _note(self, records: Sequence[McapRecord]) -> None:
+        for record in records:
+            if isinstance(record, Channel):
+                self._channels[record.id] = record
+            elif isinstance(record, Schema):
+                self._schemas[record.id] = record
 
     def _messages(self, channel: int) -> Iterator[Message]:
         with self.path.open("rb") as stream:
             if not self._chunks:
                 yield from (m for m in self._linear(stream) if m.channel_id == channel)
                 return
+            size = 0
             for number, index in enumerate(self._chunks, 1):
                 offsets = index.message_index_offsets
                 if offsets and channel not in offsets:
                     continue
                 try:
                     stream.seek(index.chunk_start_offset + 9)
-                    records = breakup_chunk(Chunk.read(ReadDataStream(stream)), validate_crc=True)
+                    content = self._unfolded(Chunk.read(ReadDataStream(stream)), size)
+                    size += len(content)
+                    for record in records_in(content):
+                        if isinstance(record, Message) and record.channel_id == channel:
+                            yield record
+                except VesTwinError:
+                    raise
                 except Exception as error:  # each compression raises its own
                     words = f"chunk {number} of {len(self._chunks)} left out: {one_line(error)}"
                     self.note_fault(f"chunk {number}", words)
-                    continue
-                for record in records:
-                    if isinstance(record, Message) and record.channel_id == channel:
-                        yield record
 
     def _indexed_times(self, channel: int) -> FloatArray:
         """Log times of a channel from the index records, no chunk decompressed."""
         parts = []
         with self.path.open("rb") as stream:
-            for index in self._chunks:
+            for number, index in enumerate(self._chunks, 1):
                 offset = index.message_index_offsets.get(channel)
                 if offset is None:
                     continue
-                stream.seek(offset + 1)
-                (length,) = struct.unpack("<Q", stream.read(8))
-                content = stream.read(length)
-                count = (len(content) - 6) // 16
-                pairs = np.frombuffer(content, np.uint64, 2 * count, 6)
+                try:
+                    stream.seek(offset + 1)
+                    (length,) = struct.unpack("<Q", stream.read(8))
+                    content = stream.read(length)
+                    pairs = np.frombuffer(content, np.uint64, 2 * ((length - 6) // 16), 6)
+                except (struct.error, ValueError, OverflowError, MemoryError) as error:
+                    words = f"index of chunk {number} is damaged: {one_line(error)}"
+                    self.note_fault(f"index {number}", words)
+                    continue
                 parts.append((pairs[::2].astype(np.int64) - self.origin) * 1e-9)
         return np.concatenate(parts) if parts else np.zeros(0)
 
@@ -198,7 +234,8 @@ class McapLog(Log):
             if encoding == "ros1" and schema is not None and schema.encoding == "ros1msg":
                 return ros1_decoder(schema.name, schema.data.decode("utf-8", "replace"))
             for factory in factories:
-                decode = factory.decoder_for(encoding, schema)
+                with redirect_stderr(StringIO()):  # where a parser prints lines that it refuses
+                    decode = factory.decoder_for(encoding, schema)
                 if decode is not None:
                     return decode  # type: ignore[no-any-return]
         except Exception as error:  # each decoder raises its own at a bad schema
@@ -217,15 +254,21 @@ class McapLog(Log):
             decoded = self._decoded(topic, message)
             if decoded is None:
                 continue
-            for path in long_arrays(decoded):
+            for path in islice(long_arrays(decoded), WIDEST):
                 words = f"{name}.{path_name(path)}: a long array, left out"
                 self.note_fault(f"{name} {path}", words)
-            return _Topic(topic.id, topic.decode, {path_name(p): p for p in number_paths(decoded)})
+            paths = {path_name(p): p for p in islice(number_paths(decoded), WIDEST + 1)}
+            if len(paths) > WIDEST:
+                words = f"{name}: more than {WIDEST} numbers a message, left out"
+                self.note_fault(f"{name} numbers", words)
+                paths = {}
+            return _Topic(topic.id, topic.decode, paths)
         return topic
 
     def _decoded(self, topic: _Topic, message: Message) -> Any:
         if topic.decode is None:
             return None
+        self.limits.check_message(self.path, len(message.data))
         try:
             return topic.decode(message.data)
         except Exception as error:  # each decoder raises its own

@@ -11,6 +11,9 @@ Path = tuple[str | int, ...]
 MOST = 64
 """Longest array whose elements become columns; longer ones are pictures and clouds."""
 
+LATEST = 2**63
+"""Largest count of a stamp: 64 bits."""
+
 STAMPS = ({"sec", "nanosec"}, {"secs", "nsecs"}, {"sec", "nsec"}, {"seconds", "nanos"})
 """Fields of a time: seconds and nanoseconds."""
 
@@ -52,10 +55,13 @@ def number_at(message: Any, path: Path, origin: int) -> float:
                 value = getattr(value, part)
         except (AttributeError, IndexError, KeyError, TypeError):
             return float("nan")
-    if isinstance(value, bool | int | float):
-        return float(value)
     nanoseconds = _stamp(value)
-    return float("nan") if nanoseconds is None else (nanoseconds - origin) * 1e-9
+    if nanoseconds is not None:
+        return (nanoseconds - origin) * 1e-9
+    try:
+        return float(value) if isinstance(value, bool | int | float) else float("nan")
+    except OverflowError:  # an integer beyond doubles
+        return float("nan")
 
 
 def fields_of(message: Any) -> Iterator[tuple[str | int, Any]]:
@@ -87,5 +93,8 @@ def _stamp(value: Any) -> int | None:
     parts = dict(fields_of(value))
     if set(parts) not in STAMPS:
         return None
-    seconds, nanoseconds = parts.values()
-    return int(seconds) * 10**9 + int(nanoseconds)
+    nanoseconds, seconds = (parts[name] for name in sorted(parts, key=str))
+    whole = isinstance(seconds, int) and isinstance(nanoseconds, int)
+    if not whole or abs(seconds) > LATEST or abs(nanoseconds) > LATEST:
+        return None
+    return int(seconds * 10**9 + nanoseconds)

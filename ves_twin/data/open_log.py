@@ -10,6 +10,7 @@ from ves_twin.core.recording.stream import FILE_NAME, STREAM_NAME
 from ves_twin.data.array_log import ArrayLog
 from ves_twin.data.columnar_log import ArrowLog, ParquetLog
 from ves_twin.data.csv_log import CsvLog
+from ves_twin.data.limits import Limits
 from ves_twin.data.log import Log
 from ves_twin.data.mat_log import mat_73, mat_log
 from ves_twin.data.npz_log import PICKLE, npz_log
@@ -26,8 +27,12 @@ REFUSED = {
 """First bytes -> what it is and what to bring instead."""
 
 
-def open_log(path: str | Path) -> Log:
+def open_log(path: str | Path, limits: Limits | None = None) -> Log:
     """Open a lab file, or the recording in the folder of a run.
+
+    Args:
+        path: of the file or the folder.
+        limits: what it may unfold to; the usual ones if left out.
 
     Raises:
         FileAccessError: missing or unreadable.
@@ -51,30 +56,30 @@ def open_log(path: str | Path) -> Log:
             raise InvalidInputError(file.name, came, wanted)
     if _is_pickle(file, head):
         raise InvalidInputError(file.name, PICKLE, READABLE)
-    return _opened(file, head)
+    return _opened(file, head, limits)
 
 
-def _opened(file: Path, head: bytes) -> Log:
+def _opened(file: Path, head: bytes, limits: Limits | None) -> Log:
     if head.startswith(b"\x89MCAP"):
         from ves_twin.data.mcap_log import McapLog  # its packages are an extra
 
-        return McapLog(file)
+        return McapLog(file, limits)
     if head.startswith(HDF5) or head[512:520] == HDF5:
         if head.startswith(b"MATLAB") or file.suffix == ".mat":
             raise mat_73(file)
         raise InvalidInputError(file.name, "an HDF5 file", READABLE)
     if head.startswith(b"PAR1"):
-        return ParquetLog(file)
+        return ParquetLog(file, limits)
     if head.startswith((b"ARROW1", b"\xff\xff\xff\xff")):
-        return ArrowLog(file)
+        return ArrowLog(file, limits)
     if head.startswith(b"MATLAB 5") or file.suffix == ".mat":
-        return mat_log(file)
+        return mat_log(file, limits)
     if head.startswith(b"\x93NUMPY") or head.startswith(b"PK\x03\x04"):
-        return _archive(file, head)
-    return CsvLog(file)
+        return _archive(file, head, limits)
+    return CsvLog(file, limits)
 
 
-def _archive(file: Path, head: bytes) -> ArrayLog:
+def _archive(file: Path, head: bytes, limits: Limits | None) -> ArrayLog:
     if head.startswith(b"PK"):
         try:
             names = zipfile.ZipFile(file).namelist()
@@ -84,7 +89,7 @@ def _archive(file: Path, head: bytes) -> ArrayLog:
             raise InvalidInputError(file.name, "an Excel sheet", "CSV; save the sheet as such")
         if not any(name.endswith(".npy") for name in names):
             raise InvalidInputError(file.name, "an archive without arrays", READABLE)
-    return npz_log(file)
+    return npz_log(file, limits)
 
 
 def _is_pickle(file: Path, head: bytes) -> bool:

@@ -102,8 +102,11 @@ def _message(
             continue
         items = []
         for _ in range(min(count, len(data))):
+            before = at
             item, at = _one(field.kind, types, data, at, depth)
             items.append(item)
+            if at == before:
+                raise InvalidInputError(f"array {field.name}", "elements of 0 bytes", "some")
         value[field.name] = items
     return value, at
 

@@ -1,4 +1,4 @@
-"""compose: the verdict's fields from what was computed."""
+"""assemble_verdict: the verdict's fields from what was computed."""
 
 from __future__ import annotations
 

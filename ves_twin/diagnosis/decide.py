@@ -1,4 +1,4 @@
-"""conclude: from an explanation and held-out recordings to the kind of verdict."""
+"""decide: from an explanation and held-out recordings to the kind of verdict."""
 
 from __future__ import annotations
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import hashlib
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 
@@ -12,7 +11,8 @@ from ves_twin.core.errors import InvalidInputError
 from ves_twin.core.recording.recording import Recording
 from ves_twin.core.types import FloatArray, SingleArray
 from ves_twin.diagnosis.evidence import Evidence
-from ves_twin.diagnosis.forward import Channel, Excitation, Forward, Hypothesis, Parameter
+from ves_twin.diagnosis.forward import Excitation, Forward, Parameter
+from ves_twin.diagnosis.forward_wrapper import ForwardWrapper
 from ves_twin.diagnosis.linearise import linearise, with_bends
 from ves_twin.diagnosis.preprocess import Dataset, preprocess
 from ves_twin.diagnosis.refine import refine
@@ -79,17 +79,17 @@ def differential(
 
 
 @dataclass(frozen=True)
-class Tuned:
+class Tuned(ForwardWrapper):
     """A forward whose commissioning parameters were found on its own rig.
 
+    Departures count from the rig's own values.
+
     Attributes:
-        forward: the one with nominal values.
         tuned: its parameters with those of the rig as nominal, and KEPT of their sd, or CHANGE of
             what they were tuned by if that is more: it stands for what the model lacks.
         lacking: traces that may grow and turn, by programme.
     """
 
-    forward: Forward
     tuned: tuple[Parameter, ...]
     lacking: tuple[Lacking, ...] = ()
 
@@ -116,31 +116,13 @@ class Tuned:
     @property
     def identity(self) -> str:
         """Of the forward, the values and the traces."""
-        told = f"{self.forward.identity} {[(p.nominal, p.sd) for p in self.parameters]}"
-        digest = hashlib.sha256(told.encode())
-        for trace in self.lacking:
-            digest.update(trace.programme.encode() + trace.traces.tobytes())
-        return digest.hexdigest()[:16]
+        traces = (trace.programme.encode() + trace.traces.tobytes() for trace in self.lacking)
+        return self.identified(f"{[(p.nominal, p.sd) for p in self.parameters]}", b"".join(traces))
 
     @property
     def parameters(self) -> tuple[Parameter, ...]:
         """The tuned ones, and what the lacking physics may do."""
         return (*self.tuned, *PARAMETERS) if self.lacking else self.tuned
-
-    @property
-    def channels(self) -> tuple[Channel, ...]:
-        """Those of the forward."""
-        return self.forward.channels
-
-    @property
-    def drive(self) -> tuple[str, ...]:
-        """That of the forward."""
-        return self.forward.drive
-
-    @property
-    def hypotheses(self) -> tuple[Hypothesis, ...]:
-        """Those of the forward; departures count from the rig's own values."""
-        return self.forward.hypotheses
 
     def simulate(
         self, programme: Excitation, values: Mapping[str, float], refined: bool = False

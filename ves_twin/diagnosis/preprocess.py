@@ -1,4 +1,4 @@
-"""observe: recordings as rows on the analysis grid, beside the runs that predict them."""
+"""preprocess: recordings as rows on the analysis grid, beside the runs that predict them."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Exhibit: what a report of a diagnosis shows: traces and residuals, before and after."""
+"""ReportTraces: what a report of a diagnosis shows: traces and residuals, before and after."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Bank: the change each hypothesis makes at finite sizes, kept for a plant and its programmes."""
+"""SignatureLibrary: the change each hypothesis makes at finite sizes, for a plant and inputs."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""SharedOut: environments side by side, shared out over a few processes."""
+"""ChunkedVectorEnv: environments side by side, shared out over a few processes."""
 
 from __future__ import annotations
 

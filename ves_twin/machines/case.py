@@ -5,6 +5,7 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -16,7 +17,9 @@ from ves_twin.core.types import FloatArray
 from ves_twin.data.quality.check import Check
 from ves_twin.diagnosis.grid import RATE
 from ves_twin.diagnosis.residuals.noise import Noise, NoiseSource, measured_noise, standing_rows
-from ves_twin.machines.ves2.emulation_cost import EmulationCost
+
+if TYPE_CHECKING:
+    from ves_twin.machines.ves2.emulation_cost import EmulationCost
 
 Traces = Mapping[str, FloatArray]
 """Signal -> rows (n, width)."""

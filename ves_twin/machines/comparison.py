@@ -6,12 +6,15 @@ import math
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass
 from enum import StrEnum
+from typing import TYPE_CHECKING
 
 from ves_twin.core.types import FloatArray
 from ves_twin.data.quality.check import Check, Grade
 from ves_twin.diagnosis.residuals.channel import ChannelComparison
 from ves_twin.machines.tolerance import Excess
-from ves_twin.machines.ves2.emulation_cost import EmulationCost
+
+if TYPE_CHECKING:
+    from ves_twin.machines.ves2.emulation_cost import EmulationCost
 
 SCHEMA = 1
 

@@ -6,9 +6,12 @@ import hashlib
 import os
 from collections.abc import Sequence
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from ves_twin.core.errors import FileAccessError, InvalidInputError
-from ves_twin.machines.mjcf.description import Data
+
+if TYPE_CHECKING:
+    from ves_twin.machines.mjcf.description import Data
 
 VARIABLE = "VES_TWIN_DATA"
 """Environment variable with the folder of public data sets; see models/rigs/README.md."""

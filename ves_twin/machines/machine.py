@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import importlib
 from abc import ABC, abstractmethod
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -105,9 +106,9 @@ class Machine(ABC):
     @staticmethod
     def load(name_or_path: str = "") -> Machine:
         """A machine by the name of a shipped one, or by its file; see `open_machine`."""
-        from ves_twin.machines.load import open_machine
-
-        return open_machine(name_or_path)
+        loader = importlib.import_module("ves_twin.machines.load")  # which imports this file
+        machine: Machine = loader.open_machine(name_or_path)
+        return machine
 
     @property
     @abstractmethod

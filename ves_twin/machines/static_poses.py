@@ -1,4 +1,4 @@
-"""HeldPoses: the force sensor read at poses at rest, as the diagnosis sees it."""
+"""StaticPoses: the force sensor read at poses at rest, as the diagnosis sees it."""
 
 from __future__ import annotations
 

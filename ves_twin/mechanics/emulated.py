@@ -175,7 +175,8 @@ def _matrices(content: dict[str, object], where: str) -> list[FloatArray]:
 
 def _check_energy(key: str, matrix: FloatArray, where: str) -> None:
     """Refuse a matrix whose energy x' A x is not one: skew parts, or negative values."""
-    pair = np.sqrt(np.abs(np.outer(np.diag(matrix), np.diag(matrix))))
+    root = np.sqrt(np.abs(np.diag(matrix)))  # before the product, which may be beyond doubles
+    pair = np.outer(root, root)
     size = np.maximum(pair, np.maximum(np.abs(matrix), np.abs(matrix.T)))
     skew = np.abs(matrix - matrix.T) > SYMMETRY * size
     if np.any(skew):

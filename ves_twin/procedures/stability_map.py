@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import asdict, dataclass
+from dataclasses import asdict
 from typing import Annotated
 
 import numpy as np
@@ -14,6 +14,7 @@ from ves_twin.core.json_text import json_text
 from ves_twin.core.whole_file import write_whole
 from ves_twin.plant.plant import Plant
 from ves_twin.procedures.confirm import Confirmation, confirm_by_run
+from ves_twin.procedures.map_point import MapPoint
 from ves_twin.procedures.one_axis import OneAxis
 from ves_twin.procedures.procedure import Account, Procedure, RunContext
 from ves_twin.procedures.stability_bench import StabilityBench
@@ -26,40 +27,6 @@ MAP_NAME, FIGURE_NAME = "stability_map.json", "stability_map.png"
 
 ASIDE = 0.1
 """Runs confirm a limit from this share of it below and above."""
-
-
-@dataclass(frozen=True)
-class MapPoint:
-    """Stability at one gain and filter place.
-
-    Attributes:
-        gain: of the leg loops [1/s].
-        place: what the leg filter filters.
-        payload: mass above the force sensor [kg].
-        limit: lowest stable mass [kg]: the range's end if all of it is stable or none is.
-        bounded: whether the limit lies within the range.
-        frequency: of the oscillation at the limit [Hz].
-        one_axis: limit of the one-axis model [kg].
-        base_growth: growth rate with the scenario's own base [1/s].
-        base_frequency: frequency of that oscillation [Hz].
-        runs: growth measured in runs beside the limit.
-    """
-
-    gain: float
-    place: str
-    payload: float
-    limit: float
-    bounded: bool
-    frequency: float
-    one_axis: float
-    base_growth: float
-    base_frequency: float
-    runs: tuple[Confirmation, ...] = ()
-
-    @property
-    def share(self) -> float:
-        """Limit over payload."""
-        return self.limit / self.payload
 
 
 class StabilityMap(Procedure):

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numpy as np
 
 from ves_twin.control.arm_servo import servo_torque, spline
@@ -33,11 +35,39 @@ from ves_twin.simulator.codes import (
 from ves_twin.simulator.engine import NO_CALL, call_engine
 
 
+class Views(NamedTuple):
+    """Live views of mjData; `slides` and `speeds` hold the rods' travel and speed, see `Layout`."""
+
+    qpos: FloatArray
+    qvel: FloatArray
+    slides: FloatArray
+    speeds: FloatArray
+    ctrl: FloatArray
+    sensordata: FloatArray
+
+
+class Stepper(NamedTuple):
+    """Addresses of what advances the physics: `then` is called after `step`, unless NO_CALL."""
+
+    step: int
+    then: int
+    model: int
+    data: int
+
+
+class Memory(NamedTuple):
+    """PARAMETERS and STATE (1,), the signals of this instant (1,), and the same as numbers."""
+
+    parameters: Block
+    state: Block
+    board: Block
+    row: FloatArray
+
+
 @compiled
 def _drive_arm(
-    p: Record, s: Record, board: Record, tick: int, qpos: FloatArray, qvel: FloatArray,
-    ctrl: FloatArray, slow: SingleArray,
-) -> None:  # fmt: skip
+    p: Record, s: Record, board: Record, tick: int, views: Views, slow: SingleArray
+) -> None:
     work = s.work
     u = (tick - s.cycle_start) / p.clock.admittance
     spline(s.servo.points, u, p.servo.cycle, work.q_set, work.rate_set)
@@ -47,18 +77,18 @@ def _drive_arm(
         take_late(p.late.setpoint, s.late.angle_past, work.q_set, work.q_set)
         take_late(p.late.setpoint, s.late.rate_past, work.rate_set, work.rate_set)
     for j in range(3):
-        work.q[j] = qpos[p.layout.arm_qpos[j]] + p.drive.encoder_offset[j]
-        work.rate[j] = qvel[p.layout.arm_dof[j]]
+        work.q[j] = views.qpos[p.layout.arm_qpos[j]] + p.drive.encoder_offset[j]
+        work.rate[j] = views.qvel[p.layout.arm_dof[j]]
         work.added[j] = s.servo.integral[j] + s.servo.feedforward[j]
     servo_torque(p.servo, work.added, work.q_set, work.rate_set, work.q, work.rate, work.torque)
     for j in range(3):
         error = work.q_set[j] - work.q[j]
         s.servo.integral[j] += p.servo.integral[j] * error * p.clock.tick
-        ctrl[p.layout.arm_ctrl[j]] = work.torque[j] * p.drive.torque_gain[j]
+        views.ctrl[p.layout.arm_ctrl[j]] = work.torque[j] * p.drive.torque_gain[j]
         count = p.noise.encoder_count[j]
         board.arm_q[j] = np.rint(work.q[j] / count) * count if count > 0.0 else work.q[j]
         board.arm_torque[j] = work.torque[j] + p.noise.torque[j] * slow[TORQUE + j]
-        board.truth_arm_q[j] = qpos[p.layout.arm_qpos[j]]
+        board.truth_arm_q[j] = views.qpos[p.layout.arm_qpos[j]]
 
 
 @compiled
@@ -76,13 +106,11 @@ def _read_truth(p: Record, s: Record, board: Record, qpos: FloatArray) -> None:
 
 
 @compiled
-def _push_legs(
-    p: Record, s: Record, slides: FloatArray, speeds: FloatArray, ctrl: FloatArray, step: float
-) -> None:
+def _push_legs(p: Record, s: Record, views: Views, step: float) -> None:
     work = s.work
     for i in range(6):
-        work.slide[i] = slides[p.layout.slide_at[i]] - p.layout.slide_home[i]
-        work.speed[i] = speeds[p.layout.speed_at[i]]
+        work.slide[i] = views.slides[p.layout.slide_at[i]] - p.layout.slide_home[i]
+        work.speed[i] = views.speeds[p.layout.speed_at[i]]
     move_spool(p.valve, s.valve, s.current, step)
     spool, force = s.valve.mean, s.rod_force
     if p.hydraulics == PRESSURE_FORM:
@@ -93,22 +121,22 @@ def _push_legs(
     else:
         push_rods(p.cylinder, s.cylinder, force, spool, work.slide, work.speed, step)
     for i in range(6):
-        ctrl[p.layout.leg_ctrl[i]] = force[i]
+        views.ctrl[p.layout.leg_ctrl[i]] = force[i]
 
 
 @compiled
 def _read_and_command(
-    p: Record, s: Record, board: Record, tick: int, qpos: FloatArray, qvel: FloatArray,
-    slides: FloatArray, ctrl: FloatArray, fast: SingleArray, slow: SingleArray,
+    p: Record, s: Record, board: Record, tick: int, views: Views, fast: SingleArray,
+    slow: SingleArray,
 ) -> None:  # fmt: skip
     """Transducers, gauge, arm servo, and the leg loop and amplifiers when their clocks strike."""
     for i in range(6):
-        s.work.slide[i] = slides[p.layout.slide_at[i]] - p.layout.slide_home[i]
+        s.work.slide[i] = views.slides[p.layout.slide_at[i]] - p.layout.slide_home[i]
     if p.late.slide.kept > 0:
         take_late(p.late.slide, s.late.slide_past, s.work.slide, s.work.slide)
     read_lengths(p.transducer, s.work.slide, fast[LENGTH:], board.leg_length)
     board.supply_pressure[0] = s.supply.manifold + p.noise.pressure * slow[PRESSURE]
-    _drive_arm(p, s, board, tick, qpos, qvel, ctrl, slow)
+    _drive_arm(p, s, board, tick, views, slow)
     if tick % p.clock.leg == 0:
         control_legs(p.legs, s.legs, board.leg_length, board.valve_command)
     output = s.late.sent if p.late.current.kept > 0 else s.current
@@ -121,27 +149,25 @@ def _read_and_command(
 
 @compiled
 def _move_rig(
-    p: Record, s: Record, time: float, mj_step: int, mj_next: int, model: int, data: int,
-    slides: FloatArray, speeds: FloatArray, ctrl: FloatArray, sensordata: FloatArray,
-    fast: SingleArray,
-) -> bool:  # fmt: skip
+    p: Record, s: Record, time: float, stepper: Stepper, views: Views, fast: SingleArray
+) -> bool:
     """The physics of one tick, and the force sensor's sample of its start."""
     inside = True
     step = p.clock.tick / p.clock.substeps
     for k in range(p.clock.substeps):
-        _push_legs(p, s, slides, speeds, ctrl, step)
-        call_engine(mj_step, model, data)
-        if mj_next != NO_CALL:
-            call_engine(mj_next, model, data)
+        _push_legs(p, s, views, step)
+        call_engine(stepper.step, stepper.model, stepper.data)
+        if stepper.then != NO_CALL:
+            call_engine(stepper.then, stepper.model, stepper.data)
         if k == 0:  # later sub-steps carry the forces of later instants
             for i in range(6):
-                s.work.wrench[i] = -sensordata[p.layout.wrench_sensor + i]
+                s.work.wrench[i] = -views.sensordata[p.layout.wrench_sensor + i]
             if p.late.wrench.kept > 0:
                 take_late(p.late.wrench, s.late.wrench_past, s.work.wrench, s.work.wrench)
             inside = sample_wrench(p.sensor, s.sensor, s.work.wrench, time, fast[WHITE:])
             if p.late.wrench.kept > 0:
                 for i in range(6):
-                    s.sensor.true[i] = -sensordata[p.layout.wrench_sensor + i]
+                    s.sensor.true[i] = -views.sensordata[p.layout.wrench_sensor + i]
     return inside
 
 
@@ -161,27 +187,9 @@ def _verdict(p: Record, qpos: FloatArray, slides: FloatArray, inside: bool) -> i
 
 @compiled
 def run_ticks(
-    start: int,
-    count: int,
-    mj_step: int,
-    mj_next: int,
-    model: int,
-    data: int,
-    qpos: FloatArray,
-    qvel: FloatArray,
-    slides: FloatArray,
-    speeds: FloatArray,
-    ctrl: FloatArray,
-    sensordata: FloatArray,
-    parameters: Block,
-    state: Block,
-    board: Block,
-    row: FloatArray,
-    fast_normal: SingleArray,
-    slow_normal: SingleArray,
-    log: FloatArray,
-    logged: int,
-) -> tuple[int, int, int]:
+    start: int, count: int, stepper: Stepper, views: Views, memory: Memory,
+    fast_normal: SingleArray, slow_normal: SingleArray, log: FloatArray, logged: int,
+) -> tuple[int, int, int]:  # fmt: skip
     """Run ticks: transducer, arm servo, leg loop, amplifier, log, hydraulics and mechanics, sensor.
 
     At tick k every reading is of the state at t_k; the force sensor's sample of t_k is ready at
@@ -190,20 +198,9 @@ def run_ticks(
     Args:
         start: first tick, negative while settling; nothing is logged before 0.
         count: how many ticks, not beyond the next admittance cycle.
-        mj_step: address of the function that advances the physics by a step.
-        mj_next: address of one that is called after it, or NO_CALL.
-        model: address of mjModel.
-        data: address of mjData.
-        qpos: live view of mjData.
-        qvel: live view of mjData.
-        slides: live view of mjData that holds the rods' travel, see `Layout`.
-        speeds: the same for the rods' speed.
-        ctrl: live view of mjData.
-        sensordata: live view of mjData.
-        parameters: PARAMETERS (1,).
-        state: STATE (1,).
-        board: signals of this instant (1,).
-        row: the same as plain numbers.
+        stepper: of the physics.
+        views: of its data.
+        memory: the numbers of the loop.
         fast_normal: standard normal numbers of these ticks (count, FAST_CHANNELS).
         slow_normal: a number per SLOW ticks, from that of `start` on (n, SLOW_CHANNELS).
         log: buffer of rows (capacity, width).
@@ -212,25 +209,23 @@ def run_ticks(
     Returns:
         Code of the outcome, ticks done, rows in the buffer.
     """
-    p, s, b = parameters[0], state[0], board[0]
+    p, s, b = memory.parameters[0], memory.state[0], memory.board[0]
     for n in range(count):
         tick = start + n
         time = tick * p.clock.tick
         fast, slow = fast_normal[n], slow_normal[(start % SLOW + n) // SLOW]
         if tick % SLOW == 0:
             wander_on(p.sensor, s.sensor, slow[WANDER:])
-        _read_and_command(p, s, b, tick, qpos, qvel, slides, ctrl, fast, slow)
+        _read_and_command(p, s, b, tick, views, fast, slow)
         if tick >= 0 and tick % p.clock.log == 0:
-            _read_truth(p, s, b, qpos)
+            _read_truth(p, s, b, views.qpos)
             log[logged, 0] = time
-            log[logged, 1:] = row
+            log[logged, 1:] = memory.row
             logged += 1
-        inside = _move_rig(
-            p, s, time, mj_step, mj_next, model, data, slides, speeds, ctrl, sensordata, fast
-        )  # fmt: skip
+        inside = _move_rig(p, s, time, stepper, views, fast)
         for i in range(6):
             b.sensor_wrench[i] = s.sensor.reading[i]
-        code = _verdict(p, qpos, slides, inside)
+        code = _verdict(p, views.qpos, views.slides, inside)
         if code != RUNNING:
             return code, n + 1, logged
     return RUNNING, count, logged

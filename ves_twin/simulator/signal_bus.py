@@ -1,4 +1,4 @@
-"""Board: every signal of the rig at this instant; a row of a recording is a copy of it."""
+"""SignalBus: every signal of the rig at this instant; a row of a recording is a copy of it."""
 
 from __future__ import annotations
 

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-FOLDERS = (os.environ.get("VES_TWIN_DATA"), Path(__file__).parents[2] / ".." / "shared" / "data")
+FOLDERS = (os.environ.get("VES_TWIN_DATA"), Path(__file__).parents[3] / ".." / "shared" / "data")
 
 
 @pytest.fixture(scope="session")

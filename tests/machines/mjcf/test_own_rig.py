@@ -16,7 +16,7 @@ from ves_twin.data.import_map import ImportMap
 from ves_twin.machines.mjcf.machine import Rig
 from ves_twin.machines.mjcf.read import read_recording
 
-PAGE = Path(__file__).parents[2] / "docs" / "bring-your-own-rig.md"
+PAGE = Path(__file__).parents[3] / "docs" / "bring-your-own-rig.md"
 
 
 def blocks(kind: str) -> list[str]:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from rows import EXPECTED, ROWS, row_record
+from sizes import nightly_but
 
 from ves_twin.diagnosis.detectability import detectability
 from ves_twin.diagnosis.diagnose import diagnose
@@ -82,34 +83,39 @@ def test_delay_bias_and_gain_are_edits_of_the_loop():
 
 
 @pytest.mark.slow
-def test_five_causes_are_named_and_nothing_in_the_null(settings):
-    for name, (hidden, _) in ROWS.items():
-        v = diagnose(PLANT, [row_record(hidden)], settings=settings)
-        if EXPECTED[name] is None:
-            assert v.verdict is Kind.NOTHING
-            continue
-        assert v.verdict is Kind.NAMED, f"{name}: {v.words}"
-        assert v.causes[0].effect == EXPECTED[name]
-        (parameter, size), p = next(iter(hidden.items())), v.causes[0].parameters
-        sd = (p[parameter].high - p[parameter].low) / 2 / 1.645
-        assert abs(p[parameter].value - size) < 3 * sd
+@pytest.mark.parametrize("name", nightly_but(2, list(ROWS)))
+def test_five_causes_are_named_and_nothing_in_the_null(name, settings):
+    hidden, _ = ROWS[name]
+    v = diagnose(PLANT, [row_record(hidden)], settings=settings)
+    if EXPECTED[name] is None:
+        assert v.verdict is Kind.NOTHING
+        return
+    assert v.verdict is Kind.NAMED, v.words
+    assert v.causes[0].effect == EXPECTED[name]
+    (parameter, size), p = next(iter(hidden.items())), v.causes[0].parameters
+    sd = (p[parameter].high - p[parameter].low) / 2 / 1.645
+    assert abs(p[parameter].value - size) < 3 * sd
 
 
 @pytest.mark.slow
-def test_rigs_in_order_are_left_in_peace(settings):
-    said = [diagnose(PLANT, [blind_record(s)], settings=settings) for s in range(12)]
-    assert sum(v.verdict is not Kind.NOTHING for v in said) <= 1
+def test_rigs_in_order_are_left_in_peace(settings, cases):
+    count = cases(12)
+    said = [diagnose(PLANT, [blind_record(s)], settings=settings) for s in range(count)]
+    assert sum(v.verdict is not Kind.NOTHING for v in said) <= count // 12
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize(
     ("effect", "hidden"),
-    [
-        ("coulomb_friction", {"joint.friction": 0.004}),
-        ("joint_stiffness", {"joint.stiffness": 0.02}),
-        ("delay", {"sensor.delay": 0.0024}),
-        ("encoder_offset", {"encoder.bias": -0.013}),
-    ],
+    nightly_but(
+        1,
+        [
+            ("encoder_offset", {"encoder.bias": -0.013}),
+            ("coulomb_friction", {"joint.friction": 0.004}),
+            ("joint_stiffness", {"joint.stiffness": 0.02}),
+            ("delay", {"sensor.delay": 0.0024}),
+        ],
+    ),
 )
 def test_a_cause_of_ten_sigma_is_named_and_with_it_left_out_nobody_is(effect, hidden, settings):
     runs = Runs(PLANT, (FED,), (0, 1))
@@ -125,10 +131,12 @@ def test_a_cause_of_ten_sigma_is_named_and_with_it_left_out_nobody_is(effect, hi
 
 
 @pytest.mark.slow
-def test_effects_outside_the_library_are_unknown(settings):
-    for kind, size in (("quadratic_drag", 0.02), ("late_drift", 0.05)):
-        data = blind_record(5, outside=kind, size=size)
-        assert diagnose(PLANT, [data], settings=settings).verdict is Kind.UNKNOWN
+@pytest.mark.parametrize(
+    ("kind", "size"), nightly_but(1, [("quadratic_drag", 0.02), ("late_drift", 0.05)])
+)
+def test_effects_outside_the_library_are_unknown(kind, size, settings):
+    data = blind_record(5, outside=kind, size=size)
+    assert diagnose(PLANT, [data], settings=settings).verdict is Kind.UNKNOWN
 
 
 @pytest.mark.slow

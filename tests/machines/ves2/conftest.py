@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from once import once
 
 import ves_twin as vt
 from ves_twin.effects.registry import build_effect
@@ -22,7 +23,7 @@ def scenario() -> vt.Scenario:
 
 @pytest.fixture(scope="session")
 def healthy(scenario) -> vt.Recording:
-    return vt.simulate(scenario, seed=3)
+    return once(vt.simulate, scenario, seed=3)
 
 
 @pytest.fixture(scope="session")
@@ -31,7 +32,8 @@ def faulty(scenario):
 
     def run(kind: str, target: str, seed: int = 4, **sizes: float) -> vt.Recording:
         effect = build_effect(kind, target, sizes)
-        return vt.simulate(scenario, vt.Plant.load("ves2_pressure").extended(effect), seed)
+        plant = vt.Plant.load("ves2_pressure").extended(effect)
+        return once(vt.simulate, scenario, plant, seed)
 
     return run
 

@@ -16,12 +16,7 @@ INVERSION = 1e-10
 STEP = 1e-5
 
 ARM = Puma560(d0=D0, d1=D1, d2=D2, d3=D3, a2=A2, a3=A3)
-ANGLES = np.random.default_rng(3).uniform(-np.pi, np.pi, (200, 3))
-
-
-@pytest.fixture(params=range(0, 200, 8))
-def q(request) -> np.ndarray:
-    return ANGLES[request.param]
+ANGLES = np.random.default_rng(3).uniform(-np.pi, np.pi, (200, 3))[::8]
 
 
 def closed_form_origins(q):
@@ -34,28 +29,31 @@ def closed_form_origins(q):
     return np.array([o1, o2, o3])
 
 
-def test_frame_origins_follow_the_closed_forms(q):
-    np.testing.assert_allclose(
-        ARM.transforms(q)[:, :3, 3], closed_form_origins(q), rtol=0, atol=ROUND_OFF
-    )
-
-
-def test_frame_axes_follow_the_closed_forms(q):
-    """All z are (s1, -c1, 0); x points along each link."""
-    frames, origins = ARM.transforms(q), closed_form_origins(q)
-    z = [np.sin(q[0]), -np.cos(q[0]), 0.0]
-    for frame in frames:
-        np.testing.assert_allclose(frame[:3, 2], z, rtol=0, atol=ROUND_OFF)
+def test_frame_origins_follow_the_closed_forms():
+    for q in ANGLES:
         np.testing.assert_allclose(
-            frame[:3, :3] @ frame[:3, :3].T, np.eye(3), rtol=0, atol=ROUND_OFF
+            ARM.transforms(q)[:, :3, 3], closed_form_origins(q), rtol=0, atol=ROUND_OFF
         )
-    for i, (length, d) in enumerate(((A2, D2), (A3, D3)), start=1):
-        along = (origins[i] - origins[i - 1] - d * np.array(z)) / length
-        np.testing.assert_allclose(frames[i, :3, 0], along, rtol=0, atol=ROUND_OFF)
 
 
-def test_homogeneous_rows_end_in_zero_zero_zero_one(q):
-    np.testing.assert_array_equal(ARM.transforms(q)[:, 3], [[0.0, 0.0, 0.0, 1.0]] * 3)
+def test_frame_axes_follow_the_closed_forms():
+    """All z are (s1, -c1, 0); x points along each link."""
+    for q in ANGLES:
+        frames, origins = ARM.transforms(q), closed_form_origins(q)
+        z = [np.sin(q[0]), -np.cos(q[0]), 0.0]
+        for frame in frames:
+            np.testing.assert_allclose(frame[:3, 2], z, rtol=0, atol=ROUND_OFF)
+            np.testing.assert_allclose(
+                frame[:3, :3] @ frame[:3, :3].T, np.eye(3), rtol=0, atol=ROUND_OFF
+            )
+        for i, (length, d) in enumerate(((A2, D2), (A3, D3)), start=1):
+            along = (origins[i] - origins[i - 1] - d * np.array(z)) / length
+            np.testing.assert_allclose(frames[i, :3, 0], along, rtol=0, atol=ROUND_OFF)
+
+
+def test_homogeneous_rows_end_in_zero_zero_zero_one():
+    for q in ANGLES:
+        np.testing.assert_array_equal(ARM.transforms(q)[:, 3], [[0.0, 0.0, 0.0, 1.0]] * 3)
 
 
 def test_ready_position_points_straight_up():
@@ -65,44 +63,48 @@ def test_ready_position_points_straight_up():
 
 
 @pytest.mark.parametrize("link", [1, 2, 3])
-def test_the_jacobian_is_the_derivative_of_a_point_on_a_link(q, link):
-    local = np.array([0.1, -0.2, 0.3, 1.0])
-    point = (ARM.transforms(q)[link - 1] @ local)[:3]
-    numeric = np.zeros((6, 3))
-    for k, d in enumerate(STEP * np.eye(3)):
-        rate = (ARM.transforms(q + d) - ARM.transforms(q - d))[link - 1] / (2 * STEP)
-        spin = rate[:3, :3] @ ARM.transforms(q)[link - 1, :3, :3].T
-        numeric[:3, k] = (rate @ local)[:3]
-        numeric[3:, k] = spin[2, 1], spin[0, 2], spin[1, 0]
-    np.testing.assert_allclose(ARM.jacobian(q, point, link), numeric, rtol=0, atol=DIFFERENCE)
+def test_the_jacobian_is_the_derivative_of_a_point_on_a_link(link):
+    for q in ANGLES:
+        local = np.array([0.1, -0.2, 0.3, 1.0])
+        point = (ARM.transforms(q)[link - 1] @ local)[:3]
+        numeric = np.zeros((6, 3))
+        for k, d in enumerate(STEP * np.eye(3)):
+            rate = (ARM.transforms(q + d) - ARM.transforms(q - d))[link - 1] / (2 * STEP)
+            spin = rate[:3, :3] @ ARM.transforms(q)[link - 1, :3, :3].T
+            numeric[:3, k] = (rate @ local)[:3]
+            numeric[3:, k] = spin[2, 1], spin[0, 2], spin[1, 0]
+        np.testing.assert_allclose(ARM.jacobian(q, point, link), numeric, rtol=0, atol=DIFFERENCE)
 
 
-def test_the_axes_are_lines_that_stay_where_they_are_when_the_joint_turns(q):
-    points, directions = ARM.axes(q)
-    for i in range(3):
-        moved = ARM.axes(q + 0.7 * np.eye(3)[i])
-        np.testing.assert_allclose(moved[0][i], points[i], rtol=0, atol=ROUND_OFF)
-        np.testing.assert_allclose(moved[1][i], directions[i], rtol=0, atol=ROUND_OFF)
-        np.testing.assert_allclose(np.linalg.norm(directions[i]), 1.0, rtol=0, atol=ROUND_OFF)
+def test_the_axes_are_lines_that_stay_where_they_are_when_the_joint_turns():
+    for q in ANGLES:
+        points, directions = ARM.axes(q)
+        for i in range(3):
+            moved = ARM.axes(q + 0.7 * np.eye(3)[i])
+            np.testing.assert_allclose(moved[0][i], points[i], rtol=0, atol=ROUND_OFF)
+            np.testing.assert_allclose(moved[1][i], directions[i], rtol=0, atol=ROUND_OFF)
+            np.testing.assert_allclose(np.linalg.norm(directions[i]), 1.0, rtol=0, atol=ROUND_OFF)
 
 
 @pytest.mark.parametrize("elbow", [-1, 1])
 @pytest.mark.parametrize("shoulder", [-1, 1])
-def test_every_branch_of_the_inverse_brings_the_tip_to_the_point(q, elbow, shoulder):
-    tip = ARM.tip(q)
-    found = ARM.inverse(tip, elbow, shoulder)
-    np.testing.assert_allclose(ARM.tip(found), tip, rtol=0, atol=INVERSION)
-    assert np.sign(found[2]) == elbow
-    forward = np.cos(found[0]) * tip[0] + np.sin(found[0]) * tip[1]
-    assert np.sign(forward) == shoulder
+def test_every_branch_of_the_inverse_brings_the_tip_to_the_point(elbow, shoulder):
+    for q in ANGLES:
+        tip = ARM.tip(q)
+        found = ARM.inverse(tip, elbow, shoulder)
+        np.testing.assert_allclose(ARM.tip(found), tip, rtol=0, atol=INVERSION)
+        assert np.sign(found[2]) == elbow
+        forward = np.cos(found[0]) * tip[0] + np.sin(found[0]) * tip[1]
+        assert np.sign(forward) == shoulder
 
 
-def test_one_branch_of_the_inverse_is_the_configuration_that_made_the_point(q):
-    candidates = [
-        ARM.inverse(ARM.tip(q), elbow, shoulder) for elbow in (-1, 1) for shoulder in (-1, 1)
-    ]
-    apart = [np.max(np.abs(np.exp(1j * c) - np.exp(1j * q))) for c in candidates]
-    assert min(apart) < 1e-6  # arccos near a stretched arm: square root of round-off
+def test_one_branch_of_the_inverse_is_the_configuration_that_made_the_point():
+    for q in ANGLES:
+        candidates = [
+            ARM.inverse(ARM.tip(q), elbow, shoulder) for elbow in (-1, 1) for shoulder in (-1, 1)
+        ]
+        apart = [np.max(np.abs(np.exp(1j * c) - np.exp(1j * q))) for c in candidates]
+        assert min(apart) < 1e-6  # arccos near a stretched arm: square root of round-off
 
 
 @pytest.mark.parametrize(

@@ -4,13 +4,20 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass, field, fields
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from ves_twin.core.errors import InvalidInputError, UnknownNameError
 from ves_twin.core.signals import SIGNALS, Role, Signal
 from ves_twin.core.types import FloatArray
+
+if TYPE_CHECKING:
+    import pandas as pd
+    from matplotlib.figure import Figure
+
+LISTED = 6
+"""Signals that `repr` lists before it counts the rest: it stays within ten lines."""
 
 POSES = "poses"
 """Clock of a recording whose rows are poses at rest: time is only their order."""
@@ -153,3 +160,31 @@ class Recording:
         return Recording(
             self.time[rows], {name: v[rows] for name, v in self.signals.items()}, self.info
         )
+
+    def __repr__(self) -> str:
+        """What it is, how long, and its first signals with their units; at most ten lines."""
+        info = self.info
+        what = " ".join(filter(None, (info.origin, info.scenario or info.plant)))
+        span = f"{self.time[0]:g} to {self.time[-1]:g} s" if len(self) else "empty"
+        lines = [f"Recording: {what}, {len(self)} rows, {span}, {info.outcome}"]
+        for name in list(self.signals)[:LISTED]:
+            signal = info.signal(name)
+            units = ", ".join(dict.fromkeys(signal.units))
+            lines.append(f"  {name:<18} {signal.width} x [{units}]  {signal.meaning}")
+        left = list(self.signals)[LISTED:]
+        if left:
+            few = ", ".join(left[:4]) + (" ..." if len(left) > 4 else "")
+            lines.append(f"  and {len(left)} more: {few}")
+        return "\n".join(lines)
+
+    def to_pandas(self) -> pd.DataFrame:
+        """The rows as a DataFrame indexed by time [s]; see `core.recording.data_frame`."""
+        from ves_twin.core.recording.data_frame import data_frame
+
+        return data_frame(self)
+
+    def plot(self, *names: str) -> Figure:
+        """Signals against time as a matplotlib figure; the first three if none is named."""
+        from ves_twin.core.recording.plot import plot
+
+        return plot(self, names or list(self.signals)[:3])

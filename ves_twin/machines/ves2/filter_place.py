@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import hashlib
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -11,7 +10,8 @@ import numpy as np
 
 from ves_twin.control.leg_loop import FilterPlace
 from ves_twin.core.types import FloatArray
-from ves_twin.diagnosis.forward import Channel, Excitation, Hypothesis, Parameter
+from ves_twin.diagnosis.forward import Excitation, Hypothesis, Parameter
+from ves_twin.diagnosis.forward_wrapper import ForwardWrapper
 from ves_twin.machines.ves2.forward import RigForward
 
 EFFECT = "filter_place"
@@ -21,7 +21,7 @@ SOURCE = "thesis 5.3, 5.4: the section was on the error first, then on the measu
 
 
 @dataclass(frozen=True)
-class WithFilterPlaces:
+class WithFilterPlaces(ForwardWrapper):
     """A filter at another place has no size of its own, so it gets one: f0 + s (f1 - f0).
 
     f0 is the rig with the filter where the scenario has it, f1 with the filter at another place. A
@@ -36,24 +36,13 @@ class WithFilterPlaces:
     @cached_property
     def identity(self) -> str:
         """That of the rig, and the places."""
-        told = f"{self.forward.identity} {sorted(self.places)}"
-        return hashlib.sha256(told.encode()).hexdigest()[:16]
+        return self.identified(f"{sorted(self.places)}")
 
     @property
     def places(self) -> tuple[FilterPlace, ...]:
         """Where else the filter could be."""
         here = self.forward.scenario.legs.filter
         return tuple(place for place in FilterPlace if place is not here)
-
-    @property
-    def drive(self) -> tuple[str, ...]:
-        """That of the rig."""
-        return self.forward.drive
-
-    @property
-    def channels(self) -> tuple[Channel, ...]:
-        """Those of the rig."""
-        return self.forward.channels
 
     @cached_property
     def parameters(self) -> tuple[Parameter, ...]:

@@ -1,4 +1,4 @@
-"""SharedOut: as Gymnasium's own vectors, and as single environments, to the last bit."""
+"""ChunkedVectorEnv: as Gymnasium's own vectors, and as single environments, to the last bit."""
 
 import gymnasium as gym
 import numpy as np
