@@ -9,11 +9,11 @@ from typing import ClassVar, final
 import numpy as np
 import pytest
 from two_link import TIME, programme, rig, write_files
-from ves_twin.machines.mjcf.tell import tell
 
 from ves_twin.core.recording.recording import Recording, RecordingInfo
 from ves_twin.diagnosis.forward import Excitation
 from ves_twin.machines.mjcf import inverse
+from ves_twin.machines.mjcf.applied import applied
 from ves_twin.machines.mjcf.description import Mode
 from ves_twin.machines.mjcf.effect import RigEffect, play
 from ves_twin.machines.mjcf.element import Element
@@ -185,7 +185,7 @@ def test_a_measured_start_is_the_first_row_also_of_a_signal_that_reads_the_other
     fed = {**programme().drive, "cart.position": (0.3 + 0.2 * TIME)[:, None]}
     if state == "estimated":
         moved = Recording(TIME, fed, RecordingInfo("measured", scenario="a"))
-        machine = tell({"a": moved}, RigExperiment(start={"state": state}), machine).rig
+        _, machine, _ = applied("a", moved, RigExperiment(start={"state": state}), machine)
     forward = MjcfForward.of(machine)
     rows = forward.simulate(Excitation("backwards", TIME, fed), {})
     x = rows[:, [c.name for c in forward.channels].index("cart.position")]

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import csv
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from io import StringIO
 from pathlib import Path
@@ -33,14 +33,17 @@ ROWS = 5.0
 """Rows for each of the analysis grid, where no recording gives a clock."""
 
 BANDS: Mapping[str, tuple[float, float]] = {
-    "slow multisine": (0.3, 1.0),
     "multisine": (1.0, 3.0),
+    "slow multisine": (0.3, 1.0),
     "quick multisine": (3.0, 10.0),
 }
 """Name -> band, in units of the frequency at which typical travel needs typical speed."""
 
 HIGHEST = 0.4
 """No tone is above this share of the analysis rate."""
+
+BORNE = 1.5
+"""Times typical speed and travel that a joint may reach: what is typical is not the most."""
 
 HALVINGS = 6
 """Times that an effort is halved until its motion keeps within travel and speed."""
@@ -68,8 +71,8 @@ def offered(
 ) -> tuple[Excitation, ...]:
     """Multisines of every band, at all inputs and at each alone, that the nominal machine bears.
 
-    Set-points and motions keep half the typical travel and the typical speed. Efforts keep the
-    typical effort, and are halved until every joint stays within its travel and speed.
+    Set-points and motions keep half the typical travel and the typical speed, efforts the typical
+    effort; they are halved until every joint stays within BORNE of its travel and speed.
 
     Args:
         forward: in the mode in which it is fed.
@@ -126,25 +129,30 @@ def _inputs(forward: MjcfForward, like: Recording | None) -> list[_Input]:
     }[forward.mode]
     found = []
     for signal, joint in places:
-        span = told.typical.joint.get(joint, Span())
-        place, speed = joint_units(model, joint)
-        force = "N*m" if place == "rad" else "N"
-        at = f"typical.joint.{joint}"
-        effort = to_si(span.effort, force, f"{at}.effort")
-        fastest, travel = to_si(span.speed, speed, at), to_si(span.travel, place, at)
+        effort, speed, travel = _sizes(forward, joint)
+        needed = (effort, speed, travel) if forward.mode is Mode.CONTROL else (speed, travel)
         watched = forward.mode is Mode.MOTION or forward.position_of(joint) in forward.compared
-        if (
-            min(effort, fastest, travel) <= 0.0
-            or not watched
-            or len(told.signals[signal].columns) != 1
-        ):
+        if min(needed) <= 0.0 or not watched or len(told.signals[signal].columns) != 1:
             return []
         first = float(model.qpos0[model.jnt_qposadr[model.joint(joint).id]])
         known = forward.position_of(joint)
         if like is not None and known in like.signals:
             first = float(like[known][0, 0])
-        found.append(_Input(signal, joint, effort, fastest, travel, first))
+        found.append(_Input(signal, joint, effort, speed, travel, first))
     return found
+
+
+def _sizes(forward: MjcfForward, joint: str) -> tuple[float, float, float]:
+    """Typical effort, speed and travel of a joint, SI; zero where the file says none."""
+    span = forward.rig.description.typical.joint.get(joint, Span())
+    place, speed = joint_units(forward.rig.model, joint)
+    units = ("N*m" if place == "rad" else "N", speed, place)
+    given = (span.effort, span.speed, span.travel)
+    pairs = zip(given, units, strict=True)
+    effort, fastest, travel = (
+        to_si(value, unit, f"typical.joint.{joint}") for value, unit in pairs
+    )
+    return effort, fastest, travel
 
 
 def _menu(
@@ -193,26 +201,34 @@ def _drive(
     return found
 
 
-def _borne(forward: MjcfForward, excitation: Excitation, inputs: list[_Input]) -> Excitation | None:
+def _borne(
+    forward: MjcfForward, excitation: Excitation, inputs: Sequence[_Input]
+) -> Excitation | None:
     """The excitation as large as the nominal machine bears it; None if it bears it at no size."""
     if forward.mode is Mode.MOTION:
         return excitation
-    names = [channel.name for channel in forward.channels]
-    drive = dict(excitation.drive)
+    drive, zero = dict(excitation.drive), forward.mode is Mode.CONTROL
     for _ in range(HALVINGS):
         made = Excitation(excitation.name, excitation.time, drive, rate=excitation.rate)
-        moved = forward.simulate(made, {})
-        paths = ((one, moved[:, names.index(forward.position_of(one.joint))]) for one in inputs)
-        if all(_within(one, path, excitation.time) for one, path in paths):
+        if _bears(forward, made):
             return made
-        if forward.mode is Mode.REFERENCE:
-            drive |= {o.signal: o.start + 0.5 * (drive[o.signal] - o.start) for o in inputs}
-        else:
-            drive |= {one.signal: 0.5 * drive[one.signal] for one in inputs}
+        for one in inputs:
+            rest = 0.0 if zero else one.start
+            drive[one.signal] = rest + 0.5 * (drive[one.signal] - rest)
     return None
 
 
-def _within(one: _Input, path: FloatArray, time: FloatArray) -> bool:
-    moved = np.abs(path - path[0])
-    speed = np.abs(np.gradient(path, time))
-    return bool(np.max(moved) <= one.travel and np.max(speed) <= one.speed)  # NaN: no
+def _bears(forward: MjcfForward, excitation: Excitation) -> bool:
+    """Whether every joint with typical sizes keeps them."""
+    names = [channel.name for channel in forward.channels]
+    moved = forward.simulate(excitation, {})
+    for joint in forward.rig.description.typical.joint:
+        known = forward.position_of(joint)
+        _, speed, travel = _sizes(forward, joint)
+        if known in names and speed > 0.0 and travel > 0.0:
+            path = moved[:, names.index(known)]
+            fastest = np.max(np.abs(np.gradient(path, excitation.time)))
+            widest = np.max(np.abs(path - path[0]))
+            if not (widest <= BORNE * travel and fastest <= BORNE * speed):  # NaN: no
+                return False
+    return bool(np.all(np.isfinite(moved)))
