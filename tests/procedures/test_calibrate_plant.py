@@ -7,12 +7,11 @@ import pytest
 
 import ves_twin as vt
 from ves_twin.core.errors import InvalidInputError, UnknownNameError, VesTwinError
-from ves_twin.effects.cylinder import CoulombFriction
+from ves_twin.effects import CoulombFriction
 from ves_twin.procedures.calibration_files import Fit, write_fit
 from ves_twin.procedures.feasible import Feasible
 from ves_twin.procedures.procedure import RunContext
 from ves_twin.procedures.registry import load_procedure
-from ves_twin.procedures.workers import carry_out_jobs
 
 SHORT = {
     "claims": [
@@ -97,12 +96,3 @@ def test_unknown_number_and_claim_are_answered_with_the_nearest(tmp_path):
     claims = [{"name": "mode_lowest", "scale": 1.0}]
     with pytest.raises(VesTwinError, match="neither low nor high"):
         load_procedure("calibrate_plant", SHORT | {"claims": claims})
-
-
-@pytest.mark.slow
-def test_jobs_come_back_in_order_and_failures_come_through():
-    shares: list[float] = []
-    assert carry_out_jobs(abs, [-3, 1, -2], 2, shares.append) == [3, 1, 2]
-    assert shares[-1] == 1.0
-    with pytest.raises(ValueError, match="invalid literal"):
-        carry_out_jobs(int, ["1", "x"], 2)

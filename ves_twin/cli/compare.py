@@ -37,16 +37,13 @@ def execute(arguments: argparse.Namespace) -> int:
     from ves_twin.cli.output_folder import output_folder
     from ves_twin.report.comparison.page import comparison_page
     from ves_twin.report.page import write_page
-    from ves_twin.simulator.simulate import make_folder
 
-    comparison = _compare(arguments)
-    folder = output_folder(arguments.out, "compare")
-    page = comparison_page(comparison)
-    text = json_text(comparison.to_dict())
-    make_folder(folder)
-    write_page(folder / JSON_NAME, text + "\n")
-    write_page(folder / PAGE_NAME, page)
-    print(text if arguments.json else _text(comparison, folder))
+    with output_folder(arguments.out, "compare") as held:
+        comparison = _compare(arguments)
+        text = json_text(comparison.to_dict())
+        write_page(held.path / JSON_NAME, text + "\n")
+        write_page(held.path / PAGE_NAME, comparison_page(comparison))
+    print(text if arguments.json else _text(comparison, held.path))
     return OUT_OF_TOLERANCE if comparison.in_tolerance is False else DONE
 
 

@@ -51,16 +51,15 @@ def execute(arguments: argparse.Namespace) -> int:
     from ves_twin.cli.output_folder import output_folder
     from ves_twin.cli.progress import RunProgress
     from ves_twin.machines.diagnose import diagnose_prepared
-    from ves_twin.simulator.simulate import make_folder
 
-    folder = output_folder(arguments.out, "diagnosis")
-    prepared = Given.of(arguments).prepared(arguments)
-    make_folder(folder)
-    with RunProgress("diagnose", 1.0, unit="share") as progress:
-        found = diagnose_prepared(prepared, arguments.exclude, bank_settings(), progress.share)
-    names = ", ".join(one.name for one in prepared.material.measured)
-    _write(found, folder, names)
-    print(found.verdict.to_json() if arguments.json else _text(found, folder))
+    with output_folder(arguments.out, "diagnosis") as held:
+        prepared = Given.of(arguments).prepared(arguments)
+        with RunProgress("diagnose", 1.0, unit="share") as progress:
+            found = diagnose_prepared(prepared, arguments.exclude, bank_settings(), progress.share)
+        names = dict.fromkeys(one.name for one in prepared.material.measured)
+        _write(found, held.path, ", ".join(names))
+        text = found.verdict.to_json() if arguments.json else _text(found, held.path)
+    print(text)
     return 0
 
 

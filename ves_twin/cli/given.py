@@ -92,10 +92,10 @@ def add_machine_options(parser: argparse.ArgumentParser, standstill: bool = True
 
 def bank_settings() -> Settings:
     """All cores, banks kept beside the compiled code."""
-    from ves_twin.core.compiled import cache_folder
+    from ves_twin.core.cache_folder import cache_folder
     from ves_twin.diagnosis.settings import Settings
 
-    return Settings(workers=os.cpu_count() or 1, cache=cache_folder().parent / "banks")
+    return Settings(workers=os.cpu_count() or 1, cache=cache_folder("diagnosis"))
 
 
 def _machine_name(arguments: argparse.Namespace) -> str:

@@ -58,29 +58,27 @@ def execute(arguments: argparse.Namespace) -> int:
     from ves_twin.machines.trend import trend_prepared
     from ves_twin.report.diagnosis.trend_page import trend_page
     from ves_twin.report.page import write_page
-    from ves_twin.simulator.simulate import make_folder
 
-    given = Given.of(arguments)
-    arguments.measured = recordings_in(arguments.measured)
-    prepared = given.prepared(arguments)
-    measured = prepared.material.measured
-    calendar = _calendar(measured, arguments.numbered)
-    folder = output_folder(arguments.out, "trend")
-    make_folder(folder)
-    with RunProgress("trend", 1.0, unit="share") as progress:
-        found = trend_prepared(
-            prepared,
-            calendar,
-            arguments.exclude,
-            arguments.cause,
-            arguments.false_alarm,
-            bank_settings(),
-            progress.share,
-        )
-    found.save(folder / JSON_NAME)
-    title = f"Trend of {len(measured)} recordings of {prepared.machine.name}"
-    write_page(folder / PAGE_NAME, trend_page(found, title))
-    print(found.to_json() if arguments.json else _text(found, folder))
+    with output_folder(arguments.out, "trend") as held:
+        given = Given.of(arguments)
+        arguments.measured = recordings_in(arguments.measured)
+        prepared = given.prepared(arguments)
+        measured = prepared.material.measured
+        calendar = _calendar(measured, arguments.numbered)
+        with RunProgress("trend", 1.0, unit="share") as progress:
+            found = trend_prepared(
+                prepared,
+                calendar,
+                arguments.exclude,
+                arguments.cause,
+                arguments.false_alarm,
+                bank_settings(),
+                progress.share,
+            )
+        found.save(held.path / JSON_NAME)
+        title = f"Trend of {len(measured)} recordings of {prepared.machine.name}"
+        write_page(held.path / PAGE_NAME, trend_page(found, title))
+    print(found.to_json() if arguments.json else _text(found, held.path))
     return 0
 
 

@@ -62,6 +62,19 @@ class Workers:
         with single_threads():
             yield from self._pool.map(function, jobs, chunksize=chunk)
 
+    def collect(
+        self,
+        function: Callable[[Job], Result],
+        jobs: Sequence[Job],
+        progress: Callable[[float], None] = lambda share: None,
+    ) -> list[Result]:
+        """All results in the order of the jobs; `progress` is called with the share done."""
+        results: list[Result] = []
+        for result in self.map(function, jobs):
+            results.append(result)
+            progress(len(results) / len(jobs))
+        return results
+
 
 @contextmanager
 def single_threads() -> Iterator[None]:

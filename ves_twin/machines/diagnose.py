@@ -119,7 +119,7 @@ def diagnose_prepared(
         standstill=material.standstill,
         baseline=[one.recording for one in material.baseline],
         next_programmes=menu,
-        exclude=exclude,
+        exclude=machine.causes(exclude),
         settings=settings_of(machine, settings, measured[0]),
         progress=progress,
     )

@@ -232,6 +232,10 @@ class Machine(ABC):
         """
         return settings
 
+    def causes(self, names: Sequence[str]) -> list[str]:
+        """Causes, each a kind or kind@target, by the kinds' names of today."""
+        return list(names)
+
     def refusal(self, verdict: Verdict) -> str:
         """Why the extension is only a candidate; empty where it passed."""
         return refusal(verdict)

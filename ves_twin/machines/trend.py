@@ -69,7 +69,7 @@ def trend_prepared(
         measured,
         calendar,
         standstill=prepared.material.standstill,
-        exclude=exclude,
+        exclude=machine.causes(exclude),
         cause=cause,
         false_alarm=false_alarm,
         settings=settings_of(machine, settings, measured[0]),

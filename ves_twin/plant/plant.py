@@ -14,7 +14,6 @@ from ves_twin.core.errors import InvalidInputError, UnknownNameError
 from ves_twin.core.resources import beside, find_resource, resource_folder
 from ves_twin.effects.effect import Effect
 from ves_twin.effects.registry import parse_effects
-from ves_twin.mechanics.gravity.chain import DhChain
 from ves_twin.mechanics.gravity.gravity_model import GravityModel
 from ves_twin.mechanics.kinematics.puma560 import Puma560
 from ves_twin.mechanics.kinematics.stewart import StewartGeometry
@@ -139,6 +138,8 @@ class Plant:
 
         An effect of zero size is left out, so that it is no effect to the last bit.
         """
+        for effect in effects:
+            effect.check()
         merged = {(e.kind, e.target): e for e in (*self.effects, *effects)}
         kept = tuple(merged[key] for key in sorted(merged) if not merged[key].neutral)
         return replace(self, effects=kept).with_fidelity(self.fidelity)
@@ -181,7 +182,7 @@ class Plant:
         """M_total and P of the arm's own masses."""
         array = self.parameters.array
         return GravityModel.of(
-            DhChain.of_puma560(self.arm),
+            self.arm.chain,
             array("arm.mass"),
             array("arm.com"),
             self.parameters.number("gravity"),

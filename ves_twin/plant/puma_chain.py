@@ -23,25 +23,14 @@ def puma_chain(plant: Plant, printed: bool = False) -> SerialChain:
 
     Source: thesis B.1, B.2, errata E-28, E-36.
     """
-    number, array = plant.parameters.number, plant.parameters.array
-    d0, d1, d2, d3 = (number(f"arm.d{i}") for i in range(4))
-    table = np.array(
-        [
-            [0.0, d1, 0.0, np.pi / 2],
-            [0.0, d2, number("arm.a2"), 0.0],
-            [0.0, d3, number("arm.a3"), 0.0],
-        ]
-    )
-    mount = np.eye(4)
-    mount[2, 3] = d0
+    array = plant.parameters.array
     inertia = PRINTED_INERTIA if printed else array("arm.inertia")
-    return SerialChain.from_dh(
-        table,
+    return SerialChain.of(
+        plant.arm.chain,
         array("arm.mass"),
         array("arm.com"),
         _diagonals(inertia),
         np.zeros(3) if printed else array("arm.armature"),
-        mount,
     )
 
 

@@ -10,12 +10,12 @@ from pydantic import Field, JsonValue, model_validator
 
 from ves_twin.core.errors import InvalidInputError, UnknownNameError, VesTwinError
 from ves_twin.core.types import FloatArray
+from ves_twin.core.workers import Workers
 from ves_twin.plant.plant import Plant
 from ves_twin.procedures.calibration_files import Fit, write_fit
 from ves_twin.procedures.claims import KNOWN_CLAIMS, Evaluation, Gains, measure_claims
 from ves_twin.procedures.feasible import Feasible
-from ves_twin.procedures.procedure import Account, Procedure, RunContext
-from ves_twin.procedures.workers import carry_out_jobs
+from ves_twin.procedures.procedure import Procedure, Result, RunContext
 from ves_twin.scenario.fields import Part, PerSecond, named
 from ves_twin.simulator.outcome import Outcome
 
@@ -87,7 +87,7 @@ class CalibratePlant(Procedure):
     verify: bool = True
     workers: Annotated[int, Field(ge=1, le=64)] = 2
 
-    def carry_out(self, conduct: RunContext) -> Account:
+    def carry_out(self, conduct: RunContext) -> Result:
         """Fit, say what pulls against what, and write the plant and its entries."""
         plant = conduct.plant or Plant.load(self.plant)
         for knob in self.knobs:
@@ -122,7 +122,7 @@ class CalibratePlant(Procedure):
         content: dict[str, JsonValue] = json.loads(
             (conduct.folder / "calibration.json").read_text(encoding="utf-8")
         )
-        return Account(Outcome.COMPLETED, content, tuple(lines))
+        return Result(Outcome.COMPLETED, content, tuple(lines))
 
     def claims_text(self) -> dict[str, str]:
         """Each claim's bounds as text."""
@@ -156,10 +156,12 @@ class CalibratePlant(Procedure):
         points = [at, *(at + self.difference * row for row in np.eye(len(at)))]
         jobs = [self._evaluation(plant, point) for point in points]
         share = 1.0 / (self.rounds + 1 + self.verify)
-        found = carry_out_jobs(
-            measure_claims, jobs, self.workers,
-            lambda done: conduct.progress(share * (rounds + done), f"round {rounds}"),
-        )  # fmt: skip
+        with Workers(self.workers) as workers:
+            found = workers.collect(
+                measure_claims,
+                jobs,
+                lambda done: conduct.progress(share * (rounds + done), f"round {rounds}"),
+            )
         rows = [self._margins(values) for values in found]
         margins = np.array([list(row.values()) for row in rows])
         jacobian = (margins[1:] - margins[0]).T / self.difference
@@ -175,16 +177,18 @@ class CalibratePlant(Procedure):
             at + ends[i, side] * row for i, row in enumerate(np.eye(len(at))) for side in (0, 1)
         ]
         jobs = [self._evaluation(plant, point) for point in points]
-        found = carry_out_jobs(
-            measure_claims, jobs, self.workers, lambda share: conduct.progress(0.9, "ends")
-        )
+        with Workers(self.workers) as workers:
+            found = workers.collect(
+                measure_claims, jobs, lambda share: conduct.progress(0.9, "ends")
+            )
         worst = [min(self._margins(values).values()) for values in found]
         return {k.name: worst[2 * i : 2 * i + 2] for i, k in enumerate(self.knobs)}
 
     def _worst(self, plant: Plant, points: list[FloatArray]) -> list[float]:
         """Worst margin at each point; minus infinity for a plant that cannot stand."""
         jobs = [self._evaluation(plant, point) for point in points]
-        found = carry_out_jobs(_measure_or_nothing, jobs, self.workers)
+        with Workers(self.workers) as workers:
+            found = workers.collect(_measure_or_nothing, jobs)
         return [min(self._margins(v).values()) if v else -np.inf for v in found]
 
     def _margins(self, values: dict[str, float]) -> dict[str, float]:

@@ -12,13 +12,13 @@ from ves_twin.control.leg_loop import EDGE, FilterPlace
 from ves_twin.core.errors import InvalidInputError
 from ves_twin.core.json_text import json_text
 from ves_twin.core.whole_file import write_whole
+from ves_twin.core.workers import Workers
 from ves_twin.plant.plant import Plant
 from ves_twin.procedures.confirm import Confirmation, confirm_by_run
 from ves_twin.procedures.map_point import MapPoint
 from ves_twin.procedures.one_axis import OneAxis
-from ves_twin.procedures.procedure import Account, Procedure, RunContext
+from ves_twin.procedures.procedure import Procedure, Result, RunContext
 from ves_twin.procedures.stability_bench import StabilityBench
-from ves_twin.procedures.workers import carry_out_jobs
 from ves_twin.scenario.fields import Hertz, PerSecond, Seconds
 from ves_twin.scenario.schema import Scenario
 from ves_twin.simulator.outcome import Outcome
@@ -48,7 +48,7 @@ class StabilityMap(Procedure):
     duration: Annotated[Seconds, Field(ge=5.0, le=600.0)] = 20.0
     workers: Annotated[int, Field(ge=1, le=64)] = 2
 
-    def carry_out(self, conduct: RunContext) -> Account:
+    def carry_out(self, conduct: RunContext) -> Result:
         """Find the limits, confirm some by runs, write the map and its picture."""
         if self.lightest >= self.heaviest:
             raise InvalidInputError(
@@ -59,9 +59,10 @@ class StabilityMap(Procedure):
 
         plant = conduct.plant or Plant.load(self.plant)
         jobs = [(self, plant, gain, place) for place in self.filters for gain in self.gains]
-        points = carry_out_jobs(
-            map_point, jobs, self.workers, lambda share: conduct.progress(share, "limits")
-        )
+        with Workers(self.workers) as workers:
+            points = workers.collect(
+                map_point, jobs, lambda share: conduct.progress(share, "limits")
+            )
         content: dict[str, JsonValue] = {
             "plant": plant.name,
             "plant_hash": plant.hash,
@@ -71,7 +72,7 @@ class StabilityMap(Procedure):
         text = json_text(content)
         write_whole(conduct.folder / MAP_NAME, text + "\n")
         draw_map(points, plant.name, conduct.folder / FIGURE_NAME)
-        return Account(Outcome.COMPLETED, content, tuple(_table(points)))
+        return Result(Outcome.COMPLETED, content, tuple(_table(points)))
 
 
 def map_point(job: tuple[StabilityMap, Plant, float, FilterPlace]) -> MapPoint:

@@ -69,6 +69,7 @@ def _drive_arm(
     p: Record, s: Record, board: Record, tick: int, views: Views, slow: SingleArray
 ) -> None:
     work = s.work
+    qpos, qvel, ctrl = views.qpos, views.qvel, views.ctrl
     u = (tick - s.cycle_start) / p.clock.admittance
     spline(s.servo.points, u, p.servo.cycle, work.q_set, work.rate_set)
     for j in range(3):
@@ -77,18 +78,18 @@ def _drive_arm(
         take_late(p.late.setpoint, s.late.angle_past, work.q_set, work.q_set)
         take_late(p.late.setpoint, s.late.rate_past, work.rate_set, work.rate_set)
     for j in range(3):
-        work.q[j] = views.qpos[p.layout.arm_qpos[j]] + p.drive.encoder_offset[j]
-        work.rate[j] = views.qvel[p.layout.arm_dof[j]]
+        work.q[j] = qpos[p.layout.arm_qpos[j]] + p.drive.encoder_offset[j]
+        work.rate[j] = qvel[p.layout.arm_dof[j]]
         work.added[j] = s.servo.integral[j] + s.servo.feedforward[j]
     servo_torque(p.servo, work.added, work.q_set, work.rate_set, work.q, work.rate, work.torque)
     for j in range(3):
         error = work.q_set[j] - work.q[j]
         s.servo.integral[j] += p.servo.integral[j] * error * p.clock.tick
-        views.ctrl[p.layout.arm_ctrl[j]] = work.torque[j] * p.drive.torque_gain[j]
+        ctrl[p.layout.arm_ctrl[j]] = work.torque[j] * p.drive.torque_gain[j]
         count = p.noise.encoder_count[j]
         board.arm_q[j] = np.rint(work.q[j] / count) * count if count > 0.0 else work.q[j]
         board.arm_torque[j] = work.torque[j] + p.noise.torque[j] * slow[TORQUE + j]
-        board.truth_arm_q[j] = views.qpos[p.layout.arm_qpos[j]]
+        board.truth_arm_q[j] = qpos[p.layout.arm_qpos[j]]
 
 
 @compiled
@@ -108,9 +109,10 @@ def _read_truth(p: Record, s: Record, board: Record, qpos: FloatArray) -> None:
 @compiled
 def _push_legs(p: Record, s: Record, views: Views, step: float) -> None:
     work = s.work
+    slides, speeds, ctrl = views.slides, views.speeds, views.ctrl
     for i in range(6):
-        work.slide[i] = views.slides[p.layout.slide_at[i]] - p.layout.slide_home[i]
-        work.speed[i] = views.speeds[p.layout.speed_at[i]]
+        work.slide[i] = slides[p.layout.slide_at[i]] - p.layout.slide_home[i]
+        work.speed[i] = speeds[p.layout.speed_at[i]]
     move_spool(p.valve, s.valve, s.current, step)
     spool, force = s.valve.mean, s.rod_force
     if p.hydraulics == PRESSURE_FORM:
@@ -121,7 +123,7 @@ def _push_legs(p: Record, s: Record, views: Views, step: float) -> None:
     else:
         push_rods(p.cylinder, s.cylinder, force, spool, work.slide, work.speed, step)
     for i in range(6):
-        views.ctrl[p.layout.leg_ctrl[i]] = force[i]
+        ctrl[p.layout.leg_ctrl[i]] = force[i]
 
 
 @compiled
@@ -130,8 +132,9 @@ def _read_and_command(
     slow: SingleArray,
 ) -> None:  # fmt: skip
     """Transducers, gauge, arm servo, and the leg loop and amplifiers when their clocks strike."""
+    slides = views.slides
     for i in range(6):
-        s.work.slide[i] = views.slides[p.layout.slide_at[i]] - p.layout.slide_home[i]
+        s.work.slide[i] = slides[p.layout.slide_at[i]] - p.layout.slide_home[i]
     if p.late.slide.kept > 0:
         take_late(p.late.slide, s.late.slide_past, s.work.slide, s.work.slide)
     read_lengths(p.transducer, s.work.slide, fast[LENGTH:], board.leg_length)
@@ -152,7 +155,7 @@ def _move_rig(
     p: Record, s: Record, time: float, stepper: Stepper, views: Views, fast: SingleArray
 ) -> bool:
     """The physics of one tick, and the force sensor's sample of its start."""
-    inside = True
+    inside, sensordata = True, views.sensordata
     step = p.clock.tick / p.clock.substeps
     for k in range(p.clock.substeps):
         _push_legs(p, s, views, step)
@@ -161,13 +164,13 @@ def _move_rig(
             call_engine(stepper.then, stepper.model, stepper.data)
         if k == 0:  # later sub-steps carry the forces of later instants
             for i in range(6):
-                s.work.wrench[i] = -views.sensordata[p.layout.wrench_sensor + i]
+                s.work.wrench[i] = -sensordata[p.layout.wrench_sensor + i]
             if p.late.wrench.kept > 0:
                 take_late(p.late.wrench, s.late.wrench_past, s.work.wrench, s.work.wrench)
             inside = sample_wrench(p.sensor, s.sensor, s.work.wrench, time, fast[WHITE:])
             if p.late.wrench.kept > 0:
                 for i in range(6):
-                    s.sensor.true[i] = -views.sensordata[p.layout.wrench_sensor + i]
+                    s.sensor.true[i] = -sensordata[p.layout.wrench_sensor + i]
     return inside
 
 

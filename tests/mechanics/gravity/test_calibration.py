@@ -11,9 +11,9 @@ from ves_twin.core.errors import (
     VesTwinError,
 )
 from ves_twin.mechanics.gravity.calibration import GravityCalibration
-from ves_twin.mechanics.gravity.chain import DhChain, Joint
 from ves_twin.mechanics.gravity.first_moments import FirstMoments
 from ves_twin.mechanics.gravity.identify import identify
+from ves_twin.mechanics.kinematics.dh_chain import DhChain, Joint
 
 
 @pytest.fixture

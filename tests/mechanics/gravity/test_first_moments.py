@@ -4,13 +4,13 @@ import mujoco
 import numpy as np
 import pytest
 
-from ves_twin.mechanics.gravity.chain import DhChain, Joint
 from ves_twin.mechanics.gravity.first_moments import FirstMoments
 from ves_twin.mechanics.gravity.gravity_model import GravityModel, gravity_in_top
+from ves_twin.mechanics.kinematics.dh_chain import DhChain, Joint
 from ves_twin.mechanics.kinematics.rotations import matrix_from_angles
 from ves_twin.plant.plant import Plant
 
-PUMA = FirstMoments.of(DhChain.of_puma560(Plant.load("ves2").arm))
+PUMA = FirstMoments.of(Plant.load("ves2").arm.chain)
 ROUND_OFF = 1e-9
 """Sums of products of order 1e3 in double precision, and least squares over well-scaled columns."""
 

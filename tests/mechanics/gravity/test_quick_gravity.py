@@ -3,14 +3,14 @@
 import numpy as np
 import pytest
 
-from ves_twin.mechanics.gravity.chain import DhChain, Joint
 from ves_twin.mechanics.gravity.gravity_model import GravityModel
 from ves_twin.mechanics.gravity.quick_gravity import QuickGravity
+from ves_twin.mechanics.kinematics.dh_chain import DhChain, Joint
 from ves_twin.plant.plant import Plant
 
 TURNED = np.array([[0, -1, 0, 0.1], [1, 0, 0, -0.2], [0, 0, 1, 0.3], [0, 0, 0, 1.0]])
 CHAINS = {
-    "puma": DhChain.of_puma560(Plant.load("ves2").arm),
+    "puma": Plant.load("ves2").arm.chain,
     "slide": DhChain(
         (Joint(0.3, 0.1, 0.0), Joint(0.0, 0.4, np.pi), Joint(0.05, 0.0, 0.0, prismatic=True)),
         TURNED,

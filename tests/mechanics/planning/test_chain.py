@@ -5,6 +5,7 @@ import numpy as np
 import pytest
 
 from ves_twin.core.errors import InvalidInputError
+from ves_twin.mechanics.kinematics.dh_chain import DhChain, Joint
 from ves_twin.mechanics.planning.appendix_g import appendix_g_mass_matrix
 from ves_twin.mechanics.planning.chain import SerialChain
 from ves_twin.plant.assembly import assemble_free_arm, compile_model
@@ -137,3 +138,9 @@ def test_chains_that_cannot_be_are_refused(puma):
         )
     with pytest.raises(InvalidInputError, match="3 in the last place"):
         puma.mass_matrix(np.zeros(4))
+
+
+def test_a_table_with_a_slide_is_refused():
+    chain = DhChain((Joint(0.3, 0.0, 0.0, prismatic=True),), np.eye(4))
+    with pytest.raises(InvalidInputError, match="prismatic"):
+        SerialChain.of(chain, np.ones(2), np.zeros((2, 3)), np.zeros((2, 3, 3)), np.zeros(1))

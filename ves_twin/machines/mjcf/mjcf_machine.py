@@ -18,6 +18,7 @@ from ves_twin.data.suspicions import Range
 from ves_twin.diagnosis.forward import Excitation
 from ves_twin.diagnosis.settings import Settings
 from ves_twin.diagnosis.verdict import Verdict
+from ves_twin.effects.registry import causes_anywhere
 from ves_twin.machines.case import Case
 from ves_twin.machines.data_folder import find_data
 from ves_twin.machines.machine import Machine, Material, Named, Prepared
@@ -133,6 +134,10 @@ class MjcfMachine(Machine):
         self.forward.simulate(excitation, {})
         quick = perf_counter() - begin < WORTH_A_PROCESS
         return replace(chosen, workers=1) if quick else chosen
+
+    def causes(self, names: Sequence[str]) -> list[str]:
+        """As files of earlier versions name them, too."""
+        return causes_anywhere(names)
 
     def extended(self, verdict: Verdict) -> MjcfMachine | None:
         """With the causes, and the numbers that were tuned beside."""

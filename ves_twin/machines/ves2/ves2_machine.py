@@ -20,6 +20,7 @@ from ves_twin.diagnosis.forward import Excitation
 from ves_twin.diagnosis.refusal import refusal
 from ves_twin.diagnosis.settings import Settings
 from ves_twin.diagnosis.verdict import Verdict
+from ves_twin.effects.registry import causes_of_today
 from ves_twin.machines.case import Case
 from ves_twin.machines.data_folder import find_data
 from ves_twin.machines.machine import Machine, Material, Named, Prepared
@@ -161,6 +162,10 @@ class Ves2Machine(Machine):
         """With the effects that are named; a filter's place is no part of a plant."""
         effects = effects_of(verdict)
         return replace(self, plant=self._rig.extended(*effects)) if effects else None
+
+    def causes(self, names: Sequence[str]) -> list[str]:
+        """As files of earlier versions name them, too."""
+        return causes_of_today(names)
 
     def refusal(self, verdict: Verdict) -> str:
         """As for any machine, and where the leg program is the cause."""

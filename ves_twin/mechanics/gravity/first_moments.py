@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ves_twin.core.types import FloatArray
-from ves_twin.mechanics.gravity.chain import DhChain
+from ves_twin.mechanics.kinematics.dh_chain import DhChain
 
 INDEPENDENT = 1e-7
 """A column is kept if this share of it is not in the span of the kept ones: round-off is 1e-15,

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
 from ves_twin.core.errors import UnreachableError
 from ves_twin.core.types import FloatArray
-from ves_twin.mechanics.kinematics.denavit_hartenberg import link_transform
+from ves_twin.mechanics.kinematics.dh_chain import DhChain, Joint
 
 ROUND_OFF = 1e-12
 """By how much squares of lengths [m^2] and cosines of an arm at its limits may be beyond them."""
@@ -39,23 +40,25 @@ class Puma560:
     a2: float
     a3: float
 
+    @cached_property
+    def chain(self) -> DhChain:
+        """The arm as a table; frame 0 is its mounting plane, d0 above t."""
+        base = np.eye(4)
+        base[2, 3] = self.d0
+        joints = (
+            Joint(self.d1, 0.0, np.pi / 2),
+            Joint(self.d2, self.a2, 0.0),
+            Joint(self.d3, self.a3, 0.0),
+        )
+        return DhChain(joints, base)
+
     def transforms(self, q: FloatArray) -> FloatArray:
         """Link frames 1 to 3 in t at joint angles q [rad] (3,).
 
         Returns:
             Homogeneous transforms T_t1, T_t2, T_t3 (3, 4, 4).
         """
-        table = (
-            (q[0], self.d0 + self.d1, 0.0, np.pi / 2),
-            (q[1], self.d2, self.a2, 0.0),
-            (q[2], self.d3, self.a3, 0.0),
-        )
-        frames = np.empty((3, 4, 4))
-        current = np.eye(4)
-        for i, (theta, d, a, alpha) in enumerate(table):
-            current = current @ link_transform(theta, d, a, alpha)
-            frames[i] = current
-        return frames
+        return self.chain.frames(np.asarray(q)[None])[0, 1:]
 
     def axes(self, q: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Joint axes: a point on each [m] (3, 3) and its unit direction (3, 3), rows, in t."""

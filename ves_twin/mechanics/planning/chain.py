@@ -8,7 +8,7 @@ import numpy as np
 
 from ves_twin.core.errors import InvalidInputError
 from ves_twin.core.types import FloatArray
-from ves_twin.mechanics.kinematics.denavit_hartenberg import link_transform
+from ves_twin.mechanics.kinematics.dh_chain import DhChain
 
 
 @dataclass(frozen=True)
@@ -16,7 +16,7 @@ class SerialChain:
     """Rigid links 0 to n on revolute joints 1 to n; everything in the base frame at q = 0.
 
     Link 0 is fixed to the base. Axes and points instead of frames, so that any convention fits;
-    `from_dh` makes one from a Denavit-Hartenberg table.
+    `of` makes one from a Denavit-Hartenberg table.
 
     Attributes:
         points: a point on each joint axis [m] (n, 3).
@@ -62,36 +62,31 @@ class SerialChain:
         return len(self.points)
 
     @staticmethod
-    def from_dh(
-        table: FloatArray,
-        mass: FloatArray,
-        com: FloatArray,
-        inertia: FloatArray,
-        armature: FloatArray,
-        mount: FloatArray | None = None,
+    def of(
+        chain: DhChain, mass: FloatArray, com: FloatArray, inertia: FloatArray, armature: FloatArray
     ) -> SerialChain:
-        """A chain from standard Denavit-Hartenberg rows and link data in the link frames.
+        """A chain from a Denavit-Hartenberg table and link data in the link frames.
 
         The point on joint axis i is O_(i-1) + d_i z_(i-1), so an offset d belongs to the link
         before the joint, as in thesis B.5.
 
         Args:
-            table: rows (offset of theta [rad], d [m], a [m], alpha [rad]) (n, 4).
+            chain: the table, of revolute joints, and where it stands in the base frame.
             mass: links 0 to n [kg] (n + 1,).
             com: in the link's own frame, link 0 in the mounting frame [m] (n + 1, 3).
             inertia: about the centre of mass, axes of the link frame (n + 1, 3, 3).
             armature: rotor inertia at the joint (n,).
-            mount: frame 0 of the table in the base frame (4, 4); the base frame if left out.
+
+        Raises:
+            InvalidInputError: a prismatic joint.
         """
-        rows = np.asarray(table, float)
-        frames = [np.eye(4) if mount is None else np.asarray(mount, float)]
-        for theta, d, a, alpha in rows:
-            frames.append(frames[-1] @ link_transform(theta, d, a, alpha))
-        stacked = np.array(frames)
-        rotation, origin = stacked[:, :3, :3], stacked[:, :3, 3]
+        if any(joint.prismatic for joint in chain.joints):
+            raise InvalidInputError("chain", "a prismatic joint", "revolute joints")
+        frames = chain.frames(np.zeros((1, len(chain.joints))))[0]
+        rotation, origin = frames[:, :3, :3], frames[:, :3, 3]
         axes = rotation[:-1, :, 2]
         return SerialChain(
-            points=origin[:-1] + rows[:, 1:2] * axes,
+            points=origin[:-1] + np.array([[joint.d] for joint in chain.joints]) * axes,
             axes=axes,
             mass=np.asarray(mass, float),
             com=origin + np.einsum("kij,kj->ki", rotation, np.asarray(com, float)),

@@ -9,7 +9,6 @@ import numpy as np
 
 from ves_twin.core.errors import InvalidInputError
 from ves_twin.core.types import FloatArray
-from ves_twin.mechanics.kinematics.puma560 import Puma560
 
 
 @dataclass(frozen=True)
@@ -45,18 +44,6 @@ class DhChain:
     joints: tuple[Joint, ...]
     base: FloatArray
 
-    @staticmethod
-    def of_puma560(arm: Puma560) -> DhChain:
-        """The PUMA of the thesis; frame 0 is its mounting plane, d0 above t."""
-        base = np.eye(4)
-        base[2, 3] = arm.d0
-        joints = (
-            Joint(arm.d1, 0.0, np.pi / 2),
-            Joint(arm.d2, arm.a2, 0.0),
-            Joint(arm.d3, arm.a3, 0.0),
-        )
-        return DhChain(joints, base)
-
     @property
     def identity(self) -> str:
         """Short hash of the geometry: files made for another arm can be told by it."""
@@ -89,6 +76,7 @@ class DhChain:
 
 
 def _transform(joint: Joint, q: FloatArray) -> FloatArray:
+    """Frame of a link in the one before it (n, 4, 4) at q (n,). Source: thesis eq. 3.6, B.1."""
     theta = np.full_like(q, joint.theta) if joint.prismatic else q + joint.theta
     ct, st = np.cos(theta), np.sin(theta)
     ca, sa = np.cos(joint.alpha), np.sin(joint.alpha)
