@@ -59,7 +59,7 @@ def found(monkeypatch, recording):
     scenario = vt.Scenario.load("identify_fast")
     machine, why = Ves2Machine(plant, scenario), "there were no held-out recordings"
     result = Diagnosis(verdict, machine, machine, why, setpoints)
-    monkeypatch.setattr("ves_twin.machines.diagnose.diagnose_prepared", lambda *a, **k: result)
+    monkeypatch.setattr("ves_twin.machines.diagnose.diagnose", lambda *a, **k: result)
     return verdict
 
 

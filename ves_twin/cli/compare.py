@@ -58,7 +58,6 @@ def _compare(arguments: argparse.Namespace) -> Comparison:
         tolerance = Tolerance.load(arguments.tolerance, given.machine.signals)
     recordings = given.read(arguments.recordings)
     against = given.read([arguments.against])[0] if arguments.against else None
-    standstill = given.read_one(arguments.standstill) if arguments.standstill else None
     with RunProgress("compare", 1.0, unit="share") as progress:
         return compare(
             recordings,
@@ -66,7 +65,7 @@ def _compare(arguments: argparse.Namespace) -> Comparison:
             experiment=given.experiment,
             tolerance=tolerance,
             against=against,
-            standstill=standstill,
+            standstill=given.standstill(arguments.standstill),
             progress=progress.share,
         )
 

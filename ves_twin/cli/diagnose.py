@@ -49,18 +49,37 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def execute(arguments: argparse.Namespace) -> int:
     """Diagnose, write verdict and plant, print the verdict."""
     from ves_twin.cli.output_folder import output_folder
-    from ves_twin.cli.progress import RunProgress
-    from ves_twin.machines.diagnose import diagnose_prepared
+    from ves_twin.core.recording.files import recording_name
 
     with output_folder(arguments.out, "diagnosis") as held:
-        prepared = Given.of(arguments).prepared(arguments)
-        with RunProgress("diagnose", 1.0, unit="share") as progress:
-            found = diagnose_prepared(prepared, arguments.exclude, bank_settings(), progress.share)
-        names = dict.fromkeys(one.name for one in prepared.material.measured)
-        _write(found, held.path, ", ".join(names))
+        found = _diagnose(arguments)
+        _write(found, held.path, ", ".join(map(recording_name, arguments.measured)))
         text = found.verdict.to_json() if arguments.json else _text(found, held.path)
     print(text)
     return 0
+
+
+def _diagnose(arguments: argparse.Namespace) -> Diagnosis:
+    from ves_twin.cli.progress import RunProgress
+    from ves_twin.machines.diagnose import diagnose
+
+    given = Given.of(arguments)
+    sorts = ("held_out", "baseline", "commissioning")
+    measured = given.read(arguments.measured)
+    others = {sort: given.read(getattr(arguments, sort)) for sort in sorts}
+    standstill = given.standstill(arguments.standstill)
+    with RunProgress("diagnose", 1.0, unit="share") as progress:
+        return diagnose(
+            measured,
+            given.machine,
+            **others,
+            standstill=standstill,
+            exclude=arguments.exclude,
+            experiment=given.experiment,
+            alternate=arguments.alternate,
+            settings=bank_settings(),
+            progress=progress.share,
+        )
 
 
 def _write(found: Diagnosis, folder: Path, names: str) -> None:

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from ves_twin.core.recording.recording import Recording
     from ves_twin.diagnosis.settings import Settings
-    from ves_twin.machines.machine import Machine, Named, Prepared
+    from ves_twin.machines.machine import Machine, Named
     from ves_twin.scenario.experiment_file import ExperimentFile
 
 
@@ -59,21 +59,9 @@ class Given:
             print(f"suspected: {words}", file=sys.stderr)
         return recording
 
-    def prepared(self, arguments: argparse.Namespace) -> Prepared:
-        """All recordings of a diagnosis or trend, read, checked, and as the experiment says."""
-        from ves_twin.machines.diagnose import prepare
-        from ves_twin.machines.machine import Material
-
-        material = Material(
-            measured=self.read(arguments.measured),
-            held_out=self.read(getattr(arguments, "held_out", ())),
-            baseline=self.read(getattr(arguments, "baseline", ())),
-            commissioning=self.read(getattr(arguments, "commissioning", ())),
-            standstill=self.read_one(arguments.standstill) if arguments.standstill else None,
-        )
-        prepared = prepare(self.machine, material, self.experiment)
-        length = getattr(arguments, "alternate", None)
-        return prepared if length is None else prepared.split(length)
+    def standstill(self, name: str | None) -> Recording | None:
+        """The recording that tells the noise; None if nobody names one."""
+        return self.read_one(name) if name else None
 
 
 def add_machine_options(parser: argparse.ArgumentParser, standstill: bool = True) -> None:

@@ -55,28 +55,29 @@ def execute(arguments: argparse.Namespace) -> int:
     """Read, follow, write page and JSON, print the answer."""
     from ves_twin.cli.output_folder import output_folder
     from ves_twin.cli.progress import RunProgress
-    from ves_twin.machines.trend import trend_prepared
+    from ves_twin.machines.trend import trend
     from ves_twin.report.diagnosis.trend_page import trend_page
     from ves_twin.report.page import write_page
 
     with output_folder(arguments.out, "trend") as held:
         given = Given.of(arguments)
-        arguments.measured = recordings_in(arguments.measured)
-        prepared = given.prepared(arguments)
-        measured = prepared.material.measured
+        measured = given.read(recordings_in(arguments.measured))
         calendar = _calendar(measured, arguments.numbered)
         with RunProgress("trend", 1.0, unit="share") as progress:
-            found = trend_prepared(
-                prepared,
-                calendar,
-                arguments.exclude,
-                arguments.cause,
-                arguments.false_alarm,
-                bank_settings(),
-                progress.share,
+            found = trend(
+                measured,
+                given.machine,
+                calendar=calendar,
+                standstill=given.standstill(arguments.standstill),
+                exclude=arguments.exclude,
+                cause=arguments.cause,
+                false_alarm=arguments.false_alarm,
+                experiment=given.experiment,
+                settings=bank_settings(),
+                progress=progress.share,
             )
         found.save(held.path / JSON_NAME)
-        title = f"Trend of {len(measured)} recordings of {prepared.machine.name}"
+        title = f"Trend of {len(measured)} recordings of {given.machine.name}"
         write_page(held.path / PAGE_NAME, trend_page(found, title))
     print(found.to_json() if arguments.json else _text(found, held.path))
     return 0

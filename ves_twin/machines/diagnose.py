@@ -47,6 +47,7 @@ def diagnose(
     baseline: Sequence[Recording | Named] = (),
     exclude: Sequence[str] = (),
     experiment: ExperimentFile | None = None,
+    alternate: float | None = None,
     settings: Settings | None = None,
     progress: Progress = silent,
 ) -> Diagnosis:
@@ -64,6 +65,7 @@ def diagnose(
         baseline: of this machine in order, with the same inputs; see `ves_twin.diagnosis`.
         exclude: causes that are not considered, by kind or kind@target.
         experiment: how they were made, as far as they do not say so themselves.
+        alternate: hold out every second stretch of so many s, or poses; 0: the machine's own.
         settings: how sure, how many, where banks are kept; the machine may set what its size asks.
         progress: told what is being done.
 
@@ -72,37 +74,16 @@ def diagnose(
         InvalidInputError: no recording, or recordings that cannot be of one machine.
         UnknownNameError: an unknown cause in `exclude`, or an input that is not recorded.
     """
-    material = Material(
+    given = Material(
         named(recordings, "recording"),
         named(held_out, "held-out recording"),
         named(baseline, "baseline recording"),
         named(commissioning, "commissioning recording"),
         standstill,
     )
-    prepared = prepare(machine_of(plant), material, experiment)
-    return diagnose_prepared(prepared, exclude, settings, progress)
-
-
-def prepare(
-    machine: Machine, material: Material, experiment: ExperimentFile | None = None
-) -> Prepared:
-    """`Machine.prepare` of at least one recording.
-
-    Raises:
-        InvalidInputError: no recording.
-    """
-    if not material.measured:
-        raise InvalidInputError("recordings", "none", "at least one")
-    return machine.prepare(material, experiment)
-
-
-def diagnose_prepared(
-    prepared: Prepared,
-    exclude: Sequence[str] = (),
-    settings: Settings | None = None,
-    progress: Progress = silent,
-) -> Diagnosis:
-    """Diagnose recordings that are read and checked; as `diagnose`."""
+    prepared = prepare(machine_of(plant), given, experiment)
+    if alternate is not None:
+        prepared = prepared.split(alternate)
     machine, material = prepared.machine, prepared.material
     measured = [one.recording for one in material.measured]
     offered: list[Excitation] = []
@@ -131,6 +112,19 @@ def diagnose_prepared(
     best = verdict.next_experiment[0].programme if verdict.next_experiment else ""
     chosen = next((one for one in offered if one.name == best), None)
     return Diagnosis(verdict, machine, None, f"the verdict is {verdict.verdict.value}", chosen)
+
+
+def prepare(
+    machine: Machine, material: Material, experiment: ExperimentFile | None = None
+) -> Prepared:
+    """`Machine.prepare` of at least one recording.
+
+    Raises:
+        InvalidInputError: no recording.
+    """
+    if not material.measured:
+        raise InvalidInputError("recordings", "none", "at least one")
+    return machine.prepare(material, experiment)
 
 
 def settings_of(machine: Machine, settings: Settings | None, recording: Recording) -> Settings:

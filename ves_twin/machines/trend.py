@@ -12,7 +12,7 @@ from ves_twin.diagnosis.trend.calendar import Calendar
 from ves_twin.diagnosis.trend.result import Trend
 from ves_twin.machines.diagnose import prepare, settings_of
 from ves_twin.machines.load import Given, machine_of, named
-from ves_twin.machines.machine import Material, Named, Prepared
+from ves_twin.machines.machine import Material, Named
 from ves_twin.scenario.experiment_file import ExperimentFile
 
 
@@ -49,19 +49,6 @@ def trend(
     """
     material = Material(named(recordings, "recording"), standstill=standstill)
     prepared = prepare(machine_of(plant), material, experiment)
-    return trend_prepared(prepared, calendar, exclude, cause, false_alarm, settings, progress)
-
-
-def trend_prepared(
-    prepared: Prepared,
-    calendar: Calendar,
-    exclude: Sequence[str] = (),
-    cause: str = "",
-    false_alarm: float = core.ALPHA,
-    settings: Settings | None = None,
-    progress: Progress = silent,
-) -> Trend:
-    """Follow recordings that are read and checked; as `trend`."""
     machine = prepared.machine
     measured = [one.recording for one in prepared.material.measured]
     return core.trend(

@@ -8,7 +8,7 @@ from functools import cached_property
 from pathlib import Path
 
 from ves_twin.core.errors import InvalidInputError
-from ves_twin.core.recording.files import load_recording
+from ves_twin.core.recording.files import is_recording, load_recording
 from ves_twin.core.recording.recording import Recording
 from ves_twin.core.signals import SIGNALS, Signal
 from ves_twin.data.import_log import import_log
@@ -103,7 +103,7 @@ class Ves2Machine(Machine):
         path = Path(source)
         if not path.is_dir() and (self.folder or self.mapping):
             path = find_data(source, (), self.folder)
-        if self.mapping is None:
+        if self.mapping is None or is_recording(path):
             return load_recording(path)
         return import_log(open_log(path), self.mapping, plausible=self.ranges).recording
 
