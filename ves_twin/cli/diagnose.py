@@ -64,15 +64,16 @@ def _diagnose(arguments: argparse.Namespace) -> Diagnosis:
     from ves_twin.machines.diagnose import diagnose
 
     given = Given.of(arguments)
-    sorts = ("held_out", "baseline", "commissioning")
-    measured = given.read(arguments.measured)
-    others = {sort: given.read(getattr(arguments, sort)) for sort in sorts}
+    measured, held_out = given.read(arguments.measured), given.read(arguments.held_out)
+    baseline, healthy = given.read(arguments.baseline), given.read(arguments.commissioning)
     standstill = given.standstill(arguments.standstill)
     with RunProgress("diagnose", 1.0, unit="share") as progress:
         return diagnose(
             measured,
             given.machine,
-            **others,
+            held_out=held_out,
+            baseline=baseline,
+            commissioning=healthy,
             standstill=standstill,
             exclude=arguments.exclude,
             experiment=given.experiment,

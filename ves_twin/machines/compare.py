@@ -58,7 +58,9 @@ def compare(
         raise InvalidInputError("recordings", "none", "at least one")
     say = progress or (lambda share, what: None)
     machine, given = machine_of(plant), named(recordings, "recording")
-    other = named([against], "the other recording") if against is not None else ()
+    other: tuple[Named, ...] = ()
+    if against is not None:
+        other = (against if isinstance(against, Named) else Named("the other recording", against),)
     if experiment is not None:
         experiment.check_names([n.name for n in (*given, *other)])
 

@@ -8,7 +8,7 @@ from pathlib import Path
 from ves_twin.core.recording.recording import Recording
 from ves_twin.data.import_map import ImportMap
 from ves_twin.machines.machine import Machine, Named
-from ves_twin.machines.mjcf.description import is_rig
+from ves_twin.machines.mjcf.description import is_rig, shipped_rigs
 from ves_twin.machines.mjcf.machine import Rig
 from ves_twin.machines.mjcf.mjcf_machine import MjcfMachine
 from ves_twin.machines.ves2.ves2_machine import Ves2Machine
@@ -36,6 +36,11 @@ def open_machine(
     if is_rig(name_or_path):
         return MjcfMachine(Rig.load(name_or_path), mapping, folder)
     return Ves2Machine(Plant.load(name_or_path), mapping=mapping, folder=folder)
+
+
+def shipped_machines() -> list[str]:
+    """Names of the machines that come with the twin, beside the plants of VES II."""
+    return shipped_rigs()
 
 
 def machine_of(given: Given) -> Machine:

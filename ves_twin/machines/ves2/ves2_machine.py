@@ -69,7 +69,7 @@ class Ves2Machine(Machine):
     @property
     def name(self) -> str:
         """Of the plant."""
-        return self._rig.name
+        return self.plant.name if self.plant else "VES II as it was recorded"
 
     @property
     def identity(self) -> str:
