@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from abc import ABC
 from collections.abc import Mapping
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, fields, replace
 from typing import TYPE_CHECKING, ClassVar, Self
 
 import numpy as np
@@ -58,13 +58,16 @@ class Effect(ABC):
     magnitudes: ClassVar[tuple[Magnitude, ...]] = ()
     channels: ClassVar[tuple[str, ...]] = ()
     source: ClassVar[str] = ""
+    proportional: ClassVar[bool] = True
+    """Whether its trace on VES II is proportional to its size."""
 
     def __init_subclass__(cls) -> None:
         if cls.rows:
+            cls.rows = tuple(replace(row, source=row.source or cls.source) for row in cls.rows)
             cls.targets = tuple(target for row in cls.rows for target in row.targets)
         elif cls.targets and cls.magnitudes:
             cls.sizes = tuple(Size(m.name, m.unit, m.sign) for m in cls.magnitudes)
-            cls.rows = (Row(cls.targets, (0.0, 0.0, 0.0), cls.channels, cls.source),)
+            cls.rows = (Row(cls.targets, (0.0, 0.0, 0.0), cls.channels, source=cls.source),)
 
     def __post_init__(self) -> None:
         for name, value in self._fields().items():
