@@ -52,7 +52,7 @@ def execute(arguments: argparse.Namespace) -> int:
 def general_content() -> dict[str, object]:
     """Versions, plants, emulated systems, controllers, plugins, scenarios, signals."""
     from ves_twin.control.registry import GRAVITY_COMPENSATIONS, PLATFORM_CONTROLLERS
-    from ves_twin.core.compiled import cache_folder
+    from ves_twin.core.compiled import compiled_folder
     from ves_twin.core.resources import resource_folder
     from ves_twin.core.signals import SIGNALS
     from ves_twin.effects.registry import EFFECTS
@@ -85,7 +85,7 @@ def general_content() -> dict[str, object]:
             s.name: f"{s.width} {', '.join(dict.fromkeys(s.units))}; {s.role.value}; {s.meaning}"
             for s in SIGNALS.values()
         },
-        "compiled code": str(cache_folder()),
+        "compiled code": str(compiled_folder()),
     }
 
 

@@ -12,6 +12,7 @@ from two_link import programme, write_files
 from ves_twin.cli.main import main
 from ves_twin.core.errors import VesTwinError
 from ves_twin.core.recording.recording import POSES
+from ves_twin.core.resources import resource_folder
 from ves_twin.diagnosis.verdict import Basis, Cause, Estimate, Kind, Statistics, Verdict
 from ves_twin.machines.mjcf.columns import read_rig_recording
 from ves_twin.machines.mjcf.data_folder import find_data
@@ -223,3 +224,12 @@ def test_public_data_are_found_by_folder_and_checked_by_content(tmp_path, monkey
     Path(tmp_path, "emps", "emps_train.csv").write_text("t_s\n0\n")
     with pytest.raises(VesTwinError, match="another checksum"):
         find_data("emps/emps_train.csv", rig, str(tmp_path))
+
+
+def test_a_model_that_mujoco_cannot_move_is_refused_in_one_line(tmp_path):
+    for name in ("emps.toml", "emps.xml"):
+        text = (resource_folder("models/rigs") / name).read_text()
+        (tmp_path / name).write_text(text.replace('mass="90"', f'mass="1{40 * "0"}"'))
+    with pytest.raises(VesTwinError, match="a model that can move") as caught:
+        Rig.load(str(tmp_path / "emps.toml"))
+    assert "\n" not in str(caught.value)

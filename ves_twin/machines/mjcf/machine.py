@@ -103,7 +103,7 @@ class Rig:
             raise FileAccessError(f"model file '{path}' of rig {self.description.name} is missing")
         try:
             model = self._loaded(path) if self.payloads else mujoco.MjModel.from_xml_path(str(path))
-        except ValueError as error:
+        except (ValueError, mujoco.FatalError) as error:
             raise InvalidInputError(str(path), one_line(error), "a MuJoCo model") from None
         for setting in self.description.parameters:
             if setting.value is not None:
@@ -113,7 +113,10 @@ class Rig:
                     magnitude.name: _value(setting, effect, magnitude) - effect.present(model)
                 }
                 effect.sized(change).edit_model(model)
-        mujoco.mj_setConst(model, mujoco.MjData(model))
+        try:
+            mujoco.mj_setConst(model, mujoco.MjData(model))
+        except mujoco.FatalError as error:
+            raise InvalidInputError(str(path), one_line(error), "a model that can move") from None
         return model
 
     @cached_property

@@ -6,6 +6,7 @@ import mujoco
 import numpy as np
 from mujoco import rollout
 
+from ves_twin.core.engine_log import log_engine
 from ves_twin.core.types import FloatArray
 from ves_twin.core.units import to_si
 from ves_twin.effects.effect import Effect
@@ -38,6 +39,7 @@ def motion_of_drive(work: Work, mode: Mode, refined: bool = False) -> dict[str, 
     Returns:
         Signals; NaN throughout where the motion diverged and MuJoCo had to start it anew.
     """
+    log_engine()
     model, period = work.model, work.programme.period
     steps = max(1, round(period / model.opt.timestep)) * (2 if refined else 1)
     model.opt.timestep = period / steps
