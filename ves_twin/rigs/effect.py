@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from abc import ABC
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, fields
 from typing import TYPE_CHECKING, ClassVar
 
@@ -58,6 +58,11 @@ class RigEffect(ABC):
         """Sizes with unit and range at a place."""
         return (cls.size.at(place),)
 
+    @classmethod
+    def starts(cls, place: Place) -> tuple[tuple[float, ...], ...]:
+        """Sizes to begin a search at, of a kind whose sizes say nothing one by one; () if they do."""
+        return ()
+
     @property
     def sizes(self) -> dict[str, float]:
         """Departures by name."""
@@ -86,6 +91,14 @@ class RigEffect(ABC):
     def resist(self, speed: FloatArray, slow: float) -> FloatArray:
         """Effort [N, N m] against a joint's motion at speeds (n,); `slow` smooths signs."""
         return np.zeros_like(speed)
+
+    def hold(self, position: FloatArray) -> FloatArray:
+        """Effort [N, N m] against a joint along positions (n,), of a kind with place or memory."""
+        return np.zeros_like(position)
+
+    def holder(self) -> Callable[[float], float]:
+        """The same, position by position from where the motion begins; it keeps the memory."""
+        return lambda position: 0.0
 
     def edit_position(self, position: FloatArray) -> FloatArray:
         """A joint's position (n,) on the other side of what lies between drive and joint."""

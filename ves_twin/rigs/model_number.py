@@ -36,6 +36,8 @@ class ModelNumber(RigEffect):
             return int(model.joint(self.target).dofadr[0])
         if self.element is Element.JOINT:
             return int(model.joint(self.target).id)
+        if self.element is Element.TENDON:
+            return int(model.tendon(self.target).id)
         if self.element is Element.ACTUATOR:
             return int(model.actuator(self.target).id)
         return int(model.body(self.target).id)

@@ -6,7 +6,13 @@ from collections.abc import Mapping
 
 from ves_twin.errors import UnknownNameError
 from ves_twin.plugins import Registry, lacks
-from ves_twin.rigs import joint_effects, part_effects, signal_effects
+from ves_twin.rigs import (
+    coupling_effects,
+    friction_effects,
+    joint_effects,
+    part_effects,
+    signal_effects,
+)
 from ves_twin.rigs.effect import RigEffect
 
 _KINDS: tuple[type[RigEffect], ...] = (
@@ -18,6 +24,12 @@ _KINDS: tuple[type[RigEffect], ...] = (
     joint_effects.JointSpring,
     joint_effects.RotorInertia,
     joint_effects.Backlash,
+    friction_effects.QuadraticDrag,
+    friction_effects.StribeckFriction,
+    friction_effects.FrictionBehindGap,
+    coupling_effects.CouplingInertia,
+    coupling_effects.CouplingViscous,
+    coupling_effects.CouplingCoulomb,
     part_effects.ActuatorGain,
     part_effects.ActuatorDelay,
     part_effects.BodyMass,

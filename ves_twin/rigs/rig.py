@@ -171,6 +171,7 @@ class Rig:
                     source=entry.source,
                     linear=entry.effect.linear and len(entry.magnitudes) == 1,
                     transient=entry.effect.transient,
+                    starts=entry.effect.starts(entry.place),
                 )
             )
         return tuple(found)
