@@ -5,8 +5,16 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from enum import StrEnum
+from typing import Annotated
 
 import numpy as np
+from pydantic import BeforeValidator, Field
+
+Number = Annotated[float, Field(strict=True)]
+Numbers = Annotated[
+    tuple[Number, ...], BeforeValidator(lambda v: v if isinstance(v, list | tuple) else (v,))
+]
+"""Of a file: a number, or a list of numbers."""
 
 ROUND_OFF = 1e-12
 """Relative difference that `exact` leaves to double precision."""
@@ -39,9 +47,9 @@ class Tolerance:
     """
 
     kind: Comparison
-    limit: tuple[float, ...] = ()
-    low: float = -np.inf
-    high: float = np.inf
+    limit: Numbers = ()
+    low: Number = -np.inf
+    high: Number = np.inf
 
     def met(self, values: Sequence[float], expected: Sequence[float], holds: bool | None) -> bool:
         """Whether values meet the requirement.
