@@ -104,7 +104,7 @@ def test_a_file_of_ones_own_is_read(tmp_path):
         (('unit = "1"', "unit = 1"), "C001: unit: got 1, expected a valid string"),
         (("value = 6", 'value = "six"'), "value.*'six', expected a valid number"),
         (("value = 6", "value = true"), "value.*expected a valid number"),
-        (('kind = "exact"', 'kind = "about"'), "tolerance.kind 'about'; did you mean 'absolute'"),
+        (('kind = "exact"', 'kind = "about"'), "comparison 'about'; did you mean 'absolute'"),
         (("[C001]\n", "C002 = 3\n[C001]\n"), "a table"),
     ],
 )

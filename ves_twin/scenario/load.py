@@ -150,9 +150,6 @@ def refusal(error: ValidationError, where: str, model: type[BaseModel]) -> VesTw
         near = difflib.get_close_matches(location[-1], keys, n=1, cutoff=0.5)
         known = [".".join([*location[:-1], near[0]])] if near else keys
         return UnknownNameError(f"key in {where}", key, known)
-    if first["type"] in ("enum", "literal_error") and isinstance(first["input"], str):
-        known = re.findall("'([^']*)'", first["ctx"]["expected"])
-        return UnknownNameError(f"{where}: {key}", first["input"], known)
     if first["type"] == "missing":
         return InvalidInputError(f"{where}: {key}", None, "a value; it has no default")
     message = first["msg"].removeprefix("Value error, ").removeprefix("value: ")

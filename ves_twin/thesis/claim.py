@@ -12,7 +12,7 @@ from pydantic import Field, ValidationError
 from ves_twin.core.errors import InvalidInputError
 from ves_twin.core.resources import find_resource
 from ves_twin.core.toml_file import check_schema, read_toml
-from ves_twin.scenario.fields import Part
+from ves_twin.scenario.fields import Part, named
 from ves_twin.scenario.load import refusal
 from ves_twin.thesis.tolerance import Numbers, Tolerance
 
@@ -58,7 +58,7 @@ class Claim(Part):
     quantity: Text
     printed: Text
     unit: Text
-    kind: Kind
+    kind: Annotated[Kind, named("kind of claim", [kind.value for kind in Kind])]
     value: Numbers = ()
     corrected: Numbers = ()
     tolerance: Tolerance | None = None

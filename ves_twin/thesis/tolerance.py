@@ -10,6 +10,8 @@ from typing import Annotated
 import numpy as np
 from pydantic import BeforeValidator, Field
 
+from ves_twin.scenario.fields import named
+
 Number = Annotated[float, Field(strict=True)]
 Numbers = Annotated[
     tuple[Number, ...], BeforeValidator(lambda v: v if isinstance(v, list | tuple) else (v,))
@@ -46,7 +48,7 @@ class Tolerance:
         high: upper end of an interval.
     """
 
-    kind: Comparison
+    kind: Annotated[Comparison, named("comparison", [kind.value for kind in Comparison])]
     limit: Numbers = ()
     low: Number = -np.inf
     high: Number = np.inf
