@@ -11,7 +11,7 @@ import numpy as np
 from pydantic import Field, JsonValue
 
 from ves_twin.control.leg_loop import FilterPlace
-from ves_twin.core.compiled import cache_folder
+from ves_twin.core.cache_folder import cache_folder
 from ves_twin.core.errors import InvalidInputError, UnknownNameError
 from ves_twin.core.recording.files import load_recording
 from ves_twin.diagnosis.diagnose import diagnose
@@ -133,7 +133,7 @@ class Showcase(Procedure):
         """The verdict on the files, and what became of the extended plant."""
         folder = conduct.folder
         settings = Settings(
-            workers=os.cpu_count() or 1, cache=cache_folder().parent / "banks", nulls=self.nulls
+            workers=os.cpu_count() or 1, cache=cache_folder("diagnosis"), nulls=self.nulls
         )
         record, held_out = load_recording(folder / RECORDING), load_recording(folder / HELD_OUT)
         material: dict[str, Any] = {"held_out": [held_out], "settings": settings}
