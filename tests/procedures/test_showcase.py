@@ -28,7 +28,7 @@ def carried_out(name, folder, changes=None, **conduct):
 def no_cache(monkeypatch, tmp_path_factory):
     """Banks of the tests stay with the tests."""
     folder = tmp_path_factory.mktemp("cache") / "numba"
-    monkeypatch.setattr("ves_twin.procedures.showcase.cache_folder", lambda: folder)
+    monkeypatch.setattr("ves_twin.procedures.showcase.cache_folder", lambda name: folder / name)
     monkeypatch.setattr("os.cpu_count", lambda: 1)
 
 

@@ -44,17 +44,14 @@ def execute(arguments: argparse.Namespace) -> int:
     from ves_twin.cli.rig_recordings import refuse_rig_options
     from ves_twin.report.comparison.page import comparison_page
     from ves_twin.report.page import write_page
-    from ves_twin.simulator.simulate import make_folder
 
     refuse_rig_options(arguments)
-    comparison = _compare(arguments)
-    folder = output_folder(arguments.out, "compare")
-    page = comparison_page(comparison)
-    text = json_text(comparison.to_dict())
-    make_folder(folder)
-    write_page(folder / JSON_NAME, text + "\n")
-    write_page(folder / PAGE_NAME, page)
-    print(text if arguments.json else _text(comparison, folder))
+    with output_folder(arguments.out, "compare") as held:
+        comparison = _compare(arguments)
+        text = json_text(comparison.to_dict())
+        write_page(held.path / JSON_NAME, text + "\n")
+        write_page(held.path / PAGE_NAME, comparison_page(comparison))
+    print(text if arguments.json else _text(comparison, held.path))
     return OUT_OF_TOLERANCE if comparison.in_tolerance is False else DONE
 
 
@@ -66,22 +63,19 @@ def _rig(arguments: argparse.Namespace) -> int:
     from ves_twin.machines.mjcf.compare_mjcf import SCHEMA, compare_mjcf
     from ves_twin.report.comparison.mjcf_page import comparison_lines, rig_comparison_page
     from ves_twin.report.page import write_page
-    from ves_twin.simulator.simulate import make_folder
 
     for option in ("against", "tolerance", "standstill"):
         if getattr(arguments, option):
             raise InvalidInputError(f"--{option}", "a rig", "a plant of VES II beside it")
-    given = rig_recordings(arguments, arguments.recordings, alike=False)
-    pairs = zip(given.measured, given.rigs, strict=True)
-    found = [one for recording, rig in pairs for one in compare_mjcf([recording], rig)]
-    content = {"schema": SCHEMA, "recordings": [one.to_dict() for one in found]}
-    text = json_text(content)
-    folder = output_folder(arguments.out, "compare")
-    page = rig_comparison_page(found)
-    make_folder(folder)
-    write_page(folder / JSON_NAME, text + "\n")
-    write_page(folder / PAGE_NAME, page)
-    files = f"files {folder}/{PAGE_NAME}, {JSON_NAME}"
+    with output_folder(arguments.out, "compare") as held:
+        given = rig_recordings(arguments, arguments.recordings, alike=False)
+        pairs = zip(given.measured, given.rigs, strict=True)
+        found = [one for recording, rig in pairs for one in compare_mjcf([recording], rig)]
+        content = {"schema": SCHEMA, "recordings": [one.to_dict() for one in found]}
+        text = json_text(content)
+        write_page(held.path / JSON_NAME, text + "\n")
+        write_page(held.path / PAGE_NAME, rig_comparison_page(found))
+    files = f"files {held.path}/{PAGE_NAME}, {JSON_NAME}"
     print(text if arguments.json else "\n".join([*comparison_lines(found), files]))
     return 0
 

@@ -5,7 +5,6 @@ from __future__ import annotations
 import argparse
 import os
 from collections.abc import Callable, Sequence
-from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -53,16 +52,12 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def execute(arguments: argparse.Namespace) -> int:
     """Diagnose, write verdict and plant, print the verdict."""
     from ves_twin.cli.output_folder import output_folder
-    from ves_twin.simulator.simulate import make_folder
 
-    folder = output_folder(arguments.out, "diagnosis")
-    diagnosed = _mjcf if means_rig(arguments) else _ves2
-    found, save = diagnosed(arguments, partial(make_folder, folder))
-    _write(found, folder, ", ".join(map(_label, arguments.measured)), save)
-    if arguments.json:
-        print(found.verdict.to_json())
-    else:
-        print(_text(found, folder))
+    with output_folder(arguments.out, "diagnosis") as held:
+        found, save = (_mjcf if means_rig(arguments) else _ves2)(arguments)
+        _write(found, held.path, ", ".join(map(_label, arguments.measured)), save)
+        text = found.verdict.to_json() if arguments.json else _text(found, held.path)
+    print(text)
     return 0
 
 
@@ -72,10 +67,8 @@ def _label(name: str) -> str:
     return recording_name(name)
 
 
-def _ves2(
-    arguments: argparse.Namespace, ready: Callable[[], None]
-) -> tuple[RigDiagnosis, Callable[[Path, str], None]]:
-    """VES II; the output folder is made once all input is read."""
+def _ves2(arguments: argparse.Namespace) -> tuple[RigDiagnosis, Callable[[Path, str], None]]:
+    """VES II."""
     from ves_twin.cli.progress import RunProgress
     from ves_twin.cli.rig_recordings import refuse_rig_options
     from ves_twin.core.recording.files import load_recording
@@ -102,7 +95,6 @@ def _ves2(
         for name, recording in zip(arguments.measured, measured, strict=True):
             _needs_drive(name, recording)
         plant = _nominal(arguments.plant, measured[0])
-    ready()
     with RunProgress("diagnose", 1.0, unit="share") as progress:
         found = diagnose_rig(
             measured,
@@ -126,9 +118,7 @@ def _ves2(
     return found, save
 
 
-def _mjcf(
-    arguments: argparse.Namespace, ready: Callable[[], None]
-) -> tuple[MjcfDiagnosis, Callable[[Path, str], None]]:
+def _mjcf(arguments: argparse.Namespace) -> tuple[MjcfDiagnosis, Callable[[Path, str], None]]:
     """A rig of two files."""
     from ves_twin.cli.progress import RunProgress
     from ves_twin.cli.rig_recordings import read_file, rig_recordings
@@ -137,7 +127,6 @@ def _mjcf(
 
     given = rig_recordings(arguments, arguments.measured)
     commissioning = [read_file(arguments, given.rig, n) for n in arguments.commissioning]
-    ready()
     with RunProgress("diagnose", 1.0, unit="share") as progress:
         found = diagnose_mjcf(
             given.measured,
@@ -160,10 +149,10 @@ def _mjcf(
 
 def diagnosis_settings() -> Settings:
     """All cores, banks kept beside the compiled code."""
-    from ves_twin.core.compiled import cache_folder
+    from ves_twin.core.cache_folder import cache_folder
     from ves_twin.diagnosis.settings import Settings
 
-    return Settings(workers=os.cpu_count() or 1, cache=cache_folder().parent / "banks")
+    return Settings(workers=os.cpu_count() or 1, cache=cache_folder("diagnosis"))
 
 
 def _told(

@@ -38,21 +38,21 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def execute(arguments: argparse.Namespace) -> int:
     """Import, write the recording, print the account."""
+    from ves_twin.core.held_folder import hold_file
     from ves_twin.core.recording.files import save_recording
     from ves_twin.data.import_log import import_log
     from ves_twin.data.import_map import ImportMap
     from ves_twin.data.limits import Limits
     from ves_twin.data.open_log import open_log
-    from ves_twin.simulator.simulate import make_folder
 
-    told = ImportMap.load(arguments.map)
-    window = _window(arguments, told.window)
-    ranges, known = _plant(arguments.plant)
     path = _target(arguments.out)
-    log = open_log(arguments.file, Limits.of(arguments.limit))
-    imported = import_log(log, told, window, ranges, known)
-    make_folder(path.parent)
-    save_recording(imported.recording, path)
+    with hold_file(path):
+        told = ImportMap.load(arguments.map)
+        window = _window(arguments, told.window)
+        ranges, known = _plant(arguments.plant)
+        log = open_log(arguments.file, Limits.of(arguments.limit))
+        imported = import_log(log, told, window, ranges, known)
+        save_recording(imported.recording, path)
     if arguments.json:
         content = {**imported.account.to_dict(), "recording": str(path)}
         print(json_text(content))

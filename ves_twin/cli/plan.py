@@ -43,7 +43,7 @@ def execute(arguments: argparse.Namespace) -> int:
 
 def _plan(arguments: argparse.Namespace) -> Plan:
     from ves_twin.cli.progress import RunProgress
-    from ves_twin.core.compiled import cache_folder
+    from ves_twin.core.cache_folder import cache_folder
     from ves_twin.diagnosis.plan import check_channels, plan_recording
     from ves_twin.diagnosis.settings import Settings
     from ves_twin.machines.ves2.diagnose_rig import drawn_nulls
@@ -56,7 +56,7 @@ def _plan(arguments: argparse.Namespace) -> Plan:
     seconds = arguments.seconds
     if seconds is not None and seconds > scenario.run.duration:
         scenario = Scenario.load(arguments.scenario, {"run.duration": seconds})
-    settings = Settings(workers=os.cpu_count() or 1, cache=cache_folder().parent / "banks")
+    settings = Settings(workers=os.cpu_count() or 1, cache=cache_folder("diagnosis"))
     settings = drawn_nulls(settings)
     with RunProgress("plan", 1.0, unit="share") as progress:
         progress.share(0.0, "set-points")

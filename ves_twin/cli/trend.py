@@ -64,7 +64,6 @@ def execute(arguments: argparse.Namespace) -> int:
     from ves_twin.plant.plant import Plant
     from ves_twin.report.diagnosis.trend_page import trend_page
     from ves_twin.report.page import write_page
-    from ves_twin.simulator.simulate import make_folder
 
     if not means_rig(arguments):
         named = rig_name(arguments)
@@ -72,27 +71,26 @@ def execute(arguments: argparse.Namespace) -> int:
             Plant.load(named)  # a name or file that does not exist is told as such
         expected = "a rig of two files; VES II is not followed"
         raise InvalidInputError("--plant", named or "no such rig", expected)
-    names = recordings_in(arguments.measured)
-    given = rig_recordings(arguments, names)
-    calendar = _calendar(names, given.measured, arguments.numbered)
-    folder = output_folder(arguments.out, "trend")
-    make_folder(folder)
-    with RunProgress("trend", 1.0, unit="share") as progress:
-        found = trend_mjcf(
-            given.measured,
-            given.rig,
-            calendar,
-            standstill=given.standstill,
-            exclude=arguments.exclude,
-            cause=arguments.cause,
-            false_alarm=arguments.false_alarm,
-            settings=diagnosis_settings(),
-            progress=progress.share,
-        )
-    found.save(folder / JSON_NAME)
-    title = f"Trend of {len(names)} recordings of {given.rig.description.name}"
-    write_page(folder / PAGE_NAME, trend_page(found, title))
-    print(found.to_json() if arguments.json else _text(found, folder))
+    with output_folder(arguments.out, "trend") as held:
+        names = recordings_in(arguments.measured)
+        given = rig_recordings(arguments, names)
+        calendar = _calendar(names, given.measured, arguments.numbered)
+        with RunProgress("trend", 1.0, unit="share") as progress:
+            found = trend_mjcf(
+                given.measured,
+                given.rig,
+                calendar,
+                standstill=given.standstill,
+                exclude=arguments.exclude,
+                cause=arguments.cause,
+                false_alarm=arguments.false_alarm,
+                settings=diagnosis_settings(),
+                progress=progress.share,
+            )
+        found.save(held.path / JSON_NAME)
+        title = f"Trend of {len(names)} recordings of {given.rig.description.name}"
+        write_page(held.path / PAGE_NAME, trend_page(found, title))
+    print(found.to_json() if arguments.json else _text(found, held.path))
     return 0
 
 

@@ -106,8 +106,8 @@ def test_the_wrist_drifts_along_z_and_has_neither_another_tool_nor_another_gain(
     (block, limit), found = wrist
     verdict = found.verdict
     assert verdict.verdict in (Kind.SEVERAL, Kind.PARTIAL, Kind.NAMED)
-    assert "sensor_drift@wrist.force.3" in labels(verdict)
-    assert {c.effect for c in verdict.causes} == {"sensor_drift"}
+    assert "sensor_wander@wrist.force.3" in labels(verdict)
+    assert {c.effect for c in verdict.causes} == {"sensor_wander"}
     force = [c.target for c in verdict.causes if c.target.startswith("wrist.force")]
     assert force == ["wrist.force.3"]
     after = [verdict.gain.errors[f"wrist.force.{i}"][1] for i in (1, 2, 3)]
@@ -128,6 +128,6 @@ def test_without_drift_in_the_library_neither_trap_is_stepped_into(data_folder):
     """Tool mass +5.5 % and z gain +8 % are what least squares would say."""
     rig, rec = recording("ft_wrist", data_folder)
     fitted, held = alternate(rec, 10)
-    found = diagnose_mjcf(fitted, rig, held_out=held, exclude=["sensor_drift"], settings=QUICK)
+    found = diagnose_mjcf(fitted, rig, held_out=held, exclude=["sensor_wander"], settings=QUICK)
     assert found.verdict.verdict is Kind.UNKNOWN
     assert found.extended is None
