@@ -177,6 +177,12 @@ def _answered(words: list[str]) -> int:
             return DONE
         print(f"ves-twin: {one_line(error)}", file=sys.stderr)
         return BAD_INPUT
+    except MemoryError:
+        print(
+            "ves-twin: not enough memory; a shorter run or a smaller file takes less",
+            file=sys.stderr,
+        )
+        return BAD_INPUT
     except KeyboardInterrupt:
         print("ves-twin: interrupted", file=sys.stderr)
         return INTERRUPTED
