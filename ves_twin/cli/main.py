@@ -153,11 +153,15 @@ def _give_matplotlib_a_folder() -> None:
             os.environ["MPLCONFIGDIR"] = str(cache_folder("matplotlib"))
 
 
+def _refuse_empty(words: Sequence[str]) -> None:
+    for before, word in pairwise(["ves-twin", *words]):
+        if not word.strip() or EMPTY.fullmatch(word):
+            raise InvalidInputError(word[:-1] if word.strip() else before, "", "a value")
+
+
 def _answered(words: list[str]) -> int:
     try:
-        for before, word in pairwise(["ves-twin", *words]):
-            if not word.strip() or EMPTY.fullmatch(word):
-                raise InvalidInputError(word[:-1] if word.strip() else before, "", "a value")
+        _refuse_empty(words)
         if words and not words[0].startswith("-") and words[0] not in COMMANDS:
             raise UnknownNameError("command", words[0], COMMANDS)
         parser = build_parser()
