@@ -22,17 +22,17 @@ demo-diagnosis: .venv/.run
 	$(BIN)/ves-twin blind reveal --out $(HIDDEN)
 
 test: .venv/.dev lint layers types
-	$(BIN)/python -m pytest -n 2 --dist loadgroup --durations=25 --costs runs/test-costs.csv
+	$(BIN)/python -m pytest -n 2 --dist worksteal --durations=25 --costs runs/test-costs.csv
 
 # Statistical suites at full size as well; ends with one table of them.
-nightly: .venv/.dev lint layers types
-	$(BIN)/python -m pytest -n 2 --dist loadgroup --nightly --costs runs/nightly-costs.csv
-	$(MAKE) attack
+nightly: .venv/.dev lint layers types attack
+	$(BIN)/python -m pytest -n 2 --dist worksteal --nightly --mutations 10000 \
+		--costs runs/nightly-costs.csv
 
 check: .venv/.dev lint layers types fast
 
 fast: .venv/.dev
-	$(BIN)/python -m pytest -n 2 --dist loadgroup -m "not slow"
+	$(BIN)/python -m pytest -n 2 --dist worksteal -m "not slow"
 
 fuzz: .venv/.dev
 	$(BIN)/python -m pytest -n 2 tests/fuzz --mutations 10000

@@ -32,7 +32,7 @@ def no_cache(monkeypatch, tmp_path_factory):
     monkeypatch.setattr("os.cpu_count", lambda: 1)
 
 
-@pytest.mark.slow
+@pytest.mark.nightly
 def test_two_causes_are_named_and_held_against_the_truth(tmp_path):
     account = carried_out("showcase_two_causes", tmp_path)
     assert account.values["judged"] == "right"

@@ -21,7 +21,7 @@ from ves_twin.machines.pendulum.forward import Pendulum
 from ves_twin.machines.ves2.diagnose_rig import diagnose_rig
 from ves_twin.plant.plant import Plant
 from ves_twin.plant.write_plant import write_plant
-from ves_twin.procedures.procedure import Account, Procedure, RunContext
+from ves_twin.procedures.procedure import Procedure, Result, RunContext
 from ves_twin.report.diagnosis.page import diagnosis_page
 from ves_twin.report.diagnosis.words import headline
 from ves_twin.report.page import write_page
@@ -79,7 +79,7 @@ class Showcase(Procedure):
     nulls: Annotated[int, Field(ge=12, le=10000)] = 60
     seed: Annotated[int, Field(ge=0, lt=2**63)] = 0
 
-    def carry_out(self, conduct: RunContext) -> Account:
+    def carry_out(self, conduct: RunContext) -> Result:
         """Record, diagnose, write `verdict.json` and `report.html`, hold against the truth.
 
         Raises:
@@ -152,7 +152,7 @@ class Showcase(Procedure):
             return found.verdict, f"The extended plant is a candidate: {found.refused}."
         return found.verdict, "The extended plant is plant.toml; it passed on held-out recordings."
 
-    def _account(self, verdict: Verdict, folder: Path) -> Account:
+    def _account(self, verdict: Verdict, folder: Path) -> Result:
         labels = [part.label for part in self.hidden]
         if self.deployed_filter is not None:
             labels.append(f"filter_place@{self.deployed_filter.value}")
@@ -181,7 +181,7 @@ class Showcase(Procedure):
             "judged": judged.value,
             "held_out_gain": gain,
         }
-        return Account(Outcome.COMPLETED, values, tuple(lines))
+        return Result(Outcome.COMPLETED, values, tuple(lines))
 
 
 def _size(part: HiddenPart, parameter: str) -> float:

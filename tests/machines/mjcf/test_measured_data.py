@@ -15,8 +15,8 @@ from ves_twin.machines.mjcf.diagnose_mjcf import diagnose_mjcf
 from ves_twin.machines.mjcf.interleaved_split import alternate
 from ves_twin.machines.mjcf.machine import Rig
 
-pytestmark = [pytest.mark.slow, pytest.mark.timeout(900)]
-"""A minute of processor time each diagnosis, several on a busy machine; one in `make test`."""
+pytestmark = [pytest.mark.nightly, pytest.mark.timeout(900)]
+"""A minute of processor time each diagnosis, several on a busy machine."""
 
 QUICK = Settings(nulls=40)
 """Thresholds matter little where causes stand out by thousands of chi^2."""
@@ -85,7 +85,6 @@ def test_emps_position_in_closed_loop_simulation(emps, figure):
     )
 
 
-@pytest.mark.nightly
 def test_emps_without_friction_in_the_library_names_neither_mass_delay_nor_backlash(data_folder):
     rig, rec = recording("emps", data_folder)
     fitted, held = alternate(rec, rig.description.block)
@@ -103,13 +102,12 @@ def wrist(request, data_folder):
     return request.param, diagnose_mjcf(fitted, rig, held_out=held, settings=QUICK)
 
 
-@pytest.mark.nightly
 def test_the_wrist_drifts_along_z_and_has_neither_another_tool_nor_another_gain(wrist, figure):
     (block, limit), found = wrist
     verdict = found.verdict
     assert verdict.verdict in (Kind.SEVERAL, Kind.PARTIAL, Kind.NAMED)
-    assert "sensor_drift@wrist.force.3" in labels(verdict)
-    assert {c.effect for c in verdict.causes} == {"sensor_drift"}
+    assert "sensor_wander@wrist.force.3" in labels(verdict)
+    assert {c.effect for c in verdict.causes} == {"sensor_wander"}
     force = [c.target for c in verdict.causes if c.target.startswith("wrist.force")]
     assert force == ["wrist.force.3"]
     after = [verdict.gain.errors[f"wrist.force.{i}"][1] for i in (1, 2, 3)]
@@ -117,7 +115,6 @@ def test_the_wrist_drifts_along_z_and_has_neither_another_tool_nor_another_gain(
     figure(f"Wrist sensor: held-out force error, blocks of {block} poses", rms, limit, "N")
 
 
-@pytest.mark.nightly
 def test_drift_of_the_wrist_cannot_be_carried_on_and_the_verdict_says_so(wrist):
     found = wrist[1]
     before, after = found.verdict.forecast.errors["wrist.force.3"]
@@ -127,11 +124,10 @@ def test_drift_of_the_wrist_cannot_be_carried_on_and_the_verdict_says_so(wrist):
     assert "not beyond their end" in found.refused
 
 
-@pytest.mark.nightly
 def test_without_drift_in_the_library_neither_trap_is_stepped_into(data_folder):
     """Tool mass +5.5 % and z gain +8 % are what least squares would say."""
     rig, rec = recording("ft_wrist", data_folder)
     fitted, held = alternate(rec, 10)
-    found = diagnose_mjcf(fitted, rig, held_out=held, exclude=["sensor_drift"], settings=QUICK)
+    found = diagnose_mjcf(fitted, rig, held_out=held, exclude=["sensor_wander"], settings=QUICK)
     assert found.verdict.verdict is Kind.UNKNOWN
     assert found.extended is None

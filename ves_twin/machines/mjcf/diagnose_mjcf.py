@@ -13,6 +13,7 @@ from ves_twin.diagnosis.refusal import refusal
 from ves_twin.diagnosis.runs import Progress, silent
 from ves_twin.diagnosis.settings import Settings
 from ves_twin.diagnosis.verdict import Verdict
+from ves_twin.effects.registry import causes_anywhere
 from ves_twin.machines.mjcf.extend import extended
 from ves_twin.machines.mjcf.forward import MjcfForward
 from ves_twin.machines.mjcf.machine import Rig
@@ -80,7 +81,7 @@ def diagnose_mjcf(
         commissioning=commissioning,
         standstill=standstill,
         baseline=baseline,
-        exclude=exclude,
+        exclude=causes_anywhere(exclude),
         settings=chosen,
         progress=progress,
     )

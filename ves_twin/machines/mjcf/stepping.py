@@ -9,9 +9,9 @@ from mujoco import rollout
 from ves_twin.core.engine_log import log_engine
 from ves_twin.core.types import FloatArray
 from ves_twin.core.units import to_si
+from ves_twin.effects.effect import Effect
+from ves_twin.effects.element import Element
 from ves_twin.machines.mjcf.description import Controller, Mode
-from ves_twin.machines.mjcf.effect import RigEffect
-from ves_twin.machines.mjcf.element import Element
 from ves_twin.machines.mjcf.inverse import smoothed
 from ves_twin.machines.mjcf.joint_units import joint_units
 from ves_twin.machines.mjcf.work import Work, sensor_rows
@@ -95,7 +95,7 @@ def position_signal(work: Work, joint: str) -> tuple[str, int]:
 
 def _resisted(work: Work) -> bool:
     """Whether an effect depends on speed in a way that the model itself lacks."""
-    plain = RigEffect.resist
+    plain = Effect.resist
     return any(type(effect).resist is not plain for effect, _ in work.effects)
 
 

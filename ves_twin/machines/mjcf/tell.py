@@ -11,12 +11,11 @@ from ves_twin.core.errors import InvalidInputError, UnknownNameError
 from ves_twin.core.recording.recording import Recording
 from ves_twin.core.recording.stretch import compared_stretch
 from ves_twin.core.units import to_si
+from ves_twin.effects.registry import attributes
 from ves_twin.machines.mjcf.description import Compared, Drive, Mode, RigDescription, Setting, Start
-from ves_twin.machines.mjcf.element import Element
 from ves_twin.machines.mjcf.experiment import RigExperiment
 from ves_twin.machines.mjcf.forward import MjcfForward
 from ves_twin.machines.mjcf.machine import Rig
-from ves_twin.machines.mjcf.registry import RIG_EFFECTS
 from ves_twin.scenario.experiment import StartState
 
 DECLARED = ("declared", "auto")
@@ -164,11 +163,7 @@ def _estimated(told: RigDescription, compare: dict[str, Compared]) -> dict[str, 
 def _setting(key: str, value: object, rig: Rig) -> Setting:
     """A key such as "load.mass" as an attribute of the element that has it."""
     name, _, attribute = key.rpartition(".")
-    known: dict[str, Element] = {
-        kind.attribute: kind.element
-        for kind in map(RIG_EFFECTS.__getitem__, RIG_EFFECTS.built_in)
-        if kind.attribute and kind.attribute != "centre"
-    } | {f"centre_{axis}": Element.BODY for axis in "xyz"}
+    known = {attribute: element for element, attribute in attributes()}
     if attribute not in known:
         raise UnknownNameError("attribute in parameters", attribute, known)
     return Setting.model_validate({"attribute": attribute, str(known[attribute]): name})

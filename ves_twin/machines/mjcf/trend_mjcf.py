@@ -11,6 +11,7 @@ from ves_twin.diagnosis.settings import Settings
 from ves_twin.diagnosis.trend.calendar import Calendar
 from ves_twin.diagnosis.trend.result import Trend
 from ves_twin.diagnosis.trend.trend import ALPHA, trend
+from ves_twin.effects.registry import causes_anywhere
 from ves_twin.machines.mjcf.diagnose_mjcf import is_quick
 from ves_twin.machines.mjcf.forward import MjcfForward
 from ves_twin.machines.mjcf.machine import Rig
@@ -56,7 +57,7 @@ def trend_mjcf(
         recordings,
         calendar,
         standstill=standstill,
-        exclude=exclude,
+        exclude=causes_anywhere(exclude),
         cause=cause,
         false_alarm=false_alarm,
         settings=chosen,

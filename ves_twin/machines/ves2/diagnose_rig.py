@@ -15,7 +15,7 @@ from ves_twin.diagnosis.runs import Progress, silent
 from ves_twin.diagnosis.settings import Settings
 from ves_twin.diagnosis.verdict import Cause, Verdict
 from ves_twin.effects.effect import Effect
-from ves_twin.effects.registry import build_effect
+from ves_twin.effects.registry import build_effect, causes_of_today
 from ves_twin.machines.ves2.declared_load import LOAD
 from ves_twin.machines.ves2.excitations import offered_programmes
 from ves_twin.machines.ves2.filter_place import EFFECT as FILTER_PLACE
@@ -108,7 +108,7 @@ def diagnose_rig(
         standstill=standstill,
         baseline=usual.recordings,
         next_programmes=menu,
-        exclude=exclude,
+        exclude=causes_of_today(exclude),
         settings=drawn_nulls(settings),
         progress=progress,
     )

@@ -1,58 +1,23 @@
-"""Laws of every kind of effect that any rig can have."""
+"""Bounds of parameters, and runs that no machine can make."""
 
 from __future__ import annotations
 
-from typing import get_type_hints
-
 import numpy as np
 import pytest
-from two_link import TARGETS, programme, rig, write_files
+from two_link import programme, rig, write_files
 
 from ves_twin.core.errors import VesTwinError
 from ves_twin.machines.mjcf.description import Mode
 from ves_twin.machines.mjcf.forward import MjcfForward
 from ves_twin.machines.mjcf.machine import Rig
-from ves_twin.machines.mjcf.registry import RIG_EFFECTS
 
 FED = programme()
-MODES = tuple(Mode)
 
 
 @pytest.fixture(scope="module")
 def forwards(tmp_path_factory):
     machine = rig(tmp_path_factory.mktemp("rig"))
-    return {mode: MjcfForward.of(machine, mode) for mode in MODES}
-
-
-def test_every_kind_is_final_has_a_source_and_is_tried_here():
-    for name, kind in RIG_EFFECTS.items():
-        assert getattr(kind, "__final__", False), name
-        assert kind.source
-        assert get_type_hints(kind)
-    assert set(TARGETS) == set(RIG_EFFECTS.built_in)
-
-
-@pytest.mark.parametrize("mode", MODES)
-def test_nominal_values_change_nothing_to_the_last_bit(forwards, mode):
-    forward = forwards[mode]
-    told = forward.simulate(FED, {p.name: p.nominal for p in forward.parameters})
-    assert np.array_equal(told, forward.simulate(FED, {}))
-    assert np.all(np.isfinite(told))
-
-
-def test_every_parameter_moves_a_signal_in_some_mode(forwards):
-    still = set()
-    for mode, forward in forwards.items():
-        nominal = forward.simulate(FED, {})
-        sd = np.array([c.sd for c in forward.channels])
-        for p in forward.parameters:
-            values = {p.name: p.nominal + 0.2 * (p.high - p.nominal)}
-            moved = np.max(np.abs(forward.simulate(FED, values) - nominal) / sd)
-            if moved > 1.0:
-                still.discard(p.name)
-            elif mode is MODES[0]:
-                still.add(p.name)
-    assert not still
+    return {mode: MjcfForward.of(machine, mode) for mode in Mode}
 
 
 LARGE = """
@@ -102,14 +67,3 @@ def test_a_run_that_mujoco_had_to_reset_is_none(forwards, mode, more, tmp_path, 
     monkeypatch.chdir(tmp_path)  # MuJoCo writes its log where it runs
     found = forwards[mode].simulate(FED, {"body_mass@arm:mass": -0.5, **more})
     assert np.isnan(found).all()
-
-
-def test_the_smallest_size_of_interest_is_below_the_largest_and_both_are_positive(forwards):
-    for hypothesis in forwards[Mode.MOTION].hypotheses:
-        pairs = zip(hypothesis.smallest, hypothesis.largest, strict=True)
-        assert all(0.0 < smallest < largest for smallest, largest in pairs), hypothesis.label
-
-
-def test_only_shapes_in_time_are_bound_to_their_stretch(forwards):
-    bound = {h.effect for h in forwards[Mode.MOTION].hypotheses if h.transient}
-    assert bound == {"sensor_drift"}

@@ -1,18 +1,17 @@
-"""Effects of structure and surroundings: anchors, bending of a leg, tilt of the base, hoses."""
+"""Effects of VES II's structure: anchors, bending of a leg, tilt of the base, hoses."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, ClassVar, final
+from typing import TYPE_CHECKING, final
 
-from ves_twin.effects.effect import LEGS, RIG, Effect
-from ves_twin.effects.magnitude import Magnitude, Sign
+from ves_twin.effects.effect import Effect
+from ves_twin.effects.magnitude import Sign
+from ves_twin.effects.row import LEGS, RIG, Part, Row
+from ves_twin.effects.size import Size
 
 if TYPE_CHECKING:
     import mujoco
-
-
-_ANCHORS = tuple(f"{leg}.{axis}" for leg in LEGS for axis in "xyz")
 
 
 @final
@@ -22,11 +21,17 @@ class AnchorPosition(Effect):
 
     offset: float = 0.0
 
-    kind: ClassVar[str] = "anchor_position"
-    targets: ClassVar[tuple[str, ...]] = _ANCHORS
-    magnitudes: ClassVar[tuple[Magnitude, ...]] = (Magnitude("offset", "m", 1e-4, 3e-4, 0.02),)
-    channels: ClassVar[tuple[str, ...]] = ("sensor.wrench", "valve.command")
-    source: ClassVar[str] = "assumed; machining and assembly of a welded frame"
+    kind = "anchor_position"
+    sizes = (Size("offset", "m"),)
+    rows = (
+        Row(
+            tuple(f"{leg}.{axis}" for leg in LEGS for axis in "xyz"),
+            (1e-4, 3e-4, 0.02),
+            ("sensor.wrench", "valve.command"),
+            "assumed; machining and assembly of a welded frame",
+            part=Part.STRUCTURE,
+        ),
+    )
 
     def edit_rig(self, rig: mujoco.MjSpec) -> None:
         """Move the site that the leg closes on."""
@@ -45,14 +50,18 @@ class BaseTilt(Effect):
     roll: float = 0.0
     pitch: float = 0.0
 
-    kind: ClassVar[str] = "base_tilt"
-    targets: ClassVar[tuple[str, ...]] = RIG
-    magnitudes: ClassVar[tuple[Magnitude, ...]] = (
-        Magnitude("roll", "rad", 3e-4, 1e-3, 0.05),
-        Magnitude("pitch", "rad", 3e-4, 1e-3, 0.05),
+    kind = "base_tilt"
+    sizes = (Size("roll", "rad"), Size("pitch", "rad"))
+    rows = (
+        Row(
+            RIG,
+            (3e-4, 1e-3, 0.05),
+            ("sensor.wrench",),
+            "thesis 3.4.5: half a degree of orientation is not acceptable",
+            part=Part.STRUCTURE,
+            linear=False,
+        ),
     )
-    channels: ClassVar[tuple[str, ...]] = ("sensor.wrench",)
-    source: ClassVar[str] = "thesis 3.4.5: half a degree of orientation is not acceptable"
 
     def edit_rig(self, rig: mujoco.MjSpec) -> None:
         """Turn gravity into the axes of a base that is rolled, then pitched: g_b = R^T g."""
@@ -78,13 +87,18 @@ class HoseStiffness(Effect):
 
     stiffness: float = 0.0
 
-    kind: ClassVar[str] = "hose_stiffness"
-    targets: ClassVar[tuple[str, ...]] = RIG
-    magnitudes: ClassVar[tuple[Magnitude, ...]] = (
-        Magnitude("stiffness", "N/m", 50.0, 100.0, 2e4, Sign.POSITIVE),
+    kind = "hose_stiffness"
+    sizes = (Size("stiffness", "N/m", Sign.POSITIVE),)
+    rows = (
+        Row(
+            RIG,
+            (50.0, 100.0, 2e4),
+            ("leg.length", "valve.command"),
+            "assumed; six pairs of hydraulic hoses",
+            part=Part.STRUCTURE,
+            linear=False,
+        ),
     )
-    channels: ClassVar[tuple[str, ...]] = ("leg.length", "valve.command")
-    source: ClassVar[str] = "assumed; six pairs of hydraulic hoses"
 
     def edit_rig(self, rig: mujoco.MjSpec) -> None:
         """Give the platform's free joint a spring."""
@@ -105,13 +119,18 @@ class LegBending(Effect):
 
     loss: float = 0.0
 
-    kind: ClassVar[str] = "leg_bending"
-    targets: ClassVar[tuple[str, ...]] = LEGS
-    magnitudes: ClassVar[tuple[Magnitude, ...]] = (
-        Magnitude("loss", "1", 0.02, 0.05, 0.8, Sign.POSITIVE),
+    kind = "leg_bending"
+    sizes = (Size("loss", "1", Sign.POSITIVE),)
+    rows = (
+        Row(
+            LEGS,
+            (0.02, 0.05, 0.8),
+            ("sensor.wrench",),
+            "thesis 5.2: first modes of 10 to 13 Hz; a loose or cracked leg",
+            part=Part.STRUCTURE,
+            linear=False,
+        ),
     )
-    channels: ClassVar[tuple[str, ...]] = ("sensor.wrench",)
-    source: ClassVar[str] = "thesis 5.2: first modes of 10 to 13 Hz; a loose or cracked leg"
 
     def edit_rig(self, rig: mujoco.MjSpec) -> None:
         """Lower the stiffness of the leg's two bending hinges."""

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from ves_twin.machines.mjcf.element import Element
+from ves_twin.effects.element import Element
 
 
 @dataclass(frozen=True)
