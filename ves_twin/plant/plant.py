@@ -138,6 +138,8 @@ class Plant:
 
         An effect of zero size is left out, so that it is no effect to the last bit.
         """
+        for effect in effects:
+            effect.check()
         merged = {(e.kind, e.target): e for e in (*self.effects, *effects)}
         kept = tuple(merged[key] for key in sorted(merged) if not merged[key].neutral)
         return replace(self, effects=kept).with_fidelity(self.fidelity)

@@ -8,8 +8,8 @@ from pydantic import Field, field_validator, model_validator
 
 from ves_twin.machines.mjcf.description import Number, Start
 from ves_twin.scenario.experiment import StartState, Window
+from ves_twin.scenario.experiment_file import ExperimentFile
 from ves_twin.scenario.fields import Part, Seconds, named, si
-from ves_twin.scenario.told import Told
 
 OF_VES_II = ("scenario", "settings")
 """Keys of an experiment with VES II that a rig has nothing for."""
@@ -54,7 +54,7 @@ class RigDifferences(Part):
     window: Window | None = None
 
 
-class RigExperiment(Told):
+class RigExperiment(ExperimentFile):
     """How a recording was made, as far as the rig's file does not say.
 
     `drive` are the signals that were fed in, and so tells the mode; `compare` those that are
