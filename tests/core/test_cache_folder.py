@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from ves_twin import cache_folder as room
+from ves_twin.core import cache_folder as room
 from ves_twin.core.cache_folder import cache_folder
 
 FOREIGN = os.geteuid() + 1
