@@ -20,6 +20,7 @@ from ves_twin.effects.registry import EFFECTS, attributes, build_anywhere, kind_
 from ves_twin.machines.mjcf.check_description import check_description
 from ves_twin.machines.mjcf.description import Allowed, RigDescription, Setting, load_description
 from ves_twin.machines.mjcf.places import anywhere, place_of
+from ves_twin.machines.mjcf.stiff_friction import stiff_friction
 
 
 @dataclass(frozen=True)
@@ -105,6 +106,7 @@ class Rig:
             model = self._loaded(path) if self.payloads else mujoco.MjModel.from_xml_path(str(path))
         except (ValueError, mujoco.FatalError) as error:
             raise InvalidInputError(str(path), one_line(error), "a MuJoCo model") from None
+        stiff_friction(model)
         for setting in self.description.parameters:
             if setting.value is not None:
                 effect, place = self._effect_of(setting, model)
