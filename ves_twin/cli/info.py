@@ -78,7 +78,7 @@ def general_content() -> dict[str, object]:
         },
         "scenarios": list(scenario_questions()),
         "environments": list(ENVIRONMENTS),
-        "MJCF machines": shipped_machines(),
+        "rigs of two files": shipped_machines(),
         "sets of rigs": [p.stem for p in sorted((models / "rig_sets").glob("*.toml"))],
         "baseline policies": list(BASELINES),
         "signals": {
