@@ -137,6 +137,7 @@ class Setting(Part):
     body: str = ""
     joint: str = ""
     actuator: str = ""
+    tendon: str = ""
     value: Number | None = None
     sd: Number = 0.0
     low: Number | None = None
@@ -145,8 +146,8 @@ class Setting(Part):
 
     @model_validator(mode="after")
     def _one_element(self) -> Self:
-        if sum(map(bool, (self.body, self.joint, self.actuator))) != 1:
-            raise ValueError("expected one of body, joint, actuator")
+        if sum(map(bool, (self.body, self.joint, self.actuator, self.tendon))) != 1:
+            raise ValueError("expected one of body, joint, actuator, tendon")
         return self
 
     @property
@@ -156,6 +157,8 @@ class Setting(Part):
             return Element.BODY, self.body
         if self.joint:
             return Element.JOINT, self.joint
+        if self.tendon:
+            return Element.TENDON, self.tendon
         return Element.ACTUATOR, self.actuator
 
 
@@ -297,4 +300,4 @@ def _over(under: dict[str, Any], top: dict[str, Any]) -> dict[str, Any]:
 
 
 def _place(setting: dict[str, Any]) -> tuple[object, ...]:
-    return tuple(setting.get(key) for key in ("body", "joint", "actuator", "attribute"))
+    return tuple(setting.get(key) for key in ("body", "joint", "actuator", "tendon", "attribute"))

@@ -173,6 +173,7 @@ class Rig:
                     source=entry.source,
                     linear=anywhere(entry.effect).linear and len(entry.magnitudes) == 1,
                     transient=anywhere(entry.effect).transient,
+                    starts=entry.effect.starts(entry.place),
                 )
             )
         return tuple(found)
