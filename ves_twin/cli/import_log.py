@@ -26,7 +26,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "--plant",
         metavar="FILE",
         default="ves2",
-        help="whose ranges tell mixed units; a rig of two files: whose signals they are, too",
+        help="whose ranges tell mixed units; an MJCF machine: whose signals they are, too",
     )
     add_limit(parser)
     parser.add_argument("--json", action="store_true", help="the account as JSON on stdout")

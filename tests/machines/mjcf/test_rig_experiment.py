@@ -17,7 +17,7 @@ from ves_twin.diagnosis.forward import Excitation
 from ves_twin.machines.machine import Material, Named
 from ves_twin.machines.mjcf.applied import applied, rig_of
 from ves_twin.machines.mjcf.description import Mode
-from ves_twin.machines.mjcf.experiment import RigExperiment
+from ves_twin.machines.mjcf.experiment import MjcfExperiment
 from ves_twin.machines.mjcf.forward import MjcfForward
 from ves_twin.machines.mjcf.machine import Rig
 from ves_twin.machines.mjcf.mjcf_machine import MjcfMachine
@@ -123,7 +123,7 @@ def test_a_gap_is_left_out_of_what_is_compared(lab, capsys):
 
 def test_a_payload_is_a_point_mass_of_the_body(rig):
     """Against MuJoCo's own composition: the same ball, small, as a geom of the arm."""
-    told = RigExperiment(payload={"body": "arm", "mass": "0.5 kg", "at": [0.0, 0.05, -0.3]})
+    told = MjcfExperiment(payload={"body": "arm", "mass": "0.5 kg", "at": [0.0, 0.05, -0.3]})
     found = rig_of(told, rig).model
     spec = mujoco.MjSpec.from_string(MODEL)
     spec.body("arm").add_geom(pos=[0.0, 0.05, -0.3], size=[1e-4, 0, 0], mass=0.5)
@@ -140,7 +140,7 @@ def test_a_payload_is_a_point_mass_of_the_body(rig):
 
 
 def test_parameters_mode_start_and_window_are_those_of_the_experiment(rig, moved):
-    told = RigExperiment(
+    told = MjcfExperiment(
         drive=("cart.set",),
         parameters={"cart.mass": "3.3 kg", "rail.damping": 9},
         start={"state": "given", "joints": {"swing": {"position": "10 deg", "sd": 0.01}}},
@@ -167,7 +167,7 @@ def test_a_start_in_motion_is_read_from_the_first_rows(rig, moved):
     late = moved.window(1.0, 4.0)
     error = {}
     for state in ("settled", "estimated"):
-        _, made, _ = applied("a", late, RigExperiment(start={"state": state}), rig)
+        _, made, _ = applied("a", late, MjcfExperiment(start={"state": state}), rig)
         forward = MjcfForward.of(made)
         rows = forward.simulate(Excitation.of(late, forward.drive), {})
         at = [c.name for c in forward.channels].index("cart.position")
@@ -178,7 +178,7 @@ def test_a_start_in_motion_is_read_from_the_first_rows(rig, moved):
 
 
 def test_recordings_of_one_diagnosis_are_of_one_rig(rig, moved):
-    told = RigExperiment(recordings={"b": {"parameters": {"cart.mass": 4.0}}})
+    told = MjcfExperiment(recordings={"b": {"parameters": {"cart.mass": 4.0}}})
     one, other = (applied(name, moved, told, rig)[1] for name in "ab")
     assert one.identity != other.identity
     with pytest.raises(VesTwinError, match="one rig in all recordings"):

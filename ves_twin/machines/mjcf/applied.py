@@ -12,14 +12,14 @@ from ves_twin.core.recording.stretch import compared_stretch
 from ves_twin.core.units import to_si
 from ves_twin.effects.registry import attributes
 from ves_twin.machines.mjcf.description import Compared, Drive, Mode, RigDescription, Setting, Start
-from ves_twin.machines.mjcf.experiment import RigExperiment
+from ves_twin.machines.mjcf.experiment import MjcfExperiment
 from ves_twin.machines.mjcf.forward import MjcfForward
 from ves_twin.machines.mjcf.machine import Rig
 from ves_twin.scenario.experiment import StartState
 
 
 def applied(
-    name: str, recording: Recording, experiment: RigExperiment, rig: Rig
+    name: str, recording: Recording, experiment: MjcfExperiment, rig: Rig
 ) -> tuple[Recording, Rig, float]:
     """Apply what an experiment says of one recording.
 
@@ -45,7 +45,7 @@ def applied(
     return compared_stretch(recording, start, told.window.stop, drive, name), own, start
 
 
-def rig_of(experiment: RigExperiment, rig: Rig) -> Rig:
+def rig_of(experiment: MjcfExperiment, rig: Rig) -> Rig:
     """The rig as it was in an experiment: mode, signals compared, numbers, payload, start."""
     told = rig.description
     settings = {(s.element, s.attribute): s for s in told.parameters}
@@ -70,7 +70,7 @@ def rig_of(experiment: RigExperiment, rig: Rig) -> Rig:
     return made
 
 
-def _drive(experiment: RigExperiment, told: RigDescription) -> Drive:
+def _drive(experiment: MjcfExperiment, told: RigDescription) -> Drive:
     """With the mode whose signals are those that were fed in."""
     if not experiment.drive:
         return told.drive
@@ -89,7 +89,7 @@ def _drive(experiment: RigExperiment, told: RigDescription) -> Drive:
     raise InvalidInputError("drive", list(experiment.drive), known)
 
 
-def _compare(experiment: RigExperiment, told: RigDescription) -> dict[str, Compared]:
+def _compare(experiment: MjcfExperiment, told: RigDescription) -> dict[str, Compared]:
     for name in experiment.compare:
         if name not in told.compare:
             raise UnknownNameError("signal in compare", name, told.compare)
@@ -97,7 +97,7 @@ def _compare(experiment: RigExperiment, told: RigDescription) -> dict[str, Compa
 
 
 def _start(
-    experiment: RigExperiment, told: RigDescription, compare: dict[str, Compared]
+    experiment: MjcfExperiment, told: RigDescription, compare: dict[str, Compared]
 ) -> dict[str, Start]:
     start = experiment.start
     if start.state is StartState.GIVEN:

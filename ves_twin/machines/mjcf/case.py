@@ -18,7 +18,7 @@ from ves_twin.diagnosis.residuals.noise import Noise, NoiseSource
 from ves_twin.machines.case import Case, Traces
 from ves_twin.machines.mjcf.applied import applied
 from ves_twin.machines.mjcf.description import Mode
-from ves_twin.machines.mjcf.experiment import RigExperiment
+from ves_twin.machines.mjcf.experiment import MjcfExperiment
 from ves_twin.machines.mjcf.forward import MjcfForward
 from ves_twin.machines.mjcf.machine import Rig
 from ves_twin.machines.mjcf.signals import rig_signals
@@ -103,7 +103,7 @@ class MjcfCase(Case):
 def mjcf_cases(
     name: str,
     recording: Recording,
-    experiment: RigExperiment,
+    experiment: MjcfExperiment,
     rig: Rig,
     standstill: Recording | None,
 ) -> tuple[MjcfCase, ...]:

@@ -1,4 +1,4 @@
-"""MjcfForward: any rig of two files as the diagnosis sees it."""
+"""MjcfForward: an MJCF machine as the diagnosis sees it."""
 
 from __future__ import annotations
 

@@ -25,7 +25,7 @@ from ves_twin.machines.machine import Machine, Material, Named, Prepared
 from ves_twin.machines.mjcf.applied import applied
 from ves_twin.machines.mjcf.case import mjcf_cases
 from ves_twin.machines.mjcf.excitations import SECONDS, offered, write_inputs
-from ves_twin.machines.mjcf.experiment import RigExperiment
+from ves_twin.machines.mjcf.experiment import MjcfExperiment
 from ves_twin.machines.mjcf.extend import extended, write_rig
 from ves_twin.machines.mjcf.forward import MjcfForward
 from ves_twin.machines.mjcf.interleaved_split import alternate
@@ -89,9 +89,9 @@ class MjcfMachine(Machine):
             path = find_data(source, self.rig.description.data, self.folder)
         return read_recording(path, self.rig, self.mapping)
 
-    def experiment(self, path: str | Path) -> RigExperiment:
+    def experiment(self, path: str | Path) -> MjcfExperiment:
         """With the keys of MJCF machines."""
-        return RigExperiment.load(path)
+        return MjcfExperiment.load(path)
 
     def prepare(self, material: Material, experiment: ExperimentFile | None = None) -> Prepared:
         """The stretches that are compared, of one machine in one state."""
@@ -117,7 +117,7 @@ class MjcfMachine(Machine):
 
     def cases(self, given: Named, experiment: ExperimentFile | None = None) -> tuple[Case, ...]:
         """The mode of the file, and closed loop where set-points were recorded."""
-        told = _of_mjcf(experiment or RigExperiment())
+        told = _of_mjcf(experiment or MjcfExperiment())
         source = told.of(given.name).noise
         standstill = None if source in BY_NUMBERS else self.read(source)
         return mjcf_cases(given.name, given.recording, told, self.rig, standstill)
@@ -172,8 +172,8 @@ class MjcfMachine(Machine):
         write_inputs(self.forward, excitation, folder)
 
 
-def _of_mjcf(experiment: ExperimentFile) -> RigExperiment:
-    if not isinstance(experiment, RigExperiment):
+def _of_mjcf(experiment: ExperimentFile) -> MjcfExperiment:
+    if not isinstance(experiment, MjcfExperiment):
         raise InvalidInputError("experiment", type(experiment).__name__, "one with an MJCF machine")
     return experiment
 
