@@ -10,6 +10,7 @@ from pathlib import Path
 
 import mujoco
 
+from ves_twin.core.engine_log import log_engine
 from ves_twin.core.errors import FileAccessError, InvalidInputError, UnknownNameError, one_line
 from ves_twin.core.units import to_si
 from ves_twin.diagnosis.forward import Hypothesis, Parameter
@@ -102,6 +103,7 @@ class Rig:
         path = self.folder / self.description.model
         if not path.is_file():
             raise FileAccessError(f"model file '{path}' of rig {self.description.name} is missing")
+        log_engine()
         try:
             model = self._loaded(path) if self.payloads else mujoco.MjModel.from_xml_path(str(path))
         except (ValueError, mujoco.FatalError) as error:
