@@ -10,8 +10,8 @@ from ves_twin.cli.main import main
 from ves_twin.core.errors import InvalidInputError
 from ves_twin.core.recording.files import load_recording
 from ves_twin.diagnosis.forward import Excitation
-from ves_twin.machines.mjcf.excitations import FARTHEST, excitations, joint_of
 from ves_twin.machines.mjcf.machine import Rig
+from ves_twin.machines.mjcf.programmes import FARTHEST, joint_of, releases
 from ves_twin.suites.machine import BlindRig
 from ves_twin.suites.mjcf import BlindMjcf
 from ves_twin.suites.suite import load_suite
@@ -59,15 +59,15 @@ def test_every_kind_outside_the_library_changes_what_is_measured(tmp_path, mode)
 def test_what_a_machine_is_offered_stays_within_its_travel(tmp_path):
     for rig in (two_link.rig(tmp_path), Rig.load("pendulum")):
         machine = BlindMjcf(rig)
-        assert [e.name for e in excitations(rig)] == list(machine.excitations)
+        assert [e.name for e in MjcfMachine(rig).excitations()] == list(machine.excitations)
         column = {c.signal: i for i, c in enumerate(machine.forward.channels)}
-        for programme in excitations(rig):
+        for programme in machine.excitations.values():
             rows = machine.forward.simulate(programme, {})
             for signal, compared in rig.description.compare.items():
                 if compared.joint and compared.of == "position":
                     travel = joint_of(rig, compared.joint).travel
                     assert np.abs(rows[:, column[signal]]).max() <= FARTHEST * travel
-    assert excitations(two_link.rig(tmp_path, "motion")) == ()
+    assert releases(two_link.rig(tmp_path)) == ()  # no start that recordings may say
 
 
 def test_a_suite_of_a_machine_of_ones_own_is_moved_with_its_files(tmp_path, capsys):

@@ -26,8 +26,8 @@ from ves_twin.core.recording.recording import Recording, RecordingInfo
 from ves_twin.diagnosis.forward import Excitation
 from ves_twin.diagnosis.runs import silent
 from ves_twin.diagnosis.settings import Settings
-from ves_twin.machines.mjcf.excitations import excitations
 from ves_twin.machines.mjcf.forward import MjcfForward
+from ves_twin.machines.mjcf.mjcf_machine import MjcfMachine
 from ves_twin.machines.mjcf.started import start_signal, started
 from ves_twin.suites.answer import answer_suite
 from ves_twin.suites.answers import Answer, write_answers
@@ -132,14 +132,14 @@ def test_the_start_that_is_read_is_that_of_the_motion():
 
 
 def test_no_entry_of_the_menu_swings_beyond_a_right_angle():
-    for programme in excitations(MACHINE):
+    for programme in MjcfMachine(MACHINE).excitations():
         swing = np.abs(DELAYED.simulate(programme, {})[:, 0]).max()
         assert 0.02 < swing < np.pi / 2, programme.name
 
 
 def test_only_a_release_parts_the_two_delays():
     apart = {}
-    for programme in excitations(MACHINE):
+    for programme in MjcfMachine(MACHINE).excitations():
         late = [DELAYED.simulate(programme, {late: 0.005}) for late in (LATE, LATE_COMMAND)]
         apart[programme.name] = np.std(late[0] - late[1], axis=0)[0] / SDS[0]
     assert apart["quick multisine"] < 0.1

@@ -24,6 +24,7 @@ MODEL = """
       </body>
     </body>
   </worldbody>
+  <tendon><fixed name="belt"><joint joint="swing" coef="0.5"/></fixed></tendon>
   <actuator><motor name="drive" joint="rail"/><motor name="hinge" joint="swing"/></actuator>
   <sensor><force name="load" site="tip"/></sensor>
 </mujoco>
@@ -44,6 +45,12 @@ TARGETS = {
     "joint_spring": ["rail"],
     "rotor_inertia": ["rail"],
     "backlash": ["swing"],
+    "quadratic_drag": ["rail"],
+    "stribeck_friction": ["rail"],
+    "friction_behind_gap": ["rail"],
+    "coupling_inertia": ["belt"],
+    "coupling_viscous": ["belt"],
+    "coupling_coulomb": ["belt"],
     "actuator_gain": ["drive"],
     "actuator_delay": ["drive"],
     "body_mass": ["cart", "arm"],

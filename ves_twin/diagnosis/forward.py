@@ -90,6 +90,8 @@ class Hypothesis:
             its own tolerance, scaled, stands for every size in the bank.
         transient: its sizes belong to the recorded stretch of time, as the shape of a drift does;
             it may be filled in between recordings and says nothing of what comes later.
+        starts: departures for the bank where parameters say nothing one by one, as the gap of a
+            friction that has no level; () makes them of the sizes.
     """
 
     effect: str
@@ -101,6 +103,7 @@ class Hypothesis:
     source: str = ""
     linear: bool = False
     transient: bool = False
+    starts: tuple[tuple[float, ...], ...] = ()
 
     @property
     def label(self) -> str:
@@ -114,6 +117,8 @@ class Hypothesis:
         by scaling. Two parameters: three sizes of each and of all combinations; more: of each
         alone.
         """
+        if self.starts:
+            return np.asarray(self.starts, dtype=float)
         count = LEVELS if len(self.parameters) == 1 else 3
         axes = []
         for smallest, largest in zip(self.smallest, self.largest, strict=True):

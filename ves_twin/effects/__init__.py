@@ -2,7 +2,9 @@
 
 from ves_twin.effects.actuators import ActuatorDelay, ActuatorGain
 from ves_twin.effects.bodies import BodyInertia, BodyMass, MassCentre, PayloadMass
+from ves_twin.effects.couplings import CouplingCoulomb, CouplingInertia, CouplingViscous
 from ves_twin.effects.effect import Effect
+from ves_twin.effects.friction import FrictionBehindGap, QuadraticDrag, StribeckFriction
 from ves_twin.effects.hydraulics import (
     OilAir,
     PistonLeakage,
@@ -67,11 +69,15 @@ __all__ = [
     "CommandLimit",
     "CoulombAsymmetry",
     "CoulombFriction",
+    "CouplingCoulomb",
+    "CouplingInertia",
+    "CouplingViscous",
     "CrossTalk",
     "Effect",
     "EncoderOffset",
     "FilterEdge",
     "ForceOffset",
+    "FrictionBehindGap",
     "HoseStiffness",
     "JointSpring",
     "LegBending",
@@ -84,6 +90,7 @@ __all__ = [
     "OilAir",
     "PayloadMass",
     "PistonLeakage",
+    "QuadraticDrag",
     "RotorInertia",
     "SensorDelay",
     "SensorDrift",
@@ -94,6 +101,7 @@ __all__ = [
     "SensorWander",
     "ServoGain",
     "StaleGravity",
+    "StribeckFriction",
     "SupplyDroop",
     "SupplyPressure",
     "TransducerDelay",

@@ -29,12 +29,12 @@ class ActuatorGain(Effect):
 
     kind = "actuator_gain"
     sizes = (Size("gain", "1"),)
+    source = "assumed; magnets and amplifiers, a per cent"
     rows = (
         Row(
             JOINTS,
             (0.01, 0.02, 0.3),
             ("arm.torque",),
-            "assumed; magnets and amplifiers, a per cent",
             Loop("drive.torque_gain", Law.SCALE),
             Part.ARM,
         ),
@@ -62,24 +62,23 @@ class ActuatorDelay(Effect):
 
     kind = "actuator_delay"
     sizes = (Size("delay", "s", Sign.POSITIVE),)
+    proportional = False
     rows = (
         Row(
             ALL_LEGS,
             (0.0, 5e-4, 0.02),
             ("leg.length", "valve.command"),
-            "thesis 2.4.2 (leg computer at 587 Hz); one of its cycles is 1.7 ms",
             Loop("late.current.delay"),
             Part.CLOCK,
-            linear=False,
+            source="thesis 2.4.2 (leg computer at 587 Hz); one of its cycles is 1.7 ms",
         ),
         Row(
             ("arm",),
             (0.0, 5e-4, 0.02),
             ("arm.q", "arm.torque", "sensor.wrench"),
-            "thesis 2.4.3 (a computer of its own drives the arm); size assumed",
             Loop("late.setpoint.delay"),
             Part.DRIVE,
-            linear=False,
+            source="thesis 2.4.3 (a computer of its own drives the arm); size assumed",
         ),
     )
     # 50 ms: assumed, a slow fieldbus and its filters

@@ -32,15 +32,8 @@ class PayloadMass(Effect):
 
     kind = "payload_mass"
     sizes = (Size("mass", "kg", Sign.POSITIVE),)
-    rows = (
-        Row(
-            ("arm.tool",),
-            (0.02, 0.05, 4.0),
-            WEIGHED,
-            "assumed; tools and cables on the wrist",
-            part=Part.PAYLOAD,
-        ),
-    )
+    source = "assumed; tools and cables on the wrist"
+    rows = (Row(("arm.tool",), (0.02, 0.05, 4.0), WEIGHED, part=Part.PAYLOAD),)
 
     def edit_arm(self, arm: mujoco.MjSpec) -> None:
         """Join the point mass to link 3, with centre of mass and inertia by the parallel axes."""
@@ -60,15 +53,8 @@ class BodyMass(Effect):
 
     kind = "body_mass"
     sizes = (Size("mass", "kg"),)
-    rows = (
-        Row(
-            LINKS,
-            (0.05, 0.1, 4.0),
-            WEIGHED,
-            "Appendix B gives masses to three digits",
-            part=Part.PAYLOAD,
-        ),
-    )
+    source = "Appendix B gives masses to three digits"
+    rows = (Row(LINKS, (0.05, 0.1, 4.0), WEIGHED, part=Part.PAYLOAD),)
     anywhere = Anywhere(
         Element.BODY,
         lambda p: 0.5 * p.mass,
@@ -105,12 +91,12 @@ class MassCentre(Effect):
 
     kind = "mass_centre"
     sizes = (Size("shift", "m"),)
+    source = "Appendix B gives centres of mass to the millimetre"
     rows = (
         Row(
             tuple(f"{link}.{axis}" for link in LINKS for axis in "xyz"),
             (2e-3, 4e-3, 0.1),
             WEIGHED,
-            "Appendix B gives centres of mass to the millimetre",
             part=Part.PAYLOAD,
         ),
     )

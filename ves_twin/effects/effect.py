@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import math
 from abc import ABC
-from collections.abc import Mapping
-from dataclasses import dataclass, fields
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, fields, replace
 from typing import TYPE_CHECKING, ClassVar, Self
 
 import numpy as np
@@ -60,13 +60,16 @@ class Effect(ABC):
     source: ClassVar[str] = ""
     steady: ClassVar[bool] = False
     """Whether `resist` is the same effort at any speed."""
+    proportional: ClassVar[bool] = True
+    """Whether its trace on VES II is proportional to its size."""
 
     def __init_subclass__(cls) -> None:
         if cls.rows:
+            cls.rows = tuple(replace(row, source=row.source or cls.source) for row in cls.rows)
             cls.targets = tuple(target for row in cls.rows for target in row.targets)
         elif cls.targets and cls.magnitudes:
             cls.sizes = tuple(Size(m.name, m.unit, m.sign) for m in cls.magnitudes)
-            cls.rows = (Row(cls.targets, (0.0, 0.0, 0.0), cls.channels, cls.source),)
+            cls.rows = (Row(cls.targets, (0.0, 0.0, 0.0), cls.channels, source=cls.source),)
 
     def __post_init__(self) -> None:
         for name, value in self._fields().items():
@@ -100,6 +103,17 @@ class Effect(ABC):
         if cls.anywhere is None:
             return ()
         return tuple(cls.anywhere.magnitude(size, place) for size in cls.sizes)
+
+    @classmethod
+    def ranged(cls, place: Place, *largest: float) -> tuple[Magnitude, ...]:
+        """Sizes of a kind with several, each with its own largest one at a place."""
+        on = [Anywhere(cls.anywhere.element, most) for most in largest] if cls.anywhere else []
+        return tuple(one.magnitude(size, place) for one, size in zip(on, cls.sizes, strict=True))
+
+    @classmethod
+    def starts(cls, place: Place) -> tuple[tuple[float, ...], ...]:
+        """Sizes to begin a search at, where sizes say nothing one by one; () if they do."""
+        return ()
 
     def check(self) -> None:
         """Hold the effect against VES II.
@@ -189,6 +203,14 @@ class Effect(ABC):
     def resist(self, speed: FloatArray, slow: float) -> FloatArray:
         """Effort [N, N m] against a joint's motion at speeds (n,); `slow` smooths signs."""
         return np.zeros_like(speed)
+
+    def hold(self, position: FloatArray) -> FloatArray:
+        """Effort [N, N m] against a joint along positions (n,), of a kind with place or memory."""
+        return np.zeros_like(position)
+
+    def holder(self) -> Callable[[float], float]:
+        """The same, position by position from where the motion begins; it keeps the memory."""
+        return lambda position: 0.0
 
     def edit_position(self, position: FloatArray) -> FloatArray:
         """A joint's position (n,) on the other side of what lies between drive and joint."""

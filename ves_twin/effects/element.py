@@ -12,3 +12,4 @@ class Element(StrEnum):
     JOINT = "joint"
     ACTUATOR = "actuator"
     SIGNAL = "signal"
+    TENDON = "tendon"

@@ -27,16 +27,8 @@ class ValveNull(Effect):
 
     kind = "valve_null"
     sizes = (Size("null", "1"),)
-    rows = (
-        Row(
-            LEGS,
-            (0.0005, 0.001, 0.05),
-            LOOP,
-            "servovalve catalogues: null shifts of some tenths of a per cent to 2 %",
-            Table("hydraulics.valve_null"),
-            Part.VALVE,
-        ),
-    )
+    source = "servovalve catalogues: null shifts of some tenths of a per cent to 2 %"
+    rows = (Row(LEGS, (0.0005, 0.001, 0.05), LOOP, Table("hydraulics.valve_null"), Part.VALVE),)
 
 
 @final
@@ -48,15 +40,9 @@ class ValveGain(Effect):
 
     kind = "valve_gain"
     sizes = (Size("gain", "1"),)
+    source = "rated flows are given within 10 %; a per cent after commissioning"
     rows = (
-        Row(
-            LEGS,
-            (0.01, 0.02, 0.5),
-            LOOP,
-            "rated flows are given within 10 %; a per cent after commissioning",
-            Table("hydraulics.valve_gain", Law.SCALE),
-            Part.VALVE,
-        ),
+        Row(LEGS, (0.01, 0.02, 0.5), LOOP, Table("hydraulics.valve_gain", Law.SCALE), Part.VALVE),
     )
 
 
@@ -69,17 +55,9 @@ class ValveDeadband(Effect):
 
     kind = "valve_deadband"
     sizes = (Size("deadband", "1", Sign.POSITIVE),)
-    rows = (
-        Row(
-            LEGS,
-            (0.0, 0.0005, 0.05),
-            LOOP,
-            "Merritt 1967, chapter 5; an axis-cut spool has under 1 %",
-            Table("hydraulics.valve_deadband"),
-            Part.VALVE,
-            linear=False,
-        ),
-    )
+    source = "Merritt 1967, chapter 5; an axis-cut spool has under 1 %"
+    proportional = False
+    rows = (Row(LEGS, (0.0, 0.0005, 0.05), LOOP, Table("hydraulics.valve_deadband"), Part.VALVE),)
 
 
 @final
@@ -91,17 +69,9 @@ class ValveLag(Effect):
 
     kind = "valve_lag"
     sizes = (Size("lag", "s", Sign.POSITIVE),)
-    rows = (
-        Row(
-            LEGS,
-            (2e-4, 4e-4, 0.02),
-            LOOP,
-            "assumed; dirt and worn pilots slow a spool by milliseconds",
-            Table("hydraulics.valve_lag"),
-            Part.VALVE,
-            linear=False,
-        ),
-    )
+    source = "assumed; dirt and worn pilots slow a spool by milliseconds"
+    proportional = False
+    rows = (Row(LEGS, (2e-4, 4e-4, 0.02), LOOP, Table("hydraulics.valve_lag"), Part.VALVE),)
 
 
 @final
@@ -113,17 +83,8 @@ class PistonLeakage(Effect):
 
     kind = "piston_leakage"
     sizes = (Size("leakage", "m^3/s/Pa", Sign.POSITIVE),)
-    rows = (
-        Row(
-            LEGS,
-            (1e-13, 2e-13, 5e-11),
-            LOOP,
-            "Merritt 1967, chapter 6; a worn seal",
-            Table("chamber.leakage"),
-            Part.CYLINDER,
-            pressure=True,
-        ),
-    )
+    source = "Merritt 1967, chapter 6; a worn seal"
+    rows = (Row(LEGS, (1e-13, 2e-13, 5e-11), LOOP, Table("chamber.leakage"), Part.CYLINDER),)
 
 
 @final
@@ -135,16 +96,15 @@ class OilAir(Effect):
 
     kind = "oil_air"
     sizes = (Size("loss", "1", Sign.POSITIVE),)
+    source = "Merritt 1967, section 2.2: one per cent of air halves the modulus"
+    proportional = False
     rows = (
         Row(
             LEGS,
             (0.02, 0.04, 0.8),
             ("leg.length", "sensor.wrench"),
-            "Merritt 1967, section 2.2: one per cent of air halves the modulus",
             Table("chamber.bulk_modulus", Law.LOSE),
             Part.CYLINDER,
-            linear=False,
-            pressure=True,
         ),
     )
 
@@ -158,17 +118,8 @@ class SupplyPressure(Effect):
 
     kind = "supply_pressure"
     sizes = (Size("pressure", "Pa"),)
-    rows = (
-        Row(
-            RIG,
-            (1e5, 1e5, 3e6),
-            MANIFOLD,
-            "assumed; a relief valve is set within a per cent",
-            Table("supply.pressure"),
-            Part.SUPPLY,
-            pressure=True,
-        ),
-    )
+    source = "assumed; a relief valve is set within a per cent"
+    rows = (Row(RIG, (1e5, 1e5, 3e6), MANIFOLD, Table("supply.pressure"), Part.SUPPLY),)
 
 
 @final
@@ -180,15 +131,6 @@ class SupplyDroop(Effect):
 
     kind = "supply_droop"
     sizes = (Size("droop", "Pa*s/m^3", Sign.POSITIVE),)
-    rows = (
-        Row(
-            RIG,
-            (0.0, 2e7, 4e9),
-            MANIFOLD,
-            "assumed; a tired pump or a clogged filter, 0.2 to 40 bar at 1 l/s",
-            Table("supply.droop"),
-            Part.SUPPLY,
-            linear=False,
-            pressure=True,
-        ),
-    )
+    source = "assumed; a tired pump or a clogged filter, 0.2 to 40 bar at 1 l/s"
+    proportional = False
+    rows = (Row(RIG, (0.0, 2e7, 4e9), MANIFOLD, Table("supply.droop"), Part.SUPPLY),)

@@ -33,25 +33,23 @@ class CoulombFriction(Effect):
 
     kind = "coulomb_friction"
     sizes = (Size("level", EFFORT, Sign.POSITIVE),)
+    proportional = False
     rows = (
         Row(
             LEGS,
             (0.0, 5.0, 400.0),
             ("leg.length", "sensor.wrench"),
-            "assumed; 1 to 3 % of the 12 kN that a leg can give",
             Table("leg.dry_friction"),
             Part.CYLINDER,
-            linear=False,
+            source="assumed; 1 to 3 % of the 12 kN that a leg can give",
         ),
         Row(
             JOINTS,
             (0.3, 0.5, 30.0),
             TORQUE,
-            "Armstrong-Helouvry and Corke 1994: 3.9 to 8 N m in all at these joints",
             change.FRICTION_LOSS,
             Part.ARM,
-            hinge=True,
-            linear=False,
+            source="Armstrong-Helouvry and Corke 1994: 3.9 to 8 N m in all at these joints",
         ),
     )
     anywhere = Anywhere(Element.JOINT, lambda p: p.effort, attribute=change.FRICTION_LOSS)
@@ -71,19 +69,17 @@ class ViscousFriction(Effect):
             LEGS,
             (50.0, 100.0, 2e4),
             ("leg.length",),
-            "assumed; seals",
             Table("chamber.viscous"),
             Part.CYLINDER,
-            pressure=True,
+            source="assumed; seals",
         ),
         Row(
             JOINTS,
             (0.4, 0.8, 30.0),
             TORQUE,
-            "Armstrong-Helouvry and Corke 1994; varies with temperature",
             change.DAMPING,
             Part.ARM,
-            hinge=True,
+            source="Armstrong-Helouvry and Corke 1994; varies with temperature",
         ),
     )
     # up to three times what takes the typical effort at the typical speed
@@ -148,17 +144,8 @@ class RotorInertia(Effect):
 
     kind = "rotor_inertia"
     sizes = (Size("inertia", INERTIA, Sign.POSITIVE),)
-    rows = (
-        Row(
-            JOINTS,
-            (0.02, 0.05, 5.0),
-            TORQUE,
-            "Armstrong, Khatib and Burdick 1986",
-            change.ARMATURE,
-            Part.ARM,
-            hinge=True,
-        ),
-    )
+    source = "Armstrong, Khatib and Burdick 1986"
+    rows = (Row(JOINTS, (0.02, 0.05, 5.0), TORQUE, change.ARMATURE, Part.ARM),)
     # up to what takes the typical effort to reach the typical speed over half the travel
     anywhere = Anywhere(
         Element.JOINT, lambda p: p.effort * p.travel / p.speed**2, attribute=change.ARMATURE
@@ -174,17 +161,8 @@ class JointSpring(Effect):
 
     kind = "joint_spring"
     sizes = (Size("stiffness", STIFFNESS, Sign.POSITIVE),)
-    rows = (
-        Row(
-            JOINTS,
-            (0.3, 0.5, 40.0),
-            TORQUE,
-            "assumed; dressing of the wrist and the force sensor's cable",
-            change.STIFFNESS,
-            Part.ARM,
-            hinge=True,
-        ),
-    )
+    source = "assumed; dressing of the wrist and the force sensor's cable"
+    rows = (Row(JOINTS, (0.3, 0.5, 40.0), TORQUE, change.STIFFNESS, Part.ARM),)
     anywhere = Anywhere(Element.JOINT, lambda p: p.effort / p.travel, attribute=change.STIFFNESS)
 
 

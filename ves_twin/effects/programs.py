@@ -34,17 +34,9 @@ class LegGain(Effect):
 
     kind = "leg_gain"
     sizes = (Size("share", "1"),)
-    rows = (
-        Row(
-            ALL_LEGS,
-            (0.0, 0.02, 0.5),
-            LEG_LOOP,
-            "thesis 5.2: gains were tuned by hand at the rig",
-            Loop("legs.gain", Law.SCALE),
-            Part.PROGRAM,
-            linear=False,
-        ),
-    )
+    source = "thesis 5.2: gains were tuned by hand at the rig"
+    proportional = False
+    rows = (Row(ALL_LEGS, (0.0, 0.02, 0.5), LEG_LOOP, Loop("legs.gain", Law.SCALE), Part.PROGRAM),)
 
 
 @final
@@ -56,17 +48,9 @@ class LegRateGain(Effect):
 
     kind = "leg_rate_gain"
     sizes = (Size("change", "1"),)
-    rows = (
-        Row(
-            ALL_LEGS,
-            (0.0, 0.01, 0.2),
-            LEG_LOOP,
-            "thesis 5.2: K2 beside K1 in the deployed law",
-            Loop("legs.rate_gain"),
-            Part.PROGRAM,
-            linear=False,
-        ),
-    )
+    source = "thesis 5.2: K2 beside K1 in the deployed law"
+    proportional = False
+    rows = (Row(ALL_LEGS, (0.0, 0.01, 0.2), LEG_LOOP, Loop("legs.rate_gain"), Part.PROGRAM),)
 
 
 @final
@@ -82,17 +66,9 @@ class FilterEdge(Effect):
 
     kind = "filter_edge"
     sizes = (Size("share", "1"),)
-    rows = (
-        Row(
-            ALL_LEGS,
-            (0.0, 0.05, 0.5),
-            LEG_LOOP,
-            "thesis Table 5-1, errata E-43: coefficients copied by hand",
-            Loop("legs.edge", Law.SCALE),
-            Part.PROGRAM,
-            linear=False,
-        ),
-    )
+    source = "thesis Table 5-1, errata E-43: coefficients copied by hand"
+    proportional = False
+    rows = (Row(ALL_LEGS, (0.0, 0.05, 0.5), LEG_LOOP, Loop("legs.edge", Law.SCALE), Part.PROGRAM),)
 
 
 @final
@@ -104,17 +80,9 @@ class CommandLimit(Effect):
 
     kind = "command_limit"
     sizes = (Size("tightness", "1", Sign.POSITIVE),)
-    rows = (
-        Row(
-            ALL_LEGS,
-            (0.0, 1.0, 9.0),
-            LEG_LOOP,
-            "assumed; a limit left in the program, or a converter of less range",
-            Loop("legs.limit", Law.DIVIDE),
-            Part.PROGRAM,
-            linear=False,
-        ),
-    )
+    source = "assumed; a limit left in the program, or a converter of less range"
+    proportional = False
+    rows = (Row(ALL_LEGS, (0.0, 1.0, 9.0), LEG_LOOP, Loop("legs.limit", Law.DIVIDE), Part.PROGRAM),)
 
 
 @final
@@ -129,15 +97,15 @@ class ServoGain(Effect):
 
     kind = "servo_gain"
     sizes = (Size("share", "1"),)
+    source = "thesis 2.4.3: gains set in the motion controller; size assumed"
+    proportional = False
     rows = (
         Row(
             JOINTS,
             (0.0, 0.02, 0.5),
             ("arm.q", "arm.torque"),
-            "thesis 2.4.3: gains set in the motion controller; size assumed",
             Loop("servo.stiffness", Law.SCALE),
             Part.PROGRAM,
-            linear=False,
         ),
     )
 
@@ -155,14 +123,9 @@ class ModelMass(Effect):
 
     kind = "model_mass"
     sizes = (Size("share", "1"),)
+    source = "thesis eqs 2.4 to 2.6, errata E-2: matrices worked out beforehand"
     rows = (
-        Row(
-            COMPUTERS,
-            (0.0, 0.05, 0.5),
-            ("platform.command", "leg.length"),
-            "thesis eqs 2.4 to 2.6, errata E-2: matrices worked out beforehand",
-            part=Part.COMPUTERS,
-        ),
+        Row(COMPUTERS, (0.0, 0.05, 0.5), ("platform.command", "leg.length"), part=Part.COMPUTERS),
     )
 
     def edit_computers(self, numbers: dict[str, FloatArray]) -> None:
@@ -185,12 +148,12 @@ class StaleGravity(Effect):
 
     kind = "stale_gravity"
     sizes = (Size("cycles", "1", Sign.POSITIVE),)
+    source = "thesis 2.4.2: the estimate comes through shared memory"
     rows = (
         Row(
             COMPUTERS,
             (0.0, 1.0, 20.0),
             ("gravity.estimate", "platform.command"),
-            "thesis 2.4.2: the estimate comes through shared memory",
             part=Part.COMPUTERS,
         ),
     )

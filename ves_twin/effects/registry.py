@@ -11,6 +11,8 @@ from ves_twin.core.plugins import Registry, lacks
 from ves_twin.effects import (
     actuators,
     bodies,
+    couplings,
+    friction,
     hydraulics,
     joints,
     programs,
@@ -24,7 +26,10 @@ from ves_twin.effects.element import Element
 from ves_twin.effects.row import ALL_LEGS, JOINTS, LEGS, LINKS
 from ves_twin.effects.sensors import CrossTalk
 
-_CATALOGUE = (transducers, joints, hydraulics, structure, actuators, bodies, sensors, programs)
+_CATALOGUE = (
+    *(transducers, joints, friction, couplings, hydraulics, structure, actuators, bodies),
+    *(sensors, programs),
+)
 
 RENAMED = {
     "cable_spring": ("joint_spring", JOINTS),

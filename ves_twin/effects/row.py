@@ -6,7 +6,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from enum import IntEnum, auto
 
-from ves_twin.effects.change import Attribute, Change
+from ves_twin.effects.change import Attribute, Change, Table
 from ves_twin.effects.element import Element
 from ves_twin.effects.magnitude import Magnitude
 from ves_twin.effects.place import Place
@@ -46,6 +46,9 @@ class Part(IntEnum):
     OTHER = auto()
 
 
+_UNDER_PRESSURE = ("chamber.", "supply.")
+
+
 @dataclass(frozen=True)
 class Row:
     """A kind of effect on some targets of VES II.
@@ -55,27 +58,27 @@ class Row:
         span: sd that commissioning leaves open, smallest size of interest, largest plausible one,
             in the unit of the size.
         channels: where it shows first.
-        source: why these sizes.
         change: the one number that it changes; None where the kind has hooks of its own.
-        part: of the machine.
-        hinge: whether the target turns rather than slides.
-        linear: whether its trace is proportional to its size.
-        pressure: whether it acts on chambers or the manifold, which the linear form lacks.
+        part: of the machine; what sits on its arm turns, what sits on its legs slides.
+        source: why these sizes; that of the kind if left out.
     """
 
     targets: tuple[str, ...]
     span: tuple[float, float, float]
     channels: tuple[str, ...]
-    source: str
     change: Change | None = None
     part: Part = Part.OTHER
-    hinge: bool = False
-    linear: bool = True
-    pressure: bool = False
+    source: str = ""
+
+    @property
+    def pressure(self) -> bool:
+        """Whether it acts on chambers or the manifold, which the linear form lacks."""
+        return isinstance(self.change, Table) and self.change.name.startswith(_UNDER_PRESSURE)
 
     def magnitude(self, size: Size) -> Magnitude:
         """A size with unit and range."""
-        return Magnitude(size.name, size.unit_on(hinge=self.hinge), *self.span, size.sign)
+        unit = size.unit_on(hinge=self.part is Part.ARM)
+        return Magnitude(size.name, unit, *self.span, size.sign)
 
 
 @dataclass(frozen=True)

@@ -33,16 +33,8 @@ class SensorGain(Effect):
 
     kind = "sensor_gain"
     sizes = (Size("gain", "1"),)
-    rows = (
-        Row(
-            AXES,
-            (0.001, 0.003, 0.2),
-            WRENCH,
-            "thesis 3.2.4 (electronics gain); size as catalogues of such sensors",
-            Loop("sensor.gain", Law.SCALE),
-            Part.SENSOR,
-        ),
-    )
+    source = "thesis 3.2.4 (electronics gain); size as catalogues of such sensors"
+    rows = (Row(AXES, (0.001, 0.003, 0.2), WRENCH, Loop("sensor.gain", Law.SCALE), Part.SENSOR),)
     anywhere = Anywhere(Element.SIGNAL, 0.3, 0.001, linear=True)
 
     def edit_reading(
@@ -67,12 +59,12 @@ class CrossTalk(Effect):
 
     kind = "cross_talk"
     sizes = (Size("share", "1"),)
+    source = "thesis 3.2.4 (repeatable, linear, removed by a calibration matrix)"
     rows = (
         Row(
             tuple(f"{to}.{of.removeprefix('sensor.')}" for to in AXES for of in AXES if to != of),
             (0.0005, 0.002, 0.1),
             WRENCH,
-            "thesis 3.2.4 (repeatable, linear, removed by a calibration matrix)",
             part=Part.SENSOR,
         ),
     )
@@ -120,12 +112,12 @@ class EncoderOffset(Effect):
 
     kind = "encoder_offset"
     sizes = (Size("offset", "rad"),)
+    source = "Appendix E: the arm is at its home when the controller starts"
     rows = (
         Row(
             JOINTS,
             (5e-4, 1e-3, 0.05),
             ("sensor.wrench", "arm.torque"),
-            "Appendix E: the arm is at its home when the controller starts",
             Loop("drive.encoder_offset"),
             Part.ARM,
         ),
@@ -141,16 +133,8 @@ class SensorDrift(Effect):
 
     kind = "sensor_drift"
     sizes = (Size("rate", "N/s"),)
-    rows = (
-        Row(
-            AXES,
-            (2e-3, 0.01, 2.0),
-            WRENCH,
-            "thesis 3.2.4, Appendix F: thermal drift, no numbers; moments in N m/s",
-            Loop("sensor.drift"),
-            Part.SENSOR,
-        ),
-    )
+    source = "thesis 3.2.4, Appendix F: thermal drift, no numbers; moments in N m/s"
+    rows = (Row(AXES, (2e-3, 0.01, 2.0), WRENCH, Loop("sensor.drift"), Part.SENSOR),)
 
 
 @final
@@ -198,14 +182,9 @@ class SensorMounting(Effect):
 
     kind = "sensor_mounting"
     sizes = (Size("angle", "rad"),)
+    source = "assumed; dowel pins leave about half a milliradian"
     rows = (
-        Row(
-            ("sensor.rx", "sensor.ry", "sensor.rz"),
-            (5e-4, 1e-3, 0.05),
-            WRENCH,
-            "assumed; dowel pins leave about half a milliradian",
-            part=Part.SENSOR,
-        ),
+        Row(("sensor.rx", "sensor.ry", "sensor.rz"), (5e-4, 1e-3, 0.05), WRENCH, part=Part.SENSOR),
     )
 
     def edit_rig(self, rig: mujoco.MjSpec) -> None:
@@ -230,15 +209,11 @@ class SensorLag(Effect):
 
     kind = "sensor_lag"
     sizes = (Size("slowness", "1", Sign.POSITIVE),)
+    source = "assumed; tolerance of an analog filter"
+    proportional = False
     rows = (
         Row(
-            ("sensor",),
-            (0.02, 0.05, 3.0),
-            WRENCH,
-            "assumed; tolerance of an analog filter",
-            Table("sensor.corner", Law.DIVIDE),
-            Part.SENSOR,
-            linear=False,
+            ("sensor",), (0.02, 0.05, 3.0), WRENCH, Table("sensor.corner", Law.DIVIDE), Part.SENSOR
         ),
     )
 
@@ -252,17 +227,9 @@ class SensorDelay(Effect):
 
     kind = "sensor_delay"
     sizes = (Size("delay", "s", Sign.POSITIVE),)
-    rows = (
-        Row(
-            ("sensor",),
-            (0.0, 5e-4, 0.02),
-            WRENCH,
-            "assumed; conversion and transfer by the sensor's own electronics",
-            Loop("late.wrench.delay"),
-            Part.CLOCK,
-            linear=False,
-        ),
-    )
+    source = "assumed; conversion and transfer by the sensor's own electronics"
+    proportional = False
+    rows = (Row(("sensor",), (0.0, 5e-4, 0.02), WRENCH, Loop("late.wrench.delay"), Part.CLOCK),)
     # 50 ms: assumed, a slow fieldbus and its filters
     anywhere = Anywhere(Element.SIGNAL, 0.05, 1e-4, columns=0)
 

@@ -11,6 +11,7 @@ DAMPING = ("N*s/m", "N*m*s/rad")
 STIFFNESS = ("N/m", "N*m/rad")
 INERTIA = ("kg", "kg*m^2")
 LENGTH = ("m", "rad")
+SPEED = ("m/s", "rad/s")
 """Units on a slide and on a hinge."""
 
 

@@ -23,12 +23,12 @@ class AnchorPosition(Effect):
 
     kind = "anchor_position"
     sizes = (Size("offset", "m"),)
+    source = "assumed; machining and assembly of a welded frame"
     rows = (
         Row(
             tuple(f"{leg}.{axis}" for leg in LEGS for axis in "xyz"),
             (1e-4, 3e-4, 0.02),
             ("sensor.wrench", "valve.command"),
-            "assumed; machining and assembly of a welded frame",
             part=Part.STRUCTURE,
         ),
     )
@@ -52,16 +52,9 @@ class BaseTilt(Effect):
 
     kind = "base_tilt"
     sizes = (Size("roll", "rad"), Size("pitch", "rad"))
-    rows = (
-        Row(
-            RIG,
-            (3e-4, 1e-3, 0.05),
-            ("sensor.wrench",),
-            "thesis 3.4.5: half a degree of orientation is not acceptable",
-            part=Part.STRUCTURE,
-            linear=False,
-        ),
-    )
+    source = "thesis 3.4.5: half a degree of orientation is not acceptable"
+    proportional = False
+    rows = (Row(RIG, (3e-4, 1e-3, 0.05), ("sensor.wrench",), part=Part.STRUCTURE),)
 
     def edit_rig(self, rig: mujoco.MjSpec) -> None:
         """Turn gravity into the axes of a base that is rolled, then pitched: g_b = R^T g."""
@@ -89,16 +82,9 @@ class HoseStiffness(Effect):
 
     kind = "hose_stiffness"
     sizes = (Size("stiffness", "N/m", Sign.POSITIVE),)
-    rows = (
-        Row(
-            RIG,
-            (50.0, 100.0, 2e4),
-            ("leg.length", "valve.command"),
-            "assumed; six pairs of hydraulic hoses",
-            part=Part.STRUCTURE,
-            linear=False,
-        ),
-    )
+    source = "assumed; six pairs of hydraulic hoses"
+    proportional = False
+    rows = (Row(RIG, (50.0, 100.0, 2e4), ("leg.length", "valve.command"), part=Part.STRUCTURE),)
 
     def edit_rig(self, rig: mujoco.MjSpec) -> None:
         """Give the platform's free joint a spring."""
@@ -121,16 +107,9 @@ class LegBending(Effect):
 
     kind = "leg_bending"
     sizes = (Size("loss", "1", Sign.POSITIVE),)
-    rows = (
-        Row(
-            LEGS,
-            (0.02, 0.05, 0.8),
-            ("sensor.wrench",),
-            "thesis 5.2: first modes of 10 to 13 Hz; a loose or cracked leg",
-            part=Part.STRUCTURE,
-            linear=False,
-        ),
-    )
+    source = "thesis 5.2: first modes of 10 to 13 Hz; a loose or cracked leg"
+    proportional = False
+    rows = (Row(LEGS, (0.02, 0.05, 0.8), ("sensor.wrench",), part=Part.STRUCTURE),)
 
     def edit_rig(self, rig: mujoco.MjSpec) -> None:
         """Lower the stiffness of the leg's two bending hinges."""

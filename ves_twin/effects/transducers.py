@@ -23,16 +23,8 @@ class LengthOffset(Effect):
 
     kind = "length_offset"
     sizes = (Size("offset", "m"),)
-    rows = (
-        Row(
-            LEGS,
-            (1e-4, 3e-4, 0.02),
-            READ_AND_FELT,
-            "assumed; zeroing against a gauge leaves about 0.1 mm",
-            Loop("transducer.home"),
-            Part.TRANSDUCER,
-        ),
-    )
+    source = "assumed; zeroing against a gauge leaves about 0.1 mm"
+    rows = (Row(LEGS, (1e-4, 3e-4, 0.02), READ_AND_FELT, Loop("transducer.home"), Part.TRANSDUCER),)
 
 
 @final
@@ -44,12 +36,12 @@ class LengthScale(Effect):
 
     kind = "length_scale"
     sizes = (Size("scale", "1"),)
+    source = "assumed; the speed of the strain pulse is known to about 0.05 %"
     rows = (
         Row(
             LEGS,
             (5e-4, 1e-3, 0.05),
             READ_AND_FELT,
-            "assumed; the speed of the strain pulse is known to about 0.05 %",
             Loop("transducer.scale", Law.SCALE),
             Part.TRANSDUCER,
         ),
@@ -69,14 +61,14 @@ class TransducerDelay(Effect):
 
     kind = "transducer_delay"
     sizes = (Size("delay", "s", Sign.POSITIVE),)
+    source = "thesis 2.4.1 and errata E-5: the cards' update time was printed wrong"
+    proportional = False
     rows = (
         Row(
             LEGS,
             (0.0, 5e-4, 0.02),
             ("leg.length", "valve.command"),
-            "thesis 2.4.1 and errata E-5: the cards' update time was printed wrong",
             Loop("late.slide.delay"),
             Part.CLOCK,
-            linear=False,
         ),
     )

@@ -16,10 +16,10 @@ from ves_twin.core.errors import InvalidInputError, UnknownNameError
 from ves_twin.diagnosis.forward import Hypothesis
 from ves_twin.diagnosis.settings import Settings
 from ves_twin.diagnosis.verdict import Verdict
-from ves_twin.machines.mjcf.extend import write_rig
+from ves_twin.machines.diagnose import Diagnosis
+from ves_twin.machines.load import machine_of
 from ves_twin.machines.mjcf.machine import Rig
 from ves_twin.plant.plant import Plant
-from ves_twin.plant.write_plant import write_plant
 from ves_twin.procedures.procedure import Procedure, Result, RunContext
 from ves_twin.report.diagnosis.page import diagnosis_page
 from ves_twin.report.diagnosis.words import headline
@@ -27,7 +27,7 @@ from ves_twin.report.page import write_page
 from ves_twin.scenario.fields import Part
 from ves_twin.simulator.outcome import Outcome
 from ves_twin.suites.answers import Answer
-from ves_twin.suites.diagnosed import Diagnosed, diagnosed
+from ves_twin.suites.diagnosed import diagnosed
 from ves_twin.suites.judgement import judge
 from ves_twin.suites.machine import BlindMachine, BlindRig
 from ves_twin.suites.make import hide, record_pair
@@ -143,13 +143,12 @@ class Showcase(Procedure):
         deployed = {} if place is None else {"legs.filter": place.value}
         return hide(machine, machine.commissioned(rng, self.spread), truth, deployed)
 
-    def _diagnosed(self, nominal: Rig | Plant, conduct: RunContext) -> Diagnosed:
+    def _diagnosed(self, nominal: Rig | Plant, conduct: RunContext) -> Diagnosis:
         """What the files say."""
         cache = cache_folder("diagnosis")
         settings = Settings(workers=os.cpu_count() or 1, cache=cache, nulls=self.nulls)
-        has_standstill = isinstance(nominal, Rig)
-        material = Material.in_folder(conduct.folder, standstill=has_standstill)
-        return diagnosed(nominal, material, settings, progress=conduct.progress)
+        material = Material.in_folder(conduct.folder, standstill=isinstance(nominal, Rig))
+        return diagnosed(machine_of(nominal), material, settings, progress=conduct.progress)
 
     def _account(self, verdict: Verdict, folder: Path) -> Result:
         labels = [part.label for part in self.hidden]
@@ -198,17 +197,14 @@ def _hidden(part: HiddenPart, library: Mapping[str, Hypothesis]) -> HiddenCause:
     return HiddenCause(effect, target, departures, float("nan"))
 
 
-def _written(found: Diagnosed, folder: Path) -> str:
+def _written(found: Diagnosis, folder: Path) -> str:
     """Write the extended machine, if there is one; what became of it."""
     for name in ("plant.toml", "plant.candidate.toml"):  # of an earlier run
         (folder / name).unlink(missing_ok=True)
     if found.extended is None:
         return f"No extended plant was written: {found.refused}."
     path = folder / ("plant.candidate.toml" if found.refused else "plant.toml")
-    if isinstance(found.extended, Rig):
-        write_rig(found.extended, path, found.verdict.words)
-    else:
-        write_plant(found.extended, path, found.verdict.words)
+    found.extended.save(path, found.verdict.words)
     if found.refused:
         return f"The extended plant is a candidate: {found.refused}."
     return "The extended plant is plant.toml; it passed on held-out recordings."

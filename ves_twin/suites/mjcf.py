@@ -19,9 +19,10 @@ from ves_twin.core.units import to_si
 from ves_twin.diagnosis.forward import Excitation
 from ves_twin.effects.joints import Backlash
 from ves_twin.machines.mjcf.description import Mode
-from ves_twin.machines.mjcf.excitations import Multisine, driven, excitations, joint_of, multisine
 from ves_twin.machines.mjcf.forward import MjcfForward
 from ves_twin.machines.mjcf.machine import Rig
+from ves_twin.machines.mjcf.mjcf_machine import MjcfMachine
+from ves_twin.machines.mjcf.programmes import Multisine, driven, joint_of, multisine
 from ves_twin.machines.mjcf.signals import rig_signals
 from ves_twin.machines.mjcf.started import start_of, start_signal
 from ves_twin.suites.machine import BlindMachine, BlindRig
@@ -130,7 +131,7 @@ class BlindMjcf(BlindMachine):
     @property
     def excitations(self) -> Mapping[str, Excitation]:
         """Candidates of a next experiment."""
-        return {one.name: one for one in excitations(self.rig)}
+        return {one.name: one for one in MjcfMachine(self.rig).excitations()}
 
     def record(
         self, rig: BlindRig, programme: str, rng: np.random.Generator, lead: float = 0.0

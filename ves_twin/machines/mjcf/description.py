@@ -150,6 +150,11 @@ class Start(Part):
     settling: Seconds = 0.0
     elsewhere: Elsewhere | None = None
 
+    @property
+    def told(self) -> bool:
+        """Whether a recording may say its own start."""
+        return self.elsewhere is not None or self.position == "recorded"
+
 
 class Setting(Part):
     """One attribute of an element of the model: nominal value, how well it is known, bounds."""
@@ -158,6 +163,7 @@ class Setting(Part):
     body: str = ""
     joint: str = ""
     actuator: str = ""
+    tendon: str = ""
     value: Number | None = None
     sd: Number = 0.0
     low: Number | None = None
@@ -166,8 +172,8 @@ class Setting(Part):
 
     @model_validator(mode="after")
     def _one_element(self) -> Self:
-        if sum(map(bool, (self.body, self.joint, self.actuator))) != 1:
-            raise ValueError("expected one of body, joint, actuator")
+        if sum(map(bool, (self.body, self.joint, self.actuator, self.tendon))) != 1:
+            raise ValueError("expected one of body, joint, actuator, tendon")
         return self
 
     @property
@@ -177,6 +183,8 @@ class Setting(Part):
             return Element.BODY, self.body
         if self.joint:
             return Element.JOINT, self.joint
+        if self.tendon:
+            return Element.TENDON, self.tendon
         return Element.ACTUATOR, self.actuator
 
 
@@ -275,7 +283,7 @@ class RigDescription(Part):
 
 
 def is_rig(name_or_path: str) -> bool:
-    """Whether a --plant option means a rig of two files rather than a form of VES II."""
+    """Whether a --plant option means an MJCF machine rather than a plant of VES II."""
     path = Path(name_or_path)
     if not path.suffix and len(path.parts) == 1:
         return name_or_path in shipped_rigs()
@@ -345,4 +353,4 @@ def _over(under: dict[str, Any], top: dict[str, Any]) -> dict[str, Any]:
 
 
 def _place(setting: dict[str, Any]) -> tuple[object, ...]:
-    return tuple(setting.get(key) for key in ("body", "joint", "actuator", "attribute"))
+    return tuple(setting.get(key) for key in ("body", "joint", "actuator", "tendon", "attribute"))

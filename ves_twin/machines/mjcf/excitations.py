@@ -1,153 +1,234 @@
-"""excitations: what a machine of two files could do next, within its typical sizes."""
+"""offered: multisines that an MJCF machine could be fed next, within its typical sizes."""
 
 from __future__ import annotations
 
+import csv
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from io import StringIO
+from pathlib import Path
 
 import numpy as np
 
+from ves_twin.core.recording.recording import Recording
+from ves_twin.core.types import FloatArray
+from ves_twin.core.units import to_si
+from ves_twin.core.whole_file import write_whole
 from ves_twin.diagnosis.forward import Excitation
-from ves_twin.effects.joints import ForceOffset
-from ves_twin.effects.place import Place
-from ves_twin.machines.mjcf.description import Mode
+from ves_twin.machines.machine import SETPOINTS
+from ves_twin.machines.mjcf.description import Mode, Span
 from ves_twin.machines.mjcf.forward import MjcfForward
-from ves_twin.machines.mjcf.machine import Rig
-from ves_twin.machines.mjcf.places import place_of
-from ves_twin.machines.mjcf.started import start_signal
+from ves_twin.machines.mjcf.joint_units import joint_units
+
+SECONDS = 10.0
+"""Length of an excitation [s]."""
 
 TONES = 5
 """Of a multisine."""
 
-FADE = 0.25
-"""Time in which a command fades in [s]: from rest it begins with none."""
+FADE = 0.1
+"""Share of the length in which it fades in: machines begin at rest."""
 
-BAND = (1.25, 16.0)
-"""Band of a file that says none, as multiples of the typical speed over 2 pi times the travel."""
+ROWS = 5.0
+"""Rows for each of the analysis grid, where no recording gives a clock."""
 
-FARTHEST = 1.6
-"""Typical travels beyond which no programme may take a joint: a right angle, where travel is 1."""
+BANDS: Mapping[str, tuple[float, float]] = {
+    "multisine": (1.0, 3.0),
+    "slow multisine": (0.3, 1.0),
+    "quick multisine": (3.0, 10.0),
+}
+"""Name -> band, in units of the frequency at which typical travel needs typical speed."""
+
+HIGHEST = 0.4
+"""No tone is above this share of the analysis rate."""
+
+BORNE = 1.5
+"""Times typical speed and travel that a joint may reach: what is typical is not the most."""
+
+HALVINGS = 6
+"""Times that an effort is halved until its motion keeps within travel and speed."""
 
 
 @dataclass(frozen=True)
-class Multisine:
-    """One programme, in shares of what is typical.
+class _Input:
+    """What is fed in at a joint: typical effort, speed and travel, where it begins."""
 
-    Attributes:
-        name: for people.
-        amplitude: of a tone, as a share of the typical effort, or of the travel for set-points.
-        band: lowest and highest tone, as multiples of the machine's band.
-        held: position that joints are let go from, as a share of the typical travel.
-    """
+    signal: str
+    joint: str
+    effort: float
+    speed: float
+    travel: float
+    start: float
 
-    name: str
-    amplitude: float
-    band: tuple[float, float] = (1.0, 1.0)
-    held: float = 0.0
-
-
-MENU = (
-    Multisine("multisine, other phases", 0.25),
-    Multisine("small multisine", 0.1),
-    Multisine("slow multisine", 0.4, (0.5, 0.2)),
-    Multisine("quick multisine", 1.2, (12.5, 3.2)),
-    Multisine("let go from 0.1 of the travel", 0.0, held=0.1),
-    Multisine("let go from 0.6 of the travel", 0.0, held=0.6),
-    Multisine("let go from 1.2 of the travel", 0.0, held=1.2),
-    Multisine("let go from 0.6 of the travel into a multisine", 0.3, held=0.6),
-)
-"""Candidates; those of a machine are the ones that it has the start for and that stay within
-`FARTHEST`: near the top a pendulum tells rounding errors, and no cause."""
+    @property
+    def corner(self) -> float:
+        """Frequency [Hz] of the sine that has both typical travel and typical speed."""
+        return self.speed / (np.pi * self.travel)
 
 
-def excitations(rig: Rig) -> tuple[Excitation, ...]:
-    """Commands, or set-points, and start of every candidate that is safe; the same each time.
+def offered(
+    forward: MjcfForward, like: Recording | None = None, seconds: float = SECONDS
+) -> tuple[Excitation, ...]:
+    """Multisines of every band, at all inputs and at each alone, that the nominal machine bears.
 
-    None where motion is fed in: what a machine does is then not predicted.
-    """
-    if rig.description.drive.mode is Mode.MOTION:
-        return ()
-    forward, found = MjcfForward.of(rig), []
-    for number, one in enumerate(MENU):
-        released = [j for j, s in rig.description.start.items() if s.elsewhere is not None]
-        if one.held and not released:
-            continue
-        duration = rig.description.excitation.duration
-        fed = multisine(rig, np.random.default_rng([7, number]), duration, one)
-        fade = np.minimum(fed.time / FADE, 1.0)[:, None]
-        drive = {name: fade * rows for name, rows in fed.drive.items()}
-        for joint in released:
-            start = np.array([one.held * joint_of(rig, joint).travel, 0.0])
-            drive[start_signal(joint)] = np.tile(start, (len(fed.time), 1))
-        programme = Excitation(one.name, fed.time, drive, rate=fed.rate)
-        if _stays(forward, programme):
-            found.append(programme)
-    return tuple(found)
-
-
-def multisine(
-    rig: Rig, rng: np.random.Generator, duration: float, one: Multisine | None = None
-) -> Excitation:
-    """Tones drawn for every command, set-point or position that is fed in.
+    Set-points and motions keep half the typical travel and the typical speed, efforts the typical
+    effort; they are halved until every joint stays within BORNE of its travel and speed.
 
     Args:
-        rig: the two files.
-        rng: of frequencies and phases.
-        duration: length [s].
-        one: band and amplitude; those of the rig's file if None.
+        forward: in the mode in which it is fed.
+        like: gives clock and start; typical sizes and the model's if None.
+        seconds: length.
+
+    Returns:
+        None where a joint has no typical sizes, cannot be watched, or is neither hinge nor slide.
     """
-    told = rig.description
-    chosen = one or Multisine("multisine", told.excitation.amplitude)
-    period = told.excitation.period or float(rig.model.opt.timestep)
-    time = np.asarray(period * np.arange(round(duration / period)), float)
-    drive = {}
-    for signal, at, size in driven(rig):
-        natural = at.speed / (2.0 * np.pi * at.travel)
-        low, high = told.excitation.band or (BAND[0] * natural, BAND[1] * natural)
-        band = chosen.band[0] * low, chosen.band[1] * high
-        frequencies = rng.uniform(*band, TONES)
-        tones = zip(frequencies, rng.uniform(0.0, 2.0 * np.pi, TONES), strict=True)
-        sines = sum(np.sin(2.0 * np.pi * f * time + phase) for f, phase in tones)
-        drive[signal] = np.asarray(chosen.amplitude * size * sines)[:, None]
-    return Excitation(chosen.name, time, drive, rate=told.rate)
+    inputs = _inputs(forward, like)
+    rate = forward.rig.description.rate
+    if not inputs or forward.rig.description.clock.poses:
+        return ()
+    period = 1.0 / (ROWS * rate)
+    if like is not None and len(like) > 1:
+        period = float(like.time[-1] - like.time[0]) / (len(like) - 1)
+    time = np.asarray(period * np.arange(round(seconds / period)), float)
+    made = (
+        _borne(forward, Excitation(name, time, _drive(forward, rows, like), rate=rate), inputs)
+        for name, rows in _menu(inputs, time, rate, forward.mode is Mode.CONTROL)
+    )
+    return tuple(one for one in made if one is not None)
 
 
-def driven(rig: Rig) -> list[tuple[str, Place, float]]:
-    """Signals that are fed in, the joint that each moves, and its typical size in that signal.
+def write_inputs(forward: MjcfForward, excitation: Excitation, folder: Path) -> None:
+    """Write what is fed in as SETPOINTS, by the names and in the units of the machine's log.
 
-    Of a command, what gives the typical effort; of a position, a share of the typical travel such
-    that all tones together stay within it.
+    Raises:
+        FileAccessError: not writable.
     """
-    told, model = rig.description, rig.model
-    if told.drive.mode is not Mode.CONTROL:
-        fed = [(c.reference, c.joint) for c in told.controllers.values()]
-        if told.drive.mode is Mode.MOTION:
-            fed = [(signal, joint) for joint, signal in told.drive.joints.items()]
-        places = [(signal, joint_of(rig, joint)) for signal, joint in fed]
-        return [(signal, at, at.travel / TONES) for signal, at in places]
+    told = forward.rig.description
+    names, columns = [told.clock.column], [excitation.time / told.clock.scale]
+    for signal in forward.fed:
+        column = told.signals[signal]
+        names += column.columns
+        columns += list(((excitation.drive[signal] - column.offset) / column.scale).T)
+    text = StringIO()
+    writer = csv.writer(text, lineterminator="\n")
+    writer.writerow(names)
+    writer.writerows([f"{value:.12g}" for value in row] for row in np.column_stack(columns))
+    write_whole(folder / SETPOINTS, text.getvalue())
+
+
+def _inputs(forward: MjcfForward, like: Recording | None) -> list[_Input]:
+    """One for each signal fed in; none at all where one of them cannot be bounded."""
+    told, model = forward.rig.description, forward.rig.model
+    places = {
+        Mode.MOTION: [(s, j) for j, s in told.drive.joints.items()],
+        Mode.CONTROL: [
+            (s, model.joint(int(model.actuator(a).trnid[0])).name)
+            for a, s in told.drive.actuators.items()
+        ],
+        Mode.REFERENCE: [(c.reference, c.joint) for c in told.controllers.values()],
+    }[forward.mode]
     found = []
-    for name, signal in told.drive.actuators.items():
-        actuator = model.actuator(name)
-        at = joint_of(rig, model.joint(int(actuator.trnid[0])).name)
-        found.append((signal, at, at.effort / abs(float(actuator.gear[0] * actuator.gainprm[0]))))
+    for signal, joint in places:
+        effort, speed, travel = _sizes(forward, joint)
+        needed = (effort, speed, travel) if forward.mode is Mode.CONTROL else (speed, travel)
+        watched = forward.mode is Mode.MOTION or forward.position_of(joint) in forward.compared
+        if min(needed) <= 0.0 or not watched or len(told.signals[signal].columns) != 1:
+            return []
+        first = float(model.qpos0[model.jnt_qposadr[model.joint(joint).id]])
+        known = forward.position_of(joint)
+        if like is not None and known in like.signals:
+            first = float(like[known][0, 0])
+        found.append(_Input(signal, joint, effort, speed, travel, first))
     return found
 
 
-def joint_of(rig: Rig, joint: str) -> Place:
-    """A joint with its typical sizes.
+def _sizes(forward: MjcfForward, joint: str) -> tuple[float, float, float]:
+    """Typical effort, speed and travel of a joint, SI; zero where the file says none."""
+    span = forward.rig.description.typical.joint.get(joint, Span())
+    place, speed = joint_units(forward.rig.model, joint)
+    units = ("N*m" if place == "rad" else "N", speed, place)
+    given = (span.effort, span.speed, span.travel)
+    pairs = zip(given, units, strict=True)
+    effort, fastest, travel = (
+        to_si(value, unit, f"typical.joint.{joint}") for value, unit in pairs
+    )
+    return effort, fastest, travel
 
-    Raises:
-        InvalidInputError: the file says none.
-    """
-    return place_of(ForceOffset(joint), rig.description, rig.model)
+
+def _menu(
+    inputs: list[_Input], time: FloatArray, rate: float, efforts: bool
+) -> Iterator[tuple[str, dict[str, FloatArray]]]:
+    """Name and rows (n, 1) by signal."""
+    still = {one.signal: np.full((len(time), 1), 0.0 if efforts else one.start) for one in inputs}
+    for k, (name, (low, high)) in enumerate(BANDS.items()):
+        rng = np.random.default_rng([11, k])
+        rows = {}
+        for one in inputs:
+            band = np.minimum([low * one.corner, high * one.corner], HIGHEST * rate)
+            shape = _multisine(time, (float(band[0]), float(band[1])), rng)
+            size = one.effort
+            if not efforts:
+                fastest = float(np.max(np.abs(np.gradient(shape, time))))
+                size = min(0.5 * one.travel, one.speed / fastest)
+            rows[one.signal] = still[one.signal] + size * shape[:, None]
+        yield name, rows
+        if len(inputs) > 1:
+            for one in inputs:
+                yield f"{name} at {one.joint} alone", {**still, one.signal: rows[one.signal]}
 
 
-def _stays(forward: MjcfForward, programme: Excitation) -> bool:
-    """Whether every measured position is predicted to stay near its typical travel."""
-    rows, column = forward.simulate(programme, {}), 0
-    for name, compared in forward.compared.items():
-        if compared.joint and compared.of == "position":
-            reach = FARTHEST * joint_of(forward.rig, compared.joint).travel
-            if not np.all(np.abs(rows[:, column]) <= reach):
+def _multisine(time: FloatArray, band: tuple[float, float], rng: np.random.Generator) -> FloatArray:
+    """Tones evenly over a band [Hz] with random phases, fading in, of peak 1 (n,)."""
+    tones = np.linspace(*band, TONES)
+    phases = rng.uniform(0.0, 2.0 * np.pi, TONES)
+    shape = np.sin(2.0 * np.pi * np.outer(time, tones) + phases).sum(axis=1)
+    shape = shape * np.minimum(time / (FADE * time[-1]), 1.0) ** 2
+    return np.asarray(shape / np.max(np.abs(shape)))
+
+
+def _drive(
+    forward: MjcfForward, rows: Mapping[str, FloatArray], like: Recording | None
+) -> dict[str, FloatArray]:
+    """What is fed in, and the start of each joint whose start is measured, held."""
+    told, found = forward.rig.description.signals, dict(rows)
+    count = len(next(iter(rows.values())))
+    for name in forward.drive:
+        if name not in found:
+            width = len(told[name].columns) if name in told else 2
+            known = like is not None and name in like.signals
+            first = like[name][0] if like is not None and known else np.zeros(width)
+            found[name] = np.tile(first, (count, 1))
+    return found
+
+
+def _borne(
+    forward: MjcfForward, excitation: Excitation, inputs: Sequence[_Input]
+) -> Excitation | None:
+    """The excitation as large as the nominal machine bears it; None if it bears it at no size."""
+    if forward.mode is Mode.MOTION:
+        return excitation
+    drive, zero = dict(excitation.drive), forward.mode is Mode.CONTROL
+    for _ in range(HALVINGS):
+        made = Excitation(excitation.name, excitation.time, drive, rate=excitation.rate)
+        if _bears(forward, made):
+            return made
+        for one in inputs:
+            rest = 0.0 if zero else one.start
+            drive[one.signal] = rest + 0.5 * (drive[one.signal] - rest)
+    return None
+
+
+def _bears(forward: MjcfForward, excitation: Excitation) -> bool:
+    """Whether every joint with typical sizes keeps them."""
+    names = [channel.name for channel in forward.channels]
+    moved = forward.simulate(excitation, {})
+    for joint in forward.rig.description.typical.joint:
+        known = forward.position_of(joint)
+        _, speed, travel = _sizes(forward, joint)
+        if known in names and speed > 0.0 and travel > 0.0:
+            path = moved[:, names.index(known)]
+            fastest = np.max(np.abs(np.gradient(path, excitation.time)))
+            widest = np.max(np.abs(path - path[0]))
+            if not (widest <= BORNE * travel and fastest <= BORNE * speed):  # NaN: no
                 return False
-        column += len(forward.rig.description.signals[name].columns)
-    return True
+    return bool(np.all(np.isfinite(moved)))

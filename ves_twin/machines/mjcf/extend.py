@@ -18,7 +18,8 @@ def extended(rig: Rig, verdict: Verdict) -> Rig:
     """
     values = {name: e.value for name, e in verdict.tuned.items()}
     for cause in verdict.causes:
-        values |= {name: e.value for name, e in cause.parameters.items()}
+        at = f"{cause.effect}@{cause.target}"
+        values |= {f"{at}:{n.rpartition(':')[2]}": e.value for n, e in cause.parameters.items()}
     settings = {_place(s): s for s in rig.description.parameters}
     present = {kind: dict(t) for kind, t in rig.description.present.items()}
     for entry in rig.entries:
@@ -37,13 +38,11 @@ def extended(rig: Rig, verdict: Verdict) -> Rig:
     return Rig(told, rig.folder, rig.file)
 
 
-def _place(setting: Setting) -> tuple[str, str, str, str]:
-    return setting.body, setting.joint, setting.actuator, setting.attribute
+def _place(setting: Setting) -> tuple[str, ...]:
+    return setting.body, setting.joint, setting.actuator, setting.tendon, setting.attribute
 
 
-def _setting(
-    entry: Entry, value: float, there: dict[tuple[str, str, str, str], Setting]
-) -> Setting:
+def _setting(entry: Entry, value: float, there: dict[tuple[str, ...], Setting]) -> Setting:
     """An attribute of the model at a new value; how well it is known stays as it was."""
     name, attribute = entry.effect.setting
     new = Setting.model_validate({"attribute": attribute, str(entry.effect.element): name})

@@ -54,6 +54,8 @@ def _rigid(model: mujoco.MjModel) -> mujoco.MjModel:
     rigid = copy.copy(model)
     rigid.dof_frictionloss[:] = 0.0
     rigid.dof_damping[:] = 0.0
+    rigid.tendon_frictionloss[:] = 0.0
+    rigid.tendon_damping[:] = 0.0
     rigid.actuator_gainprm[:] = 0.0
     return rigid
 
@@ -77,8 +79,9 @@ class _Motion:
 
 @dataclass(frozen=True)
 class _Moved:
-    """Speeds (n, nv), rigid-body efforts (n, nv) and sensors (n, all) along a motion."""
+    """Positions (n, nq), speeds and rigid-body efforts (n, nv), sensors (n, all) of a motion."""
 
+    position: FloatArray
     speed: FloatArray
     effort: FloatArray
     sensed: FloatArray
@@ -99,7 +102,7 @@ def _moved(motion: _Motion) -> _Moved:
         efforts[k] = effort
         if sensing:
             sensed[k] = sensor
-    return _Moved(v, efforts, sensed)
+    return _Moved(q, v, efforts, sensed)
 
 
 def _single(work: Work) -> list[tuple[str, str]]:
@@ -116,6 +119,8 @@ def _command(work: Work, compared: Compared, moved: _Moved) -> FloatArray:
     speed = moved.speed[:, dof]
     effort = moved.effort[:, dof] + float(model.dof_damping[dof]) * speed
     effort = effort + work.dry(joint.name, speed) + work.resistance(joint.name, speed)
+    effort = effort + work.held(joint.name, moved.position[:, int(joint.qposadr[0])])
+    effort = effort + work.coupled(joint.name, moved.speed)
     gain = float(actuator.gear[0]) * float(actuator.gainprm[0])
     if work.rig.description.drive.held:
         effort = shifted(effort, work.programme.time, -0.5 * work.programme.period)

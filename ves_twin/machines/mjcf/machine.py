@@ -10,6 +10,7 @@ from pathlib import Path
 
 import mujoco
 
+from ves_twin.core.engine_log import log_engine
 from ves_twin.core.errors import FileAccessError, InvalidInputError, UnknownNameError, one_line
 from ves_twin.core.units import to_si
 from ves_twin.diagnosis.forward import Hypothesis, Parameter
@@ -20,6 +21,7 @@ from ves_twin.effects.registry import EFFECTS, attributes, build_anywhere, kind_
 from ves_twin.machines.mjcf.check_description import check_description
 from ves_twin.machines.mjcf.description import Allowed, RigDescription, Setting, load_description
 from ves_twin.machines.mjcf.places import anywhere, place_of
+from ves_twin.machines.mjcf.stiff_friction import stiff_friction
 
 
 @dataclass(frozen=True)
@@ -103,10 +105,12 @@ class Rig:
         path = self.folder / self.description.model
         if not path.is_file():
             raise FileAccessError(f"model file '{path}' of rig {self.description.name} is missing")
+        log_engine()
         try:
             model = self._loaded(path) if self.payloads else mujoco.MjModel.from_xml_path(str(path))
         except (ValueError, mujoco.FatalError) as error:
             raise InvalidInputError(str(path), one_line(error), "a MuJoCo model") from None
+        stiff_friction(model)
         for setting in self.description.parameters:
             if setting.value is not None:
                 effect, place = self._effect_of(setting, model)
@@ -176,6 +180,7 @@ class Rig:
                     source=entry.source,
                     linear=anywhere(entry.effect).linear and len(entry.magnitudes) == 1,
                     transient=anywhere(entry.effect).transient,
+                    starts=entry.effect.starts(entry.place),
                 )
             )
         return tuple(found)

@@ -39,21 +39,9 @@ def place_of(effect: Effect, told: RigDescription, model: mujoco.MjModel) -> Pla
     if element is Element.ACTUATOR:
         _known("actuator", target, {model.actuator(i).name for i in range(model.nu)})
         return Place(element, target)
-    _known("joint", target, {model.joint(i).name for i in range(model.njnt)})
-    found = int(model.jnt_type[model.joint(target).id])
-    if found not in SINGLE:
-        raise InvalidInputError(f"joint {target}", "a free or ball joint", "a hinge or a slide")
-    hinge = found == SINGLE[0]
-    span = told.typical.joint.get(target, Span())
-    what = f"typical.joint.{target}"
-    return Place(
-        element,
-        target,
-        hinge=hinge,
-        effort=_positive(span.effort, "N*m" if hinge else "N", f"{what}.effort"),
-        speed=typical_speed(target, told, model),
-        travel=_positive(span.travel, "rad" if hinge else "m", f"{what}.travel"),
-    )
+    if element is Element.TENDON:
+        return _tendon(target, told, model)
+    return _joint(target, told, model)
 
 
 def anywhere(effect: Effect) -> Anywhere:
@@ -76,6 +64,53 @@ def typical_speed(joint: str, told: RigDescription, model: mujoco.MjModel) -> fl
     _, unit = joint_units(model, joint)
     span = told.typical.joint.get(joint, Span())
     return _positive(span.speed, unit, f"typical.joint.{joint}.speed")
+
+
+def _joint(target: str, told: RigDescription, model: mujoco.MjModel) -> Place:
+    _known("joint", target, {model.joint(i).name for i in range(model.njnt)})
+    found = int(model.jnt_type[model.joint(target).id])
+    if found not in SINGLE:
+        raise InvalidInputError(f"joint {target}", "a free or ball joint", "a hinge or a slide")
+    hinge = found == SINGLE[0]
+    span = told.typical.joint.get(target, Span())
+    what = f"typical.joint.{target}"
+    return Place(
+        Element.JOINT,
+        target,
+        hinge=hinge,
+        effort=_positive(span.effort, "N*m" if hinge else "N", f"{what}.effort"),
+        speed=typical_speed(target, told, model),
+        travel=_positive(span.travel, "rad" if hinge else "m", f"{what}.travel"),
+    )
+
+
+def _tendon(target: str, told: RigDescription, model: mujoco.MjModel) -> Place:
+    """What is typical of a sum of joints: the least effort, the sums of speeds and travels."""
+    _known("tendon", target, {model.tendon(i).name for i in range(model.ntendon)})
+    parts = tendon_joints(model, target)
+    places = [_joint(joint, told, model) for joint, _ in parts]
+    if not places or len({p.hinge for p in places}) > 1:
+        expected = "a fixed tendon over joints that all turn, or all slide"
+        raise InvalidInputError(f"tendon {target}", [joint for joint, _ in parts], expected)
+    shares = [abs(share) for _, share in parts]
+    return Place(
+        Element.TENDON,
+        target,
+        hinge=places[0].hinge,
+        effort=min(p.effort / s for p, s in zip(places, shares, strict=True)),
+        speed=sum(s * p.speed for p, s in zip(places, shares, strict=True)),
+        travel=sum(s * p.travel for p, s in zip(places, shares, strict=True)),
+    )
+
+
+def tendon_joints(model: mujoco.MjModel, tendon: str) -> list[tuple[str, float]]:
+    """Joints of a fixed tendon with their coefficients; none of a spatial one."""
+    number = model.tendon(tendon).id
+    first, count = int(model.tendon_adr[number]), int(model.tendon_num[number])
+    rows = range(first, first + count)
+    if any(int(model.wrap_type[k]) != int(mujoco.mjtWrap.mjWRAP_JOINT) for k in rows):
+        return []
+    return [(model.joint(int(model.wrap_objid[k])).name, float(model.wrap_prm[k])) for k in rows]
 
 
 def _signal(kind: str, target: str, on: Anywhere, told: RigDescription) -> Place:

@@ -97,9 +97,9 @@ def position_signal(work: Work, joint: str) -> tuple[str, int]:
 
 
 def _resisted(work: Work) -> bool:
-    """Whether an effect depends on speed in a way that the model itself lacks."""
-    plain = Effect.resist
-    return any(type(e).resist is not plain and not e.steady for e, _ in work.effects)
+    """Whether an effect depends on speed or place in a way that the model itself lacks."""
+    plain = (Effect.resist, Effect.hold)
+    return any((type(e).resist, type(e).hold) != plain and not e.steady for e, _ in work.effects)
 
 
 def _steady(work: Work) -> FloatArray:
@@ -168,9 +168,10 @@ def _stepped(
     loops = [_Pd(work, name, c) for name, c in told.controllers.items()] if closed else []
     asked = np.zeros((rows, model.nu)) if closed else _commands(work)
     resisted = [
-        (name, int(model.joint(name).dofadr[0]))
+        (name, int(model.joint(name).dofadr[0]), int(model.joint(name).qposadr[0]))
         for name in {e.target for e, _ in work.effects if e.element is Element.JOINT}
     ]
+    holders = {n: [e.holder() for e, _ in work.at(Element.JOINT, n)] for n, _, _ in resisted}
     path, sensed = np.zeros((rows, model.nq + model.nv)), np.zeros((rows, model.nsensordata))
     speed, reach = np.zeros(1), _Reach(work)
     for k in range(rows):
@@ -179,9 +180,10 @@ def _stepped(
             asked[k, loop.actuator] = loop.command(k, data)
         data.ctrl[:] = reach.at(asked[k], k) if closed else asked[k]
         for n in range(steps):
-            for name, dof in resisted:
-                speed[0] = data.qvel[dof]
-                data.qfrc_applied[dof] = -work.resistance(name, speed)[0]
+            for name, dof, at in resisted:
+                speed[0], q = data.qvel[dof], float(data.qpos[at])
+                held = sum(holder(q) for holder in holders[name])
+                data.qfrc_applied[dof] = -work.resistance(name, speed)[0] - held
             mujoco.mj_step(model, data)
             if n == 0:
                 sensed[k] = data.sensordata

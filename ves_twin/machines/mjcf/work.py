@@ -17,7 +17,7 @@ from ves_twin.effects.joints import CoulombFriction
 from ves_twin.effects.place import Place
 from ves_twin.machines.mjcf.description import Compared
 from ves_twin.machines.mjcf.machine import Rig
-from ves_twin.machines.mjcf.places import typical_speed
+from ves_twin.machines.mjcf.places import tendon_joints, typical_speed
 
 SMOOTH = 0.0005
 """Share of the typical speed over which a sign is smoothed, chosen on EMPS: four times as much
@@ -71,6 +71,34 @@ class Work:
             return np.zeros_like(speed)
         slow = SMOOTH * typical_speed(joint, self.rig.description, self.model)
         return np.asarray(level * np.tanh(speed / slow))
+
+    def held(self, joint: str, position: FloatArray) -> FloatArray:
+        """Effort [N, N m] against a joint along given positions (n,)."""
+        total = np.zeros_like(position)
+        for effect, _ in self.at(Element.JOINT, joint):
+            total = total + effect.hold(position)
+        return total
+
+    def coupled(self, joint: str, speed: FloatArray) -> FloatArray:
+        """Effort of the fixed tendons over a joint against given speeds (n, nv): (n,).
+
+        Damping, and friction loss as `dry` has it, of each tendon's own speed.
+        """
+        model, total = self.model, np.zeros(len(speed))
+        for number in range(model.ntendon):
+            damping = float(model.tendon_damping[number])
+            level = float(model.tendon_frictionloss[number])
+            parts = tendon_joints(model, model.tendon(number).name)
+            share = dict(parts).get(joint, 0.0)
+            if share == 0.0 or (damping, level) == (0.0, 0.0):
+                continue
+            own = sum(c * speed[:, int(model.joint(j).dofadr[0])] for j, c in parts)
+            effort = damping * own
+            if level != 0.0:
+                typical = (abs(c) * typical_speed(j, self.rig.description, model) for j, c in parts)
+                effort = effort + level * np.tanh(own / (SMOOTH * sum(typical)))
+            total = total + share * effort
+        return total
 
     def position(self, joint: str, position: FloatArray) -> FloatArray:
         """A joint's position behind the effects between it and where it is measured (n,)."""

@@ -131,7 +131,7 @@ def hypotheses_of(plant: Plant, exclude: frozenset[str] = frozenset()) -> tuple[
                     largest=tuple(m.largest for m in group),
                     signs=SIGNS[group[0].sign],
                     source=row.source,
-                    linear=row.linear,
+                    linear=kind.proportional,
                 )
             )
     return tuple(found)
