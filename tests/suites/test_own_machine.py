@@ -11,6 +11,7 @@ from ves_twin.core.errors import InvalidInputError
 from ves_twin.core.recording.files import load_recording
 from ves_twin.diagnosis.forward import Excitation
 from ves_twin.machines.mjcf.machine import Rig
+from ves_twin.machines.mjcf.mjcf_machine import MjcfMachine
 from ves_twin.machines.mjcf.programmes import FARTHEST, joint_of, releases
 from ves_twin.suites.machine import BlindRig
 from ves_twin.suites.mjcf import BlindMjcf

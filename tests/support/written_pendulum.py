@@ -26,7 +26,8 @@ _XML = """
   <option timestep="0.002" integrator="implicitfast"><flag contact="disable"/></option>
   <worldbody>
     <body name="link">
-      <joint name="hinge" type="hinge" axis="0 1 0" damping="0.05" armature="0.01"/>
+      <joint name="hinge" type="hinge" axis="0 1 0" damping="0.05" armature="0.01"
+             solreffriction="0.004 1" solimpfriction="0.9999 0.9999 0.001 0.5 2"/>
       <geom name="rod" type="capsule" fromto="0 0 0 0 0 -0.4" size="0.03" mass="1"/>
     </body>
   </worldbody>

@@ -44,9 +44,11 @@ class Detectability:
     whitening: Whitening
 
     def linear(self, shift: FloatArray) -> float:
-        """D by the columns at nominal: one run."""
+        """D by the columns at nominal: one run; inf where the machine fails at that size."""
         change = self.base.runs.one(shift) - self.base.prediction
         signature = self.whitening.apply(change)
+        if not np.all(np.isfinite(signature)):
+            return float("inf")
         return float(np.sqrt(max(float(signature @ self._metric.project(signature)), 0.0)))
 
     def full(self, shift: FloatArray) -> float:
@@ -141,6 +143,8 @@ def _at_detectability(
         if size > 1.0 or size * high[0] < low[0]:
             return None
     shift = runs.depart(runs.origin, where, sign * size * share * high)
+    if not np.isfinite(d):
+        return None
     names = hypothesis.parameters
     departures = {name: float(shift[i]) for name, i in zip(names, where, strict=True)}
     return HiddenCause(hypothesis.effect, hypothesis.target, departures, detectability.full(shift))
