@@ -37,10 +37,13 @@ fast: .venv/.dev
 fuzz: .venv/.dev
 	$(BIN)/python -m pytest -n 2 tests/fuzz --mutations 10000
 
-# Inputs of a standing attack on every reader, N of them; a seed is drawn and printed.
+# A standing attack: N inputs on every reader, KILLS of runs and as many on other commands that
+# write, with two at a time in one folder; seeds are drawn and printed.
 N ?= 20000
+KILLS ?= 200
 attack: .venv/.dev
 	$(BIN)/python tests/attack/attack_inputs.py --inputs $(N) --out runs/attack.jsonl
+	$(BIN)/python tests/attack/attack_commands.py --kills $(KILLS) --others $(KILLS)
 
 # Mutants of the kernels and of the diagnosis core; hours, and goes on where it stopped.
 mutation: .venv/.dev

@@ -58,3 +58,12 @@ def test_letters_that_the_locale_lacks_harm_no_command(tmp_path):
     assert (tmp_path / "versé" / "é.parquet").is_file()
     assert (tmp_path / "versé" / "s" / "sweep.parquet").is_file()
     assert "versé" in (tmp_path / "versé" / "c" / "report.html").read_text(encoding="utf-8")
+
+
+def test_too_little_memory_is_one_line(monkeypatch, capsys):
+    def full(arguments: object) -> int:
+        raise MemoryError
+
+    monkeypatch.setattr("ves_twin.cli.scenarios.execute", full)
+    assert main(["scenarios"]) == 2
+    assert capsys.readouterr().err.startswith("ves-twin: not enough memory")

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from ves_twin import cache_folder as room
+from ves_twin.core import cache_folder as room
 from ves_twin.core.cache_folder import cache_folder
 
 FOREIGN = os.geteuid() + 1
@@ -123,7 +123,10 @@ if __name__ == "__main__":
     "words",
     [
         ["info"],
-        ["run", "position_sine", "--set", "run.duration=0.1", "--out", "out"],
+        pytest.param(
+            ["run", "position_sine", "--set", "run.duration=0.1", "--out", "out"],
+            marks=pytest.mark.slow,  # it compiles, where no cache is left of an earlier test
+        ),
         ["reproduce", "fig-5-2", "--out", "out"],
     ],
     ids=lambda words: words[0],

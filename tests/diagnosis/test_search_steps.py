@@ -12,7 +12,7 @@ from ves_twin.diagnosis.evidence import Evidence
 from ves_twin.diagnosis.linearise import linearise
 from ves_twin.diagnosis.refine import refine
 from ves_twin.diagnosis.runs import Runs
-from ves_twin.diagnosis.search import DAMPING, GOOD, SECANT, Search
+from ves_twin.diagnosis.search import DAMPING, GAIN_RATIO, SECANT, Search
 from ves_twin.diagnosis.whitening import whitening_declared
 
 FED = programme(1)
@@ -146,8 +146,8 @@ def test_damping_shortens_the_nuisances_way(begun):
     [
         (1000.0, 1.0, 1.0, 1000.0 / DAMPING),
         (DAMPING, 1.0, 1.0, 0.0),
-        (1000.0, 1.01 * GOOD, 1.0, 1000.0 / DAMPING),
-        (1000.0, 0.99 * GOOD, 1.0, 1000.0),
+        (1000.0, 1.01 * GAIN_RATIO, 1.0, 1000.0 / DAMPING),
+        (1000.0, 0.99 * GAIN_RATIO, 1.0, 1000.0),
     ],
 )
 def test_damping_falls_where_a_step_does_what_was_foretold(search, damping, fall, hoped, then):
@@ -156,14 +156,14 @@ def test_damping_falls_where_a_step_does_what_was_foretold(search, damping, fall
     assert search.damping == then
 
 
-def test_heat_is_the_squared_residual_a_sample_while_tempered(begun):
+def test_the_prior_weight_is_the_squared_residual_a_sample_while_tempered(begun):
     search, point, _ = begun
-    assert search._heat(point) == pytest.approx(
+    assert search._prior_weight(point) == pytest.approx(
         point.residual @ point.residual / len(point.residual)
     )
-    assert search._heat(point) > 1.0
+    assert search._prior_weight(point) > 1.0
     search.tempered = False
-    assert search._heat(point) == 1.0
+    assert search._prior_weight(point) == 1.0
 
 
 def test_a_fit_knows_how_its_parameters_hang_together(evidence):

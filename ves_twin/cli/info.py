@@ -58,7 +58,7 @@ def general_content() -> dict[str, object]:
     from ves_twin.effects.registry import EFFECTS
     from ves_twin.envs import ENVIRONMENTS
     from ves_twin.envs.baselines import BASELINES
-    from ves_twin.machines.mjcf.description import shipped_rigs
+    from ves_twin.machines.load import shipped_machines
     from ves_twin.plant.plant import Plant
     from ves_twin.scenario.load import scenario_questions
     from ves_twin.simulator.simulate import versions
@@ -78,7 +78,7 @@ def general_content() -> dict[str, object]:
         },
         "scenarios": list(scenario_questions()),
         "environments": list(ENVIRONMENTS),
-        "rigs of two files": shipped_rigs(),
+        "rigs of two files": shipped_machines(),
         "sets of rigs": [p.stem for p in sorted((models / "rig_sets").glob("*.toml"))],
         "baseline policies": list(BASELINES),
         "signals": {

@@ -153,11 +153,15 @@ def _give_matplotlib_a_folder() -> None:
             os.environ["MPLCONFIGDIR"] = str(cache_folder("matplotlib"))
 
 
+def _refuse_empty(words: Sequence[str]) -> None:
+    for before, word in pairwise(["ves-twin", *words]):
+        if not word.strip() or EMPTY.fullmatch(word):
+            raise InvalidInputError(word[:-1] if word.strip() else before, "", "a value")
+
+
 def _answered(words: list[str]) -> int:
     try:
-        for before, word in pairwise(["ves-twin", *words]):
-            if not word.strip() or EMPTY.fullmatch(word):
-                raise InvalidInputError(word[:-1] if word.strip() else before, "", "a value")
+        _refuse_empty(words)
         if words and not words[0].startswith("-") and words[0] not in COMMANDS:
             raise UnknownNameError("command", words[0], COMMANDS)
         parser = build_parser()
@@ -176,6 +180,12 @@ def _answered(words: list[str]) -> int:
             os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
             return DONE
         print(f"ves-twin: {one_line(error)}", file=sys.stderr)
+        return BAD_INPUT
+    except MemoryError:
+        print(
+            "ves-twin: not enough memory; a shorter run or a smaller file takes less",
+            file=sys.stderr,
+        )
         return BAD_INPUT
     except KeyboardInterrupt:
         print("ves-twin: interrupted", file=sys.stderr)

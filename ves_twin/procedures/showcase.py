@@ -17,10 +17,9 @@ from ves_twin.core.recording.files import load_recording
 from ves_twin.diagnosis.diagnose import diagnose
 from ves_twin.diagnosis.settings import Settings
 from ves_twin.diagnosis.verdict import Verdict
+from ves_twin.machines.diagnose import diagnose as diagnose_machine
 from ves_twin.machines.pendulum.forward import Pendulum
-from ves_twin.machines.ves2.diagnose_rig import diagnose_rig
 from ves_twin.plant.plant import Plant
-from ves_twin.plant.write_plant import write_plant
 from ves_twin.procedures.procedure import Procedure, Result, RunContext
 from ves_twin.report.diagnosis.page import diagnosis_page
 from ves_twin.report.diagnosis.words import headline
@@ -141,13 +140,13 @@ class Showcase(Procedure):
         if self.bench == "pendulum":
             material["standstill"] = load_recording(folder / STANDSTILL)
             return diagnose(Pendulum.with_command_delay(), [record], **material), ""
-        found = diagnose_rig([record], Plant.load(self.plant), **material)
+        found = diagnose_machine([record], Plant.load(self.plant), **material)
         for name in ("plant.toml", "plant.candidate.toml"):  # of an earlier run
             (folder / name).unlink(missing_ok=True)
         if found.extended is None:
             return found.verdict, f"No extended plant was written: {found.refused}."
         path = folder / ("plant.candidate.toml" if found.refused else "plant.toml")
-        write_plant(found.extended, path, found.verdict.words)
+        found.extended.save(path, found.verdict.words)
         if found.refused:
             return found.verdict, f"The extended plant is a candidate: {found.refused}."
         return found.verdict, "The extended plant is plant.toml; it passed on held-out recordings."

@@ -16,13 +16,13 @@ from ves_twin.effects import ActuatorDelay, Backlash, Effect
 from ves_twin.effects.element import Element
 from ves_twin.effects.row import Anywhere
 from ves_twin.machines.mjcf import inverse
+from ves_twin.machines.mjcf.applied import applied
 from ves_twin.machines.mjcf.description import Mode
-from ves_twin.machines.mjcf.experiment import RigExperiment
+from ves_twin.machines.mjcf.experiment import MjcfExperiment
 from ves_twin.machines.mjcf.forward import MjcfForward
 from ves_twin.machines.mjcf.inverse import efforts_of_motion
 from ves_twin.machines.mjcf.machine import Rig
 from ves_twin.machines.mjcf.stepping import motion_of_drive
-from ves_twin.machines.mjcf.tell import tell
 from ves_twin.machines.mjcf.work import Work
 
 INNER = slice(200, -200)
@@ -185,7 +185,7 @@ def test_a_measured_start_is_the_first_row_also_of_a_signal_that_reads_the_other
     fed = {**programme().drive, "cart.position": (0.3 + 0.2 * TIME)[:, None]}
     if state == "estimated":
         moved = Recording(TIME, fed, RecordingInfo("measured", scenario="a"))
-        machine = tell({"a": moved}, RigExperiment(start={"state": state}), machine).rig
+        _, machine, _ = applied("a", moved, MjcfExperiment(start={"state": state}), machine)
     forward = MjcfForward.of(machine)
     rows = forward.simulate(Excitation("backwards", TIME, fed), {})
     x = rows[:, [c.name for c in forward.channels].index("cart.position")]

@@ -234,7 +234,7 @@ class RigDescription(Part):
 
 
 def is_rig(name_or_path: str) -> bool:
-    """Whether a --plant option means a rig of two files rather than a form of VES II."""
+    """Whether a --plant option means an MJCF machine rather than a plant of VES II."""
     path = Path(name_or_path)
     if not path.suffix and len(path.parts) == 1:
         return name_or_path in shipped_rigs()

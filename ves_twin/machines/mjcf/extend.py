@@ -18,7 +18,8 @@ def extended(rig: Rig, verdict: Verdict) -> Rig:
     """
     values = {name: e.value for name, e in verdict.tuned.items()}
     for cause in verdict.causes:
-        values |= {name: e.value for name, e in cause.parameters.items()}
+        at = f"{cause.effect}@{cause.target}"
+        values |= {f"{at}:{n.rpartition(':')[2]}": e.value for n, e in cause.parameters.items()}
     settings = {_place(s): s for s in rig.description.parameters}
     present = {kind: dict(t) for kind, t in rig.description.present.items()}
     for entry in rig.entries:

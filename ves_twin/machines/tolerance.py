@@ -7,11 +7,10 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from ves_twin.core.errors import InvalidInputError, UnknownNameError
-from ves_twin.core.signals import SIGNALS
+from ves_twin.core.signals import Signal
 from ves_twin.core.toml_file import check_schema, read_toml
 from ves_twin.core.units import to_si
 from ves_twin.diagnosis.residuals.channel import ChannelComparison
-from ves_twin.scenario.experiment import COMPARABLE
 
 MEASURES = ("rms", "peak", "mean")
 SCHEMA = 1
@@ -40,17 +39,22 @@ class Excess:
 
 @dataclass(frozen=True)
 class Tolerance:
-    """Limits in SI: measure -> column -> limit."""
+    """Limits in SI: measure -> column -> limit; and the unit of each column."""
 
     limits: Mapping[str, Mapping[str, float]]
+    units: Mapping[str, str]
 
     @staticmethod
-    def load(path: str | Path) -> Tolerance:
+    def load(path: str | Path, signals: Mapping[str, Signal]) -> Tolerance:
         """A tolerance from a TOML file.
 
         Tables [rms], [peak] and [mean] hold limits by signal or column: a number in SI, a text
         with a unit, or for a signal a list with one for each column. In a signal of several units
         a single limit must be a text, and holds for the columns of its unit.
+
+        Args:
+            path: the file.
+            signals: that may be compared, by name.
 
         Raises:
             FileAccessError: missing or unreadable.
@@ -61,6 +65,7 @@ class Tolerance:
         content, _ = read_toml("tolerance", Path(path))
         check_schema(content, Path(path), SCHEMA)
         limits: dict[str, dict[str, float]] = {}
+        units = {c: u for s in signals.values() for c, u in zip(s.columns, s.units, strict=True)}
         for measure, table in content.items():
             if measure == "schema":
                 continue
@@ -70,21 +75,26 @@ class Tolerance:
                 raise InvalidInputError(f"{Path(path).name}: {measure}", table, "a table")
             limits[measure] = {}
             for key, value in flat_keys(table):
-                limits[measure] |= _columns(key, value, f"{Path(path).name}: {measure}.{key}")
+                where = f"{Path(path).name}: {measure}.{key}"
+                limits[measure] |= _columns(key, value, where, signals, units)
         if not any(limits.values()):
             raise InvalidInputError(f"tolerance {Path(path).name}", "no limit", "at least one")
-        return Tolerance(limits)
+        return Tolerance(limits, units)
 
     def excesses(self, recording: str, channels: Iterable[ChannelComparison]) -> tuple[Excess, ...]:
-        """Limits that a recording does not keep; a column that was not compared keeps none."""
-        known = {channel.name: channel for channel in channels}
+        """Limits that a recording does not keep; a column that was not compared keeps none.
+
+        A column that was compared in several modes keeps its limit if it does in each.
+        """
+        every = tuple(channels)
         found = []
         for measure, limits in self.limits.items():
             for name, limit in limits.items():
-                channel = known.get(name)
-                value = None if channel is None else abs(float(getattr(channel, measure)))
-                if value is None or value > limit:
-                    found.append(Excess(recording, name, measure, value, limit, _unit(name)))
+                values = [abs(float(getattr(c, measure))) for c in every if c.name == name]
+                largest = max(values, default=None)
+                if largest is None or largest > limit:
+                    unit = self.units[name]
+                    found.append(Excess(recording, name, measure, largest, limit, unit))
         return tuple(found)
 
 
@@ -97,17 +107,21 @@ def flat_keys(table: Mapping[str, object], prefix: str = "") -> list[tuple[str, 
     return found
 
 
-def _columns(key: str, value: object, where: str) -> dict[str, float]:
-    columns = {
-        c: u for n in COMPARABLE for c, u in zip(SIGNALS[n].columns, SIGNALS[n].units, strict=True)
-    }
-    if key in columns:
-        return {key: _limit(value, columns[key], where)}
-    if key not in COMPARABLE:
-        raise UnknownNameError(
-            f"signal or column in {where.split(':')[0]}", key, [*COMPARABLE, *columns]
-        )
-    signal = SIGNALS[key]
+def _columns(
+    key: str,
+    value: object,
+    where: str,
+    signals: Mapping[str, Signal],
+    units: Mapping[str, str],
+) -> dict[str, float]:
+    if key in signals:
+        return _of_signal(signals[key], value, where)
+    if key in units:
+        return {key: _limit(value, units[key], where)}
+    raise UnknownNameError(f"signal or column in {where.split(':')[0]}", key, [*signals, *units])
+
+
+def _of_signal(signal: Signal, value: object, where: str) -> dict[str, float]:
     if isinstance(value, list):
         if len(value) != signal.width:
             raise InvalidInputError(where, value, f"{signal.width} limits, or one")
@@ -133,12 +147,3 @@ def _limit(value: object, unit: str, where: str) -> float:
     if limit <= 0.0:
         raise InvalidInputError(where, value, f"a limit above zero in {unit}")
     return limit
-
-
-def _unit(column: str) -> str:
-    return next(
-        unit
-        for name in COMPARABLE
-        for c, unit in zip(SIGNALS[name].columns, SIGNALS[name].units, strict=True)
-        if c == column
-    )

@@ -1,9 +1,8 @@
-"""tell: a rig and its recordings made ready as an experiment file says."""
+"""applied: an MJCF machine and a recording of it as an experiment file says."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 
@@ -13,76 +12,40 @@ from ves_twin.core.recording.stretch import compared_stretch
 from ves_twin.core.units import to_si
 from ves_twin.effects.registry import attributes
 from ves_twin.machines.mjcf.description import Compared, Drive, Mode, RigDescription, Setting, Start
-from ves_twin.machines.mjcf.experiment import RigExperiment
+from ves_twin.machines.mjcf.experiment import MjcfExperiment
 from ves_twin.machines.mjcf.forward import MjcfForward
 from ves_twin.machines.mjcf.machine import Rig
 from ves_twin.scenario.experiment import StartState
 
-DECLARED = ("declared", "auto")
-"""Noise as the rig's file has it; nothing is learnt from a part that stands still."""
 
-
-@dataclass(frozen=True)
-class Told:
-    """What a comparison or diagnosis needs.
-
-    Attributes:
-        recordings: in the order in which they were given.
-        rigs: of each of them.
-        standstill: file of the recording that tells the noise; empty if none.
-    """
-
-    recordings: tuple[Recording, ...]
-    rigs: tuple[Rig, ...]
-    standstill: str
-
-    @property
-    def rig(self) -> Rig:
-        """The one rig of all recordings.
-
-        Raises:
-            InvalidInputError: recordings of rigs that differ.
-        """
-        first = self.rigs[0]
-        for recording, rig in zip(self.recordings, self.rigs, strict=True):
-            if rig.identity != first.identity:
-                came = "another payload, start or other parameters than the first recording"
-                name = recording.info.scenario
-                raise InvalidInputError(name, came, "one rig in all recordings of a diagnosis")
-        return first
-
-
-def tell(recordings: Mapping[str, Recording], experiment: RigExperiment, rig: Rig) -> Told:
-    """Apply an experiment to recordings of a rig.
+def applied(
+    name: str, recording: Recording, experiment: MjcfExperiment, rig: Rig
+) -> tuple[Recording, Rig, float]:
+    """Apply what an experiment says of one recording.
 
     Args:
-        recordings: by name.
-        experiment: how they were made.
-        rig: the two files.
+        name: of the recording.
+        recording: of the machine.
+        experiment: how recordings were made.
+        rig: the machine as its file has it.
+
+    Returns:
+        The stretch that is compared, the machine as it was, and where the stretch begins [s].
 
     Raises:
-        UnknownNameError: a recording, signal, joint, body or attribute that is not there.
-        InvalidInputError: signals that no mode of the rig feeds in, an empty window, or noise
-            sources that differ.
+        UnknownNameError: a signal, joint, body or attribute that is not there.
+        InvalidInputError: signals that no mode of the machine feeds in, or an empty window.
     """
-    experiment.check_names(list(recordings))
-    ready, rigs, noises = [], [], set()
-    for name, recording in recordings.items():
-        told = experiment.of(name)
-        own = rig_of(told, rig)
-        start = told.window.start
-        if told.start.state is StartState.ESTIMATED:
-            start = max(start, told.start.forget)
-        drive = MjcfForward.of(own).drive
-        ready.append(compared_stretch(recording, start, told.window.stop, drive, name))
-        rigs.append(own)
-        noises.add("" if told.noise in DECLARED else told.noise)
-    if len(noises) > 1:
-        raise InvalidInputError("noise", sorted(noises), "one noise source in all recordings")
-    return Told(tuple(ready), tuple(rigs), noises.pop() if noises else "")
+    told = experiment.of(name)
+    own = rig_of(told, rig)
+    start = told.window.start
+    if told.start.state is StartState.ESTIMATED:
+        start = max(start, told.start.forget)
+    drive = MjcfForward.of(own).drive
+    return compared_stretch(recording, start, told.window.stop, drive, name), own, start
 
 
-def rig_of(experiment: RigExperiment, rig: Rig) -> Rig:
+def rig_of(experiment: MjcfExperiment, rig: Rig) -> Rig:
     """The rig as it was in an experiment: mode, signals compared, numbers, payload, start."""
     told = rig.description
     settings = {(s.element, s.attribute): s for s in told.parameters}
@@ -107,7 +70,7 @@ def rig_of(experiment: RigExperiment, rig: Rig) -> Rig:
     return made
 
 
-def _drive(experiment: RigExperiment, told: RigDescription) -> Drive:
+def _drive(experiment: MjcfExperiment, told: RigDescription) -> Drive:
     """With the mode whose signals are those that were fed in."""
     if not experiment.drive:
         return told.drive
@@ -126,7 +89,7 @@ def _drive(experiment: RigExperiment, told: RigDescription) -> Drive:
     raise InvalidInputError("drive", list(experiment.drive), known)
 
 
-def _compare(experiment: RigExperiment, told: RigDescription) -> dict[str, Compared]:
+def _compare(experiment: MjcfExperiment, told: RigDescription) -> dict[str, Compared]:
     for name in experiment.compare:
         if name not in told.compare:
             raise UnknownNameError("signal in compare", name, told.compare)
@@ -134,7 +97,7 @@ def _compare(experiment: RigExperiment, told: RigDescription) -> dict[str, Compa
 
 
 def _start(
-    experiment: RigExperiment, told: RigDescription, compare: dict[str, Compared]
+    experiment: MjcfExperiment, told: RigDescription, compare: dict[str, Compared]
 ) -> dict[str, Start]:
     start = experiment.start
     if start.state is StartState.GIVEN:

@@ -1,17 +1,17 @@
-"""tell: recordings of VES II made ready for a diagnosis as an experiment file says."""
+"""applied: recordings of VES II with what an experiment file says of them."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 
 from ves_twin.core.errors import InvalidInputError
-from ves_twin.core.recording.files import load_recording
 from ves_twin.core.recording.recording import Recording
 from ves_twin.core.recording.stretch import compared_stretch
 from ves_twin.core.types import FloatArray
+from ves_twin.machines.machine import Named
 from ves_twin.machines.ves2.declared_load import with_load
 from ves_twin.machines.ves2.forward import COMPARED, DRIVE
 from ves_twin.mechanics.kinematics.stewart import leg_lengths
@@ -21,25 +21,9 @@ from ves_twin.scenario.schema import Scenario
 from ves_twin.simulator.build import belief_of
 
 
-@dataclass(frozen=True)
-class Told:
-    """What a diagnosis needs.
-
-    Attributes:
-        recordings: in the order in which they were given.
-        scenario: rates, gains and start.
-        plant: the nominal rig with the numbers of the experiment, and with its payload where
-            all recordings have the same; else each recording says its own.
-        standstill: recording that tells the noise, if the experiment names one.
-    """
-
-    recordings: tuple[Recording, ...]
-    scenario: Scenario
-    plant: Plant
-    standstill: Recording | None
-
-
-def tell(recordings: Mapping[str, Recording], experiment: Experiment, plant: Plant | None) -> Told:
+def applied(
+    recordings: Sequence[Named], experiment: Experiment, plant: Plant | None
+) -> tuple[tuple[Recording, ...], Plant, Scenario]:
     """Apply an experiment to recordings of one rig.
 
     Set-points that were not recorded are filled in: lengths from poses by the inverse kinematics
@@ -48,39 +32,36 @@ def tell(recordings: Mapping[str, Recording], experiment: Experiment, plant: Pla
     measurements; what comes after the window is cut.
 
     Args:
-        recordings: by name.
+        recordings: of one rig.
         experiment: how they were made.
         plant: the nominal rig; the experiment's or the scenario's if left out.
+
+    Returns:
+        The recordings; the rig with the numbers of the experiment, and with its payload where all
+        recordings have the same, else each recording says its own; rates, gains and start.
 
     Raises:
         UnknownNameError: a recording that is not there, or a set-point that was not recorded.
         InvalidInputError: recordings of rigs that differ, or an empty window.
     """
-    experiment.check_names(list(recordings))
-    told = {name: experiment.of(name) for name in recordings}
-    scenarios = {name: told[name].scenario_of(r) for name, r in recordings.items()}
-    loads = {name: told[name].payload for name in recordings}
-    own = len(set(loads.values())) > 1
+    told = [experiment.of(one.name) for one in recordings]
+    scenarios = [t.scenario_of(one.recording) for t, one in zip(told, recordings, strict=True)]
+    loads = [t.payload for t in told]
+    own = len(set(loads)) > 1
     if own:  # each recording carries its load, and the rig none
-        told = {name: t.model_copy(update={"payload": 0.0}) for name, t in told.items()}
-    rigs = {name: told[name].rig(plant, scenarios[name]) for name in recordings}
-    first = next(iter(recordings))
-    for name in recordings:
-        if rigs[name].hash != rigs[first].hash:
-            came = f"another plant or other parameters than {first}"
-            raise InvalidInputError(name, came, "one rig in all recordings of a diagnosis")
-        if told[name].noise != told[first].noise:
-            came = f"another noise source than {first}"
-            raise InvalidInputError(name, came, "one noise source in a diagnosis")
-    source = told[first].noise
-    standstill = None if source in {"auto", "declared"} else load_recording(source)
+        told = [t.model_copy(update={"payload": 0.0}) for t in told]
+    rigs = [t.rig(plant, scenario) for t, scenario in zip(told, scenarios, strict=True)]
+    for one, rig in zip(recordings, rigs, strict=True):
+        if rig.hash != rigs[0].hash:
+            came = f"another plant or other parameters than {recordings[0].name}"
+            raise InvalidInputError(one.name, came, "one rig in all recordings of a diagnosis")
     ready = tuple(
-        _windowed(_driven(r, told[name], scenarios[name]), told[name], name)
-        for name, r in recordings.items()
+        _windowed(_driven(one.recording, t, scenario), t, one.name)
+        for one, t, scenario in zip(recordings, told, scenarios, strict=True)
     )
     if own:
-        ready = tuple(map(with_load, ready, loads.values()))
-    return Told(ready, scenarios[first], rigs[first], standstill)
+        ready = tuple(map(with_load, ready, loads))
+    return ready, rigs[0], scenarios[0]
 
 
 def _driven(recording: Recording, told: Experiment, scenario: Scenario) -> Recording:

@@ -4,31 +4,35 @@ from __future__ import annotations
 
 import hashlib
 import os
+from collections.abc import Sequence
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from ves_twin.core.errors import FileAccessError, InvalidInputError
-from ves_twin.machines.mjcf.machine import Rig
+
+if TYPE_CHECKING:
+    from ves_twin.machines.mjcf.description import Data
 
 VARIABLE = "VES_TWIN_DATA"
 """Environment variable with the folder of public data sets; see models/rigs/README.md."""
 
 
-def find_data(name: str, rig: Rig, folder: str | None = None) -> Path:
+def find_data(name: str, data: Sequence[Data], folder: str | None = None) -> Path:
     """The file of a recording.
 
     A path that exists is taken as it is. Otherwise the file is looked for in a folder of public
-    data, where those that the rig's file lists must have their published content.
+    data, where those that are listed must have their published content.
 
     Args:
         name: a path, or a path inside the folder such as "emps/emps_train.csv".
-        rig: whose file lists public recordings.
+        data: public recordings of the machine, with their checksums.
         folder: of public data; that of the environment variable VES_TWIN_DATA if None.
 
     Raises:
         FileAccessError: no such file; says where it was looked for and where it comes from.
         InvalidInputError: a listed file with other content.
     """
-    told = {d.file: d for d in rig.description.data}
+    told = {d.file: d for d in data}
     given = Path(name)
     if given.is_file():
         return given
@@ -41,4 +45,4 @@ def find_data(name: str, rig: Rig, folder: str | None = None) -> Path:
         return path
     where = f"here or in {root}" if root else f"here, and --data or {VARIABLE} names no folder"
     source = f"; its source: {listed.source}" if listed else ""
-    raise FileAccessError(f"recording file '{name}' is not {where}{source}")
+    raise FileAccessError(f"recording file '{name}' does not exist {where}{source}")

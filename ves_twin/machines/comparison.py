@@ -6,12 +6,15 @@ import math
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass
 from enum import StrEnum
+from typing import TYPE_CHECKING
 
 from ves_twin.core.types import FloatArray
 from ves_twin.data.quality.check import Check, Grade
 from ves_twin.diagnosis.residuals.channel import ChannelComparison
-from ves_twin.machines.ves2.emulation_cost import EmulationCost
-from ves_twin.machines.ves2.tolerance import Excess
+from ves_twin.machines.tolerance import Excess
+
+if TYPE_CHECKING:
+    from ves_twin.machines.ves2.emulation_cost import EmulationCost
 
 SCHEMA = 1
 
@@ -53,9 +56,12 @@ class RecordingComparison:
         start: first time that is compared [s].
         stop: last one [s].
         rate: of the rows [Hz].
-        plant: name of the plant.
+        plant: name of the machine.
         plant_hash: of it.
         made_by: hash of the plant that made the recording; empty for a measured one.
+        mode: what was fed in, "motion", "control" or "reference".
+        slow_below: highest frequency of the analysis grid [Hz].
+        poses: whether rows are poses at rest and times their numbers.
         traces: the rows behind it.
     """
 
@@ -72,6 +78,9 @@ class RecordingComparison:
     plant: str
     plant_hash: str
     made_by: str
+    mode: str
+    slow_below: float
+    poses: bool
     traces: Traces
 
     @property
@@ -85,7 +94,7 @@ class RecordingComparison:
     def beyond_noise(self) -> tuple[ChannelComparison, ...]:
         """Channels with more than noise, the loudest first."""
         loud = [channel for channel in self.channels if channel.beyond_noise]
-        return tuple(sorted(loud, key=lambda channel: -channel.rms_sigma))
+        return tuple(sorted(loud, key=lambda channel: -channel.loudness))
 
     def to_dict(self) -> dict[str, object]:
         """Plain values for JSON."""
@@ -100,6 +109,8 @@ class RecordingComparison:
             "plant": self.plant,
             "plant_hash": self.plant_hash,
             "made_by": self.made_by,
+            "mode": self.mode,
+            "slow_below": self.slow_below,
             "absent": list(self.absent),
             "notes": list(self.notes),
             "beyond_noise": [channel.name for channel in self.beyond_noise],

@@ -1,4 +1,4 @@
-"""Told: what an experiment file says of recordings, and of single ones among them."""
+"""ExperimentFile: what an experiment file says of recordings, and of single ones among them."""
 
 from __future__ import annotations
 
@@ -9,16 +9,20 @@ from typing import Any, Self
 
 from pydantic import Field, ValidationError
 
-from ves_twin.core.errors import UnknownNameError
+from ves_twin.core.errors import InvalidInputError, UnknownNameError
 from ves_twin.core.toml_file import read_toml
 from ves_twin.scenario.fields import Part
 from ves_twin.scenario.load import refusal
 
+BY_NUMBERS = ("declared", "auto")
+"""What `noise` says where no recording tells it."""
 
-class Told(Part, ABC):
+
+class ExperimentFile(Part, ABC):
     """What is said of all recordings; `recordings` holds what single ones have of their own."""
 
     parameters: Mapping[str, Any] = Field(default_factory=dict)
+    noise: str = "declared"
     recordings: Mapping[str, Part] = Field(default_factory=dict)
 
     @classmethod
@@ -51,3 +55,19 @@ class Told(Part, ABC):
         for name in self.recordings:
             if name not in known:
                 raise UnknownNameError("recording in the experiment", name, known)
+
+    def noise_source(self, names: Sequence[str]) -> str:
+        """The recording that tells the noise of all of these; empty where none does.
+
+        Raises:
+            UnknownNameError: it speaks of a recording that is not there.
+            InvalidInputError: two recordings of one name, or of noise sources that differ.
+        """
+        self.check_names(names)
+        if len(set(names)) < len(names):
+            raise InvalidInputError("recordings", "two of one name", "names that tell them apart")
+        sources = {self.of(name).noise for name in names}
+        files = {"" if source in BY_NUMBERS else source for source in sources}
+        if len(files) > 1:
+            raise InvalidInputError("noise", sorted(sources), "one noise source in all recordings")
+        return files.pop() if files else ""
