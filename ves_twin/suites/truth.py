@@ -6,6 +6,9 @@ import json
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass, field
 from enum import StrEnum
+from typing import Any
+
+from ves_twin.effects.registry import label_of_today
 
 
 class Hidden(StrEnum):
@@ -83,9 +86,19 @@ class Truth:
 
     @staticmethod
     def from_json(text: str) -> Truth:
-        """From text."""
+        """From text; names of effects that were others when it was sealed are today's."""
         content = json.loads(text)
-        causes = tuple(HiddenCause(**cause) for cause in content.pop("causes"))
-        twins = tuple(tuple(labels) for labels in content.pop("stand_ins", ()))
+        causes = tuple(_hidden(cause) for cause in content.pop("causes"))
+        twins = tuple(tuple(map(label_of_today, one)) for one in content.pop("stand_ins", ()))
+        content["values"] = _today(content.pop("values", {}))
         sort = Hidden(content.pop("hidden"))
         return Truth(causes=causes, hidden=sort, stand_ins=twins, **content)
+
+
+def _hidden(content: dict[str, Any]) -> HiddenCause:
+    effect, target = label_of_today(f"{content['effect']}@{content['target']}").split("@")
+    return HiddenCause(effect, target, _today(content["departures"]), content["d"])
+
+
+def _today(values: Mapping[str, float]) -> dict[str, float]:
+    return {label_of_today(name): value for name, value in values.items()}
