@@ -47,7 +47,9 @@ def test_every_parameter_moves_a_signal_in_some_mode(forwards):
         beside = {}  # a gap says nothing where the friction behind it has no level
         for h in forward.hypotheses:
             for start in h.starts[:1]:
-                beside |= {name: dict(zip(h.parameters, start)) for name in h.parameters}
+                beside |= {
+                    name: dict(zip(h.parameters, start, strict=True)) for name in h.parameters
+                }
         for p in forward.parameters:
             others = beside.get(p.name, {})
             values = others | {p.name: p.nominal + 0.2 * (p.high - p.nominal)}

@@ -60,7 +60,7 @@ class RigEffect(ABC):
 
     @classmethod
     def starts(cls, place: Place) -> tuple[tuple[float, ...], ...]:
-        """Sizes to begin a search at, of a kind whose sizes say nothing one by one; () if they do."""
+        """Sizes to begin a search at, where sizes say nothing one by one; () if they do."""
         return ()
 
     @property

@@ -25,7 +25,11 @@ LEAST_TRAVEL = 1e-6
 @final
 @dataclass(frozen=True)
 class QuadraticDrag(RigEffect):
-    """Resistance with the square of speed: a fan, a fluid; an effort drag * v * |v|."""
+    """Resistance with the square of speed: an effort drag * v * |v|.
+
+    Above zero a fan or a fluid; below it viscous friction grows less than in proportion to speed,
+    as that of warm grease and of harmonic drives does.
+    """
 
     drag: float = 0.0
 
@@ -35,7 +39,6 @@ class QuadraticDrag(RigEffect):
         "drag",
         ("N*s^2/m^2", "N*m*s^2/rad^2"),
         lambda p: 3.0 * p.effort / p.speed**2,
-        sign=Sign.POSITIVE,
     )
 
     def resist(self, speed: FloatArray, slow: float) -> FloatArray:
@@ -70,8 +73,9 @@ class StribeckFriction(RigEffect):
 
     @classmethod
     def starts(cls, place: Place) -> tuple[tuple[float, ...], ...]:
-        """A tenth of the typical effort that falls over 3, 10 and 30 % of the typical speed."""
-        return tuple((0.1 * place.effort, share * place.speed) for share in (0.03, 0.1, 0.3))
+        """A tenth of the typical effort, more or less, over 3, 10, 30 % of the typical speed."""
+        grid = product((0.1, -0.1), (0.03, 0.1, 0.3))
+        return tuple((level * place.effort, fall * place.speed) for level, fall in grid)
 
     def resist(self, speed: FloatArray, slow: float) -> FloatArray:
         """The level where the joint is slow, gone where it is fast."""
