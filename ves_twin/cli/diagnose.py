@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from ves_twin.benches.diagnose_rig import RigDiagnosis
     from ves_twin.benches.told import Told
+    from ves_twin.diagnosis.build_up.result import Proved
     from ves_twin.diagnosis.settings import Settings
     from ves_twin.plant.plant import Plant
     from ves_twin.recording.recording import Recording
@@ -152,8 +153,9 @@ def _mjcf(
         )
 
     def save(path: Path, note: str) -> None:
-        if found.extended is not None:
-            write_rig(found.extended, path, note)
+        rig = found.extended or found.nearest
+        if rig is not None:
+            write_rig(rig, path, note)
 
     return found, save
 
@@ -228,8 +230,15 @@ def _write(
 
 def _plant_sentence(found: RigDiagnosis | MjcfDiagnosis) -> str:
     """What became of the extended plant."""
+    from ves_twin.rigs.diagnose_mjcf import MjcfDiagnosis
+
     if found.extended is None and found.verdict.causes:
         return f"No extended plant was written: {found.refused}."
+    if isinstance(found, MjcfDiagnosis) and found.extended is None and found.nearest is not None:
+        return (
+            "plant.candidate.toml has what comes nearest, with its sizes. It was not accepted: no"
+            " cause is named."
+        )
     if found.extended is None:
         return "No extended plant was written: no cause is named."
     if found.refused:
@@ -238,23 +247,26 @@ def _plant_sentence(found: RigDiagnosis | MjcfDiagnosis) -> str:
 
 
 def _text(found: RigDiagnosis | MjcfDiagnosis, folder: Path) -> str:
-    from ves_twin.diagnosis.report.words import ambiguity_sentences
+    from ves_twin.diagnosis.report.proved import inseparable_sentences, proof_sentence
+    from ves_twin.diagnosis.report.words import ambiguity_sentences, headline
+    from ves_twin.report.quantity import shares
 
     verdict = found.verdict
     basis = verdict.basis
     lines = [
         f"verdict   {verdict.verdict.value}",
-        f"          {verdict.words}",
+        f"          {headline(verdict) if verdict.proved else verdict.words}",
         *(f"          {text}" for text in ambiguity_sentences(verdict)),
         f"basis     noise {basis.noise}, tolerances {basis.tolerances},"
         f" held-out recordings {basis.held_out}, baseline {basis.baseline}",
     ]
     if verdict.gain is not None and verdict.gain.share is not None:
         gain = verdict.gain
-        lines.append(
-            f"gain      {gain.share:.0%} of the excess on held-out recordings"
-            f" ({gain.low:.0%} to {gain.high:.0%})"
-        )
+        share, low, high = shares(gain.share, gain.low, gain.high)
+        lines.append(f"gain      {share} of the excess on held-out recordings ({low} to {high})")
+    if verdict.put_to_proof is not None:
+        lines += ["", f"  {proof_sentence(verdict)}", *(_proved_line(o) for o in verdict.proved)]
+        lines += [f"  not separated: {text}" for text in inseparable_sentences(verdict)]
     lines += ["", "  channel             before     after   (rms, in the channel's unit)"]
     for name, error in verdict.residuals.items():
         lines.append(f"  {name:<18}{error.before_si:10.3g}{error.after_si:10.3g}   {error.unit}")
@@ -267,3 +279,14 @@ def _text(found: RigDiagnosis | MjcfDiagnosis, folder: Path) -> str:
         lines += ["", f"  plant.candidate.toml, no plant.toml: {found.refused}"]
     files = ", ".join(sorted(p.name for p in folder.iterdir()))
     return "\n".join([*lines, "", f"  files     {folder}/: {files}"])
+
+
+def _proved_line(one: Proved) -> str:
+    from ves_twin.diagnosis.report.proved import standing_words
+    from ves_twin.report.quantity import quantity
+
+    sizes = ", ".join(
+        f"{quantity(s.value, s.unit)} ({quantity(s.low, s.unit)} to {quantity(s.high, s.unit)})"
+        for s in one.parameters.values()
+    )
+    return f"  {one.label:<36}{sizes}; {standing_words(one)}"

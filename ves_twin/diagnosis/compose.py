@@ -128,7 +128,7 @@ def compose(
         false_discovery_rate=built.false_discovery_rate if built else None,
         left=built.left if built else {},
         inseparable=built.inseparable if built else (),
-        nearest=tuple(cause.shortened for cause in nearest),
+        nearest=nearest,
     )
 
 

@@ -29,11 +29,13 @@ class MjcfDiagnosis:
         verdict: with the sizes of the effects as the names of its parameters.
         extended: the rig with the causes and the tuned numbers; None where no causes are named.
         refused: why the extension is only a candidate; empty where it passed.
+        nearest: the rig with what comes nearest where no causes are named; None if nothing does.
     """
 
     verdict: Verdict
     extended: Rig | None
     refused: str
+    nearest: Rig | None = None
 
 
 def diagnose_mjcf(
@@ -85,9 +87,14 @@ def diagnose_mjcf(
         progress=progress,
     )
     new = extended(rig, verdict) if verdict.verdict.names_a_plant else None
-    verdict = replace(verdict, causes=tuple(c.shortened for c in verdict.causes))
+    near = extended(rig, replace(verdict, causes=verdict.nearest)) if verdict.nearest else None
+    verdict = replace(
+        verdict,
+        causes=tuple(c.shortened for c in verdict.causes),
+        nearest=tuple(c.shortened for c in verdict.nearest),
+    )
     if new is None:
-        return MjcfDiagnosis(verdict, None, f"the verdict is {verdict.verdict.value}")
+        return MjcfDiagnosis(verdict, None, f"the verdict is {verdict.verdict.value}", near)
     return MjcfDiagnosis(verdict, new, refusal(verdict))
 
 

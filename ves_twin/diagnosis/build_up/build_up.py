@@ -15,7 +15,7 @@ from ves_twin.diagnosis.build_up.proof import Bench, Proof, prove
 from ves_twin.diagnosis.build_up.report import report_of
 from ves_twin.diagnosis.build_up.result import BuildUp
 from ves_twin.diagnosis.build_up.select import Selector
-from ves_twin.diagnosis.build_up.sizes import spread_of
+from ves_twin.diagnosis.build_up.sizes import half_widths
 from ves_twin.diagnosis.build_up.trials import Trial
 from ves_twin.diagnosis.evidence import Evidence
 from ves_twin.diagnosis.explain import Desk, Explanation
@@ -177,7 +177,7 @@ def _widened(evidence: Evidence, fit: Fit, confidence: float) -> Fit:
     """With intervals that count what stretches of time scatter by."""
     if not len(fit.sizes):
         return fit
-    half = spread_of(evidence, fit, confidence).half
+    half = half_widths(evidence, fit, confidence)
     sd = half / float(norm.isf(0.5 * (1.0 - confidence)))
     own = np.sqrt(np.maximum(np.diag(fit.covariance), 1e-300))
     grown = np.maximum(sd / own, 1.0)

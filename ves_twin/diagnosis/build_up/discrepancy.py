@@ -8,7 +8,7 @@ import numpy as np
 
 from ves_twin.diagnosis.runs import Runs
 from ves_twin.diagnosis.whitening import ORDER, Whitening, prediction_filters
-from ves_twin.types import BoolArray, FloatArray
+from ves_twin.types import FloatArray
 
 SHRINKAGE = 0.1
 """Share of the innovations' covariance that is taken without its correlations between channels:
@@ -48,7 +48,9 @@ def discrepancy(runs: Runs, residual: FloatArray) -> Whitening:
     whole = plain.freedom.reshape(-1, width).all(axis=1)
     inner = inner[whole] if np.count_nonzero(whole) > 2 * width else inner
     spread = inner.T @ inner / len(inner)
-    own = np.diag(np.maximum(np.diag(spread), 1e-30))
+    quietest = np.sum(prediction_filters(declared) * declared, axis=1)
+    spread += np.diag(np.maximum(quietest - np.diag(spread), 0.0))
+    own = np.diag(np.diag(spread))
     root = np.linalg.cholesky((1.0 - SHRINKAGE) * spread + SHRINKAGE * own)
     return replace(plain, mixing=np.tile(np.linalg.inv(root), (copies, 1, 1)))
 
@@ -70,16 +72,9 @@ def apart(found: Whitening) -> Whitening:
     return replace(found, mixing=np.tile(np.eye(found.mixing.shape[1]), (len(found.mixing), 1, 1)))
 
 
-def kept_rows(runs: Runs) -> BoolArray:
-    """Rows of the grid that were measured (rows, c)."""
-    if runs.holes:
-        return ~np.concatenate(runs.holes)
-    return np.ones((runs.slices[-1].stop, len(runs.columns)), bool)
-
-
 def _autocovariance(runs: Runs, residual: FloatArray) -> FloatArray:
     """Of each channel (c, ORDER + 1), over the rows that were measured: the biased estimate."""
-    kept = kept_rows(runs)
+    kept = runs.kept
     rows = np.where(kept, residual, 0.0)
     found = np.zeros((residual.shape[1], ORDER + 1))
     for piece in runs.slices:

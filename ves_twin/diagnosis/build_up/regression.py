@@ -8,7 +8,7 @@ from functools import cached_property
 
 import numpy as np
 
-from ves_twin.diagnosis.build_up.discrepancy import discrepancy, kept_rows
+from ves_twin.diagnosis.build_up.discrepancy import discrepancy
 from ves_twin.diagnosis.build_up.trials import Trial
 from ves_twin.diagnosis.runs import Runs
 from ves_twin.diagnosis.whitening import Whitening
@@ -48,7 +48,7 @@ class Half:
     @cached_property
     def kept(self) -> BoolArray:
         """Rows that were measured (rows, c)."""
-        return kept_rows(self.runs)
+        return self.runs.kept
 
     @property
     def nuisances(self) -> SingleArray:

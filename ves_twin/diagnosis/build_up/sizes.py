@@ -1,8 +1,6 @@
-"""sizes_of: parameters of a fit with intervals that count noise, model error and its memory."""
+"""half_widths: intervals of sizes that count noise, model error and its memory."""
 
 from __future__ import annotations
-
-from dataclasses import dataclass
 
 import numpy as np
 from scipy.stats import t as student
@@ -16,14 +14,7 @@ BLOCKS = 20
 between its 12 and 40."""
 
 
-@dataclass(frozen=True)
-class Spread:
-    """Half widths of intervals of the free parameters of a fit, cause by cause (k,)."""
-
-    half: FloatArray
-
-
-def spread_of(evidence: Evidence, fit: Fit, confidence: float) -> Spread:
+def half_widths(evidence: Evidence, fit: Fit, confidence: float) -> FloatArray:
     """The larger of what the model of noise says and what stretches of time scatter by.
 
     The second is the sandwich H^-1 (sum over blocks of g g') H^-1 with g = J'e of a block: it
@@ -35,6 +26,9 @@ def spread_of(evidence: Evidence, fit: Fit, confidence: float) -> Spread:
         evidence: whitened by the discrepancy.
         fit: of the causes.
         confidence: of the intervals.
+
+    Returns:
+        Half widths of the free parameters, cause by cause [their units] (k,).
     """
     whitening, runs = evidence.whitening, evidence.runs
     nuisances = np.isin(runs.nuisances, fit.active[len(fit.sizes) :])
@@ -56,7 +50,8 @@ def spread_of(evidence: Evidence, fit: Fit, confidence: float) -> Spread:
     sandwich = inverse @ (scores.T @ scores) @ inverse * BLOCKS / (BLOCKS - 1.0)
     level = max(float(left @ left) / max(float(np.sum(whitening.freedom)), 1.0), 1.0)
     count = len(fit.sizes)
-    variance = np.maximum(np.diag(inverse) * level, np.diag(sandwich))[:count]
+    model = np.maximum(np.diag(inverse)[:count], 1e-300)
+    grown = np.sqrt(np.maximum(level, np.diag(sandwich)[:count] / model))
+    own = np.sqrt(np.maximum(np.diag(fit.posterior)[:count], 0.0))  # in the parameters' units
     quantile = float(student.ppf(0.5 + 0.5 * confidence, BLOCKS - 1))
-    commissioning = runs.sd[fit.active[:count]] * 0.0
-    return Spread(np.asarray(quantile * np.sqrt(variance + commissioning**2)))
+    return np.asarray(quantile * grown * own)
