@@ -23,6 +23,7 @@ from ves_twin.diagnosis.settings import Settings
 from ves_twin.diagnosis.verdict import Kind
 from ves_twin.diagnosis.whitening import whitening_declared
 from ves_twin.errors import InvalidInputError
+from ves_twin.report.quantity import shares
 from ves_twin.rerun_log.diagnosis import write_diagnosis_rrd
 
 HELD = programme(9)
@@ -65,7 +66,7 @@ def test_the_first_screen_has_verdict_cause_size_interval_gain_and_basis(proven)
     )
     numbers = [float(number) for number in re.findall(r"-?\d+\.\d+", top)]
     assert any(number == pytest.approx(size.value, abs=width / 20) for number in numbers)
-    assert f"{100 * proven.gain.share:.0f} % of the error beyond noise" in top
+    assert f"{shares(proven.gain.share, proven.gain.low, proven.gain.high)[0]} of the error" in top
     assert "declared, not measured" in top
     assert "plant.toml" in top
 

@@ -79,6 +79,12 @@ def test_hidden_causes_are_proved_and_their_sizes_are_right(seed):
     assert len(shares)
 
 
+def told(two, proof):
+    """The report, by the linear model."""
+    left = two.regression.solve(proof.proved, proof.bench.fit.whitening).residual
+    return report_of(two, proof, (left, proof.bench.residual(proof.proved)))
+
+
 def rates(draws: int, count: int) -> tuple[int, int, int]:
     """False and true names that are proved, and hidden ones, over draws."""
     wrong = right = hid = 0
@@ -112,11 +118,11 @@ def test_a_twin_is_a_stand_in_and_takes_the_firm_name_away():
     names, proof = found(two)
     others = stand_ins(proof)
     trials = two.regression.trials
-    told = {trials[n].cause.label: {trials[k].cause.label for k in ks} for n, ks in others.items()}
+    like = {trials[n].cause.label: {trials[k].cause.label for k in ks} for n, ks in others.items()}
     pair = {"viscous@a", "twin@a"}
     (kept,) = pair & {name.removesuffix(":size") for name in names}
-    assert told[kept] >= pair - {kept}
-    report = report_of(two, proof)
+    assert like[kept] >= pair - {kept}
+    report = told(two, proof)
     firm = {one.label: one.firm for one in report.proved}
     assert not firm[kept]
     assert firm["coulomb@b"]
@@ -127,7 +133,7 @@ def test_a_twin_is_a_stand_in_and_takes_the_firm_name_away():
 def test_the_report_says_what_each_takes_and_what_is_left():
     two = halves(PLANT, {"coulomb@a:size": 0.8}, 7)
     _, proof = found(two)
-    report = report_of(two, proof)
+    report = told(two, proof)
     (one,) = [p for p in report.proved if p.label == "coulomb@a"]
     before, after = one.takes["torque.a"]
     assert before > 2.0 * after
@@ -146,7 +152,7 @@ def test_a_law_that_the_library_lacks_is_seen_in_what_is_left_and_no_name_is_fir
     one, two = (seen(lacking, recorded(PLANT, world, s, 0.02)) for s in (11, 12))
     both = halves_at(one, two, one.runs.origin, lacking.hypotheses)
     _, proof = found(both)
-    report = report_of(both, proof)
+    report = told(both, proof)
     assert "q.1" in report.left["torque.a"].laws
     about = [p for p in report.proved if p.label in ("spring@a", "offset@a")]
     assert not any(p.firm for p in about)

@@ -9,7 +9,7 @@ import numpy as np
 from scipy.stats import norm
 
 from ves_twin.diagnosis.adequacy import cells, misfit
-from ves_twin.diagnosis.build_up.halves import Halves, halves_at
+from ves_twin.diagnosis.build_up.halves import Halves, carried_point, halves_at
 from ves_twin.diagnosis.build_up.paired import loss
 from ves_twin.diagnosis.build_up.proof import Bench, Proof, prove
 from ves_twin.diagnosis.build_up.report import report_of
@@ -22,6 +22,9 @@ from ves_twin.diagnosis.explain import Desk, Explanation
 from ves_twin.diagnosis.linearise import linearise
 from ves_twin.diagnosis.observe import Observed
 from ves_twin.diagnosis.refine import Fit, bare_residual, refine
+from ves_twin.diagnosis.runs import Runs
+from ves_twin.diagnosis.search import Search
+from ves_twin.diagnosis.whitening import Whitening
 from ves_twin.types import FloatArray
 
 ROUNDS = 3
@@ -130,9 +133,12 @@ def build_up(desk: Desk, start: Explanation, fitted: Observed, held: Observed) -
     before = builder.refined(halves, (), point)
     evidence = builder.evidence(halves, proof.proved)
     final = _widened(evidence, final, desk.settings.confidence)
-    report = report_of(halves, proof)
+    plain = Evidence(fitted.runs, fitted.measured, _on(start.evidence.whitening, fitted.runs))
+    final, before = _in_noise(plain, final), _in_noise(plain, before)
     found = _explained(desk, start, final) if proof.proved else start
-    return Built(found, before, report)
+    there = held.runs.one(carried_point(fitted.runs, held.runs, final.shift))
+    ends = bare_residual(evidence, final), held.measured - there
+    return Built(found, before, report_of(halves, proof, ends))
 
 
 def _places(halves: Halves, present: Sequence[Trial]) -> list[int]:
@@ -171,6 +177,27 @@ def _worse(bench: Bench, some: Sequence[int], others: Sequence[int]) -> bool:
     scale = common.scale(every)
     one, two = (loss(common.innovations(part), scale)[common.whole] for part in (some, others))
     return bool(np.sum(one) > np.sum(two))
+
+
+def _on(whitening: Whitening, runs: Runs) -> Whitening:
+    """The same noise on the fitted half."""
+    return replace(whitening, runs=runs)
+
+
+def _in_noise(evidence: Evidence, fit: Fit) -> Fit:
+    """With what is known of departures in units of noise, as a held-out gain carries it over.
+
+    Against the discrepancy they are so uncertain that what a model gets wrong elsewhere would pass
+    for its tuning.
+    """
+    count = len(fit.sizes)
+    search = Search(evidence, fit.active[:count], fit.local)
+    point = search.at(fit.shift, fit.step_share)
+    hessian = search.hessian(search.jacobian(point))
+    root = 1.0 / np.sqrt(np.maximum(np.diag(hessian), 1e-30))
+    scaled = hessian * np.outer(root, root) + 1e-12 * np.eye(len(hessian))
+    inverse = (np.linalg.inv(scaled) * np.outer(root, root))[:-1, :-1]
+    return replace(fit, posterior=inverse * np.outer(search.unit[:-1], search.unit[:-1]))
 
 
 def _widened(evidence: Evidence, fit: Fit, confidence: float) -> Fit:

@@ -48,7 +48,7 @@ def halves_at(
     """
     runs = fitted.runs
     trials, columns = trials_at(runs, point, causes, present, progress)
-    there = _carried(runs, held.runs, point)
+    there = carried_point(runs, held.runs, point)
     same = held.runs.programmes is runs.programmes
     others = columns if same else columns_of(held.runs, there, trials, progress)
     mine = _half(fitted, point, trials, columns, present, same)
@@ -71,7 +71,7 @@ def split(seen: Observed) -> tuple[Observed, Observed]:
     )
 
 
-def _carried(runs: Runs, other: Runs, point: FloatArray) -> FloatArray:
+def carried_point(runs: Runs, other: Runs, point: FloatArray) -> FloatArray:
     """A point in other recordings: what is drawn anew for each is nominal there."""
     if other.programmes is runs.programmes:
         return point

@@ -20,13 +20,19 @@ ALONG = 0.3
 """Correlation from which channels are said to go along with what another one leaves."""
 
 
-def report_of(halves: Halves, proof: Proof) -> BuildUp:
-    """Everything that is told of a proof, sizes excepted."""
+def report_of(halves: Halves, proof: Proof, ends: tuple[FloatArray, FloatArray]) -> BuildUp:
+    """Everything that is told of a proof, sizes excepted.
+
+    Args:
+        halves: both halves.
+        proof: what is proved.
+        ends: what the extended model leaves of the fitted and of the held-out half (rows, c).
+    """
     regression = halves.regression
     fit = regression.solve(proof.proved, proof.bench.fit.whitening)
     bench = replace(proof.bench, fit=fit)
-    left = bench.residual(proof.proved)
-    laws = laws_left(bench, fit.residual, left)
+    left = ends[1]
+    laws = laws_left(bench, *ends)
     others = stand_ins(proof)
     ranked = sorted(proof.proved, key=lambda n: proof.differences[n].p)
     trials = regression.trials
@@ -44,7 +50,8 @@ def _proved(
     bench: Bench, proof: Proof, trial: int, others: Sequence[int], laws: list[Law], left: FloatArray
 ) -> Proved:
     trials, half = bench.regression.trials, bench.held
-    without = bench.residual([n for n in proof.proved if n != trial])
+    change = bench.residual([n for n in proof.proved if n != trial])
+    without = left + change - bench.residual(proof.proved)
     before, after = half.rms(without), half.rms(left)
     names = _names(half)
     acts = np.flatnonzero(bench.acts(trial))

@@ -86,7 +86,7 @@ class Selector:
         worth = [self._worth(gains, offer, samples) for offer in offers]
         pick, top = offers[int(np.argmax(worth))], max(worth)
         there = regression.fit([*chosen, *pick], fit.whitening, 2) if top > 0.0 else None
-        slow, by_slow = self._slow(chosen, fit, rest, pick)
+        slow, by_slow = self._slow(chosen, fit, rest, pick if there else [])
         if by_slow is not None:
             limit = self._evidence(fit, 0)
             if there is not None:
