@@ -68,9 +68,8 @@ class _Builder:
         causes = self.desk.first.screen.bank.hypotheses
         return halves_at(self.fitted, self.held, point, causes, present, self.desk.progress)
 
-    def evidence(self, halves: Halves, chosen: Sequence[int]) -> Evidence:
-        """The fitted half, whitened by what chosen trials leave."""
-        whitening = halves.regression.fit(chosen).whitening
+    def evidence(self, whitening: Whitening) -> Evidence:
+        """The fitted half, whitened by a discrepancy."""
         return Evidence(self.fitted.runs, self.fitted.measured, whitening)
 
     def chosen(self) -> tuple[Halves, list[int], FloatArray]:
@@ -81,9 +80,10 @@ class _Builder:
             selector = Selector(halves.regression)
             chosen = selector.run(_places(halves, present))
             before = {trial.cause.label for trial in present}
-            fit = self.refined(halves, chosen, point)
-            linear = halves.regression.fit(chosen).residual
-            left = bare_residual(self.evidence(halves, chosen), fit)
+            best = halves.regression.fit(chosen)
+            evidence, linear = self.evidence(best.whitening), best.residual
+            fit = self.refined(halves, chosen, point, evidence)
+            left = bare_residual(evidence, fit)
             present = _present([halves.regression.trials[n] for n in chosen], fit)
             after = {trial.cause.label for trial in present}
             off = halves.regression.half.rms(left - linear)
@@ -95,18 +95,22 @@ class _Builder:
         return halves, _places(halves, present), point
 
     def refined(
-        self, halves: Halves, chosen: Sequence[int], point: FloatArray, probed: bool = False
+        self,
+        halves: Halves,
+        chosen: Sequence[int],
+        point: FloatArray,
+        evidence: Evidence,
+        probed: bool = False,
     ) -> Fit:
         """Chosen trials fitted with the full forward, from what the linear fit says."""
         regression, runs = halves.regression, self.fitted.runs
-        linear = regression.fit(chosen)
+        linear = regression.solve(chosen, evidence.whitening)
         shift = np.where(runs.sd > 0.0, point, 0.0)
         for n, at in regression.places(chosen).items():
             trial = regression.trials[n]
             sizes = trial.departures(linear.shares[at] * linear.scale[at])
             shift = runs.depart(shift, runs.indices(trial.cause), sizes)
         causes = tuple(regression.trials[n].cause for n in chosen)
-        evidence = self.evidence(halves, chosen)
         local = linearise(runs, np.where(runs.sd > 0.0, point, 0.0))
         return refine(evidence, causes, shift, local, 1, probed=probed)
 
@@ -129,9 +133,9 @@ def build_up(desk: Desk, start: Explanation, fitted: Observed, held: Observed) -
     proof = _no_worse(halves, prove(halves.regression, halves.held, chosen))
     if not proof.tested:
         return None
-    final = builder.refined(halves, proof.proved, point, probed=True)
-    before = builder.refined(halves, (), point)
-    evidence = builder.evidence(halves, proof.proved)
+    evidence = builder.evidence(proof.bench.fit.whitening)
+    final = builder.refined(halves, proof.proved, point, evidence, probed=True)
+    before = builder.refined(halves, (), point, evidence)
     final = _widened(evidence, final, desk.settings.confidence)
     plain = Evidence(fitted.runs, fitted.measured, _on(start.evidence.whitening, fitted.runs))
     final, before = _in_noise(plain, final), _in_noise(plain, before)

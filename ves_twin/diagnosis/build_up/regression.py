@@ -170,6 +170,11 @@ class Regression:
             tuple(chosen), whitening, scale, shares, hessian, gradient, samples, residual
         )
 
+    def plain_error(self, chosen: Sequence[int]) -> float:
+        """Sum over channels of the log of what plain least squares leave, in their units."""
+        left = self._plainly(*self.design(chosen))
+        return float(np.sum(np.log(np.maximum(self.half.rms(left), 1e-30))))
+
     def _plainly(self, columns: SingleArray, scale: FloatArray) -> FloatArray:
         """What plain least squares leave, each channel in units of what is to be explained."""
         kept = self.half.kept

@@ -15,9 +15,6 @@ MOST = 60
 PAIRED = 30
 """Trials, by falling gain, of which every two are tried together."""
 
-BETTER = 2.0
-"""Chi^2 by which another variant of the same cause must be better to take its place."""
-
 
 @dataclass(frozen=True)
 class Selector:
@@ -46,8 +43,8 @@ class Selector:
             more, there = self._next(chosen, fit)
             if there is None:
                 break
-            chosen += more
-            fit = there
+            chosen = self.swapped([*chosen, *more])
+            fit = self.regression.fit(chosen, there.whitening, 2)
         return self.pruned(chosen, fit)
 
     def best(self) -> list[list[int]]:
@@ -169,25 +166,26 @@ class Selector:
                 found.append(list(best.values()))
         return found
 
-    def swapped(self, chosen: list[int], fit: LinearFit) -> list[int]:
-        """With the best variant of each cause in place of the one that was chosen."""
+    def swapped(self, chosen: list[int]) -> list[int]:
+        """With the best variant of each cause in place of the one that was chosen, by plain error.
+
+        Whitened by a discrepancy, a friction with a wrong gap can pass for a right one with slow
+        error beside it (the damper: gaps of 1 and 6 mm).
+        """
         trials, regression = self.regression.trials, self.regression
         for place, n in enumerate(list(chosen)):
             variants = [k for k, t in enumerate(trials) if t.cause.label == trials[n].cause.label]
             if len(variants) < 2:
                 continue
             rest = [k for k in chosen if k != n]
-            beside = regression.solve(rest, fit.whitening)
-            gains = regression.gains(beside, variants)
-            best = max(variants, key=gains.of)
-            if gains.of(best) > gains.of(n) + BETTER:
-                chosen[place] = best
+            error = {k: regression.plain_error([*rest, k]) for k in variants}
+            chosen[place] = min(variants, key=lambda k: error[k])
         return chosen
 
     def pruned(self, chosen: list[int], fit: LinearFit) -> list[int]:
         """Without trials that take less than ln n a column of chi^2 beside all others."""
         regression = self.regression
-        chosen = self.swapped(list(chosen), fit)
+        chosen = self.swapped(list(chosen))
         while chosen:
             fit = regression.fit(chosen, fit.whitening, 2)
             losses = losses_of(regression, fit)
