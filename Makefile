@@ -6,7 +6,7 @@ PYTHON ?= $(shell for p in python3.12 python3.11 python3 python; do \
 BIN := .venv/bin
 PIP := $(BIN)/python -m pip install --quiet --disable-pip-version-check
 
-.PHONY: demo demo-diagnosis test check fast fuzz types lint layers bench figures fidelity scorecard diagnosis-scorecard picture docs clean
+.PHONY: demo demo-diagnosis test nightly check fast fuzz attack mutation types lint layers bench figures fidelity scorecard diagnosis-scorecard picture docs clean
 
 demo: .venv/.run
 	$(BIN)/ves-twin run beam_horizontal_truth --out runs/demo
@@ -22,7 +22,12 @@ demo-diagnosis: .venv/.run
 	$(BIN)/ves-twin blind reveal --out $(HIDDEN)
 
 test: .venv/.dev lint layers types
-	$(BIN)/python -m pytest -n 2 --dist loadgroup
+	$(BIN)/python -m pytest -n 2 --dist loadgroup --durations=25 --costs runs/test-costs.csv
+
+# Statistical suites at full size as well; ends with one table of them.
+nightly: .venv/.dev lint layers types
+	$(BIN)/python -m pytest -n 2 --dist loadgroup --nightly --costs runs/nightly-costs.csv
+	$(MAKE) attack
 
 check: .venv/.dev lint layers types fast
 
@@ -31,6 +36,15 @@ fast: .venv/.dev
 
 fuzz: .venv/.dev
 	$(BIN)/python -m pytest -n 2 tests/fuzz --mutations 10000
+
+# Inputs of a standing attack on every reader, N of them; a seed is drawn and printed.
+N ?= 20000
+attack: .venv/.dev
+	$(BIN)/python tests/attack/attack_inputs.py --inputs $(N) --out runs/attack.jsonl
+
+# Mutants of the kernels and of the diagnosis core; hours, and goes on where it stopped.
+mutation: .venv/.dev
+	$(BIN)/python benchmarks/mutation.py runs/mutation.jsonl
 
 lint: .venv/.dev
 	$(BIN)/ruff check . && $(BIN)/ruff format --check .
@@ -65,7 +79,7 @@ diagnosis-scorecard: .venv/.run
 
 figures: .venv/.dev
 	$(BIN)/python -m pytest -n 0 --figures docs/figures.md \
-		tests/kinematics/test_stewart.py tests/plant tests/simulator
+		tests/mechanics/kinematics/test_stewart.py tests/plant tests/simulator
 
 fidelity: .venv/.dev
 	$(BIN)/python benchmarks/fidelity.py docs/fidelity.md

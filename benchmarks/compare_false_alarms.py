@@ -14,7 +14,7 @@ from collections import Counter
 from scipy.stats import binomtest
 
 import ves_twin as vt
-from ves_twin.comparison.compare import Named, compare
+from ves_twin.machines.ves2.compare import Named, compare
 
 PLANT = "ves2_pressure_fast"
 

@@ -11,13 +11,13 @@ import argparse
 import sys
 from pathlib import Path
 
-sys.path.insert(0, str(Path(__file__).parents[1] / "tests" / "benches"))
+sys.path.insert(0, str(Path(__file__).parents[1] / "tests" / "support"))
 
 from rows import PEER, ROWS, row_record
 
-from ves_twin.benches.pendulum import Pendulum
 from ves_twin.diagnosis.diagnose import diagnose
 from ves_twin.diagnosis.settings import Settings
+from ves_twin.machines.pendulum.forward import Pendulum
 
 MARK = "## Beside mujoco.sysid"
 

@@ -128,7 +128,7 @@ HEAD = """# Scorecard of the diagnosis
 Written by `make diagnosis-scorecard`. A generator in a process of its own hides an effect, none,
 two, or one that the library lacks in recordings of a rig whose every commissioning parameter is
 redrawn; another step and integrator, another noise, a disturbance that no model has. The truth is
-sealed; `ves-twin blind answer` sees the recordings alone (`tests/blind`). d: size in sigma of the
+sealed; `ves-twin blind answer` sees the recordings alone (`tests/suites`). d: size in sigma of the
 noise that commissioning errors cannot take away. Intervals are Wilson's, 95 %. Singles are drawn
 evenly in log d from 6 to 40, so rates are not those of faults as they occur.
 """

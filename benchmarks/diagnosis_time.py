@@ -22,20 +22,20 @@ from pathlib import Path
 import numpy as np
 
 import ves_twin as vt
-from ves_twin.benches.diagnose_rig import diagnose_rig
-from ves_twin.benches.pendulum import START, STEP, Pendulum
-from ves_twin.blind import pendulum as generator
-from ves_twin.blind import rig as rig_generator
-from ves_twin.blind.bench import BlindRig
-from ves_twin.blind.pendulum import BlindPendulum
-from ves_twin.blind.rig import BlindVes2
-from ves_twin.comparison.compare import Named, compare
-from ves_twin.comparison.report import comparison_page
 from ves_twin.diagnosis.diagnose import diagnose
-from ves_twin.diagnosis.forward import Programme
+from ves_twin.diagnosis.forward import Excitation
 from ves_twin.diagnosis.settings import Settings
 from ves_twin.diagnosis.verdict import Verdict
+from ves_twin.machines.pendulum.forward import START, STEP, Pendulum
+from ves_twin.machines.ves2.compare import Named, compare
+from ves_twin.machines.ves2.diagnose_rig import diagnose_rig
 from ves_twin.plant.plant import Plant
+from ves_twin.report.comparison.page import comparison_page
+from ves_twin.suites import pendulum as generator
+from ves_twin.suites import rig as rig_generator
+from ves_twin.suites.bench import BlindRig
+from ves_twin.suites.pendulum import BlindPendulum
+from ves_twin.suites.rig import BlindVes2
 
 SECONDS = 20.0
 
@@ -106,7 +106,7 @@ def pendulum_rows(folder: Path) -> None:
     torque = generator.asked_torque(1, amplitude=0.15, seconds=SECONDS)  # not over the top
     start = np.zeros((len(torque), 2))
     drive = {"joint.torque": torque[:, None], START.name: start}
-    fed = Programme("20 s", STEP * np.arange(len(torque)), drive)
+    fed = Excitation("20 s", STEP * np.arange(len(torque)), drive)
     bench, plant = BlindPendulum(), Pendulum.with_command_delay()
     settings = Settings(cache=folder / "pendulum", workers=os.cpu_count() or 1)
     records = {

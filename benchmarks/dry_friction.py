@@ -10,8 +10,8 @@ import mujoco
 import numpy as np
 
 import ves_twin as vt
+from ves_twin.core.types import FloatArray
 from ves_twin.simulator.recorder import MemorySink
-from ves_twin.types import FloatArray
 
 LEVEL = 100.0
 """Coulomb friction of each leg [N]."""

@@ -13,7 +13,7 @@ from tempfile import TemporaryDirectory
 
 from ves_twin.plant.plant import Plant
 from ves_twin.procedures.calibrate_plant import CalibratePlant
-from ves_twin.procedures.procedure import Conduct
+from ves_twin.procedures.procedure import RunContext
 from ves_twin.procedures.registry import load_procedure
 
 STRUCTURE = {
@@ -42,7 +42,7 @@ def tuned_without(names: set[str], rounds: int) -> str:
         }
     )
     with TemporaryDirectory() as folder:
-        chosen.carry_out(Conduct(Path(folder)))
+        chosen.carry_out(RunContext(Path(folder)))
         text = (Path(folder) / "plant.toml").read_text(encoding="utf-8")
     return text[text.index("[parameters]") :]
 

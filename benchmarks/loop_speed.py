@@ -17,7 +17,7 @@ from time import perf_counter, process_time
 import mujoco
 
 import ves_twin as vt
-from ves_twin.recording.stream import RecordingStream
+from ves_twin.core.recording.stream import RecordingStream
 from ves_twin.simulator.recorder import NoSink
 from ves_twin.simulator.simulate import recording_info
 

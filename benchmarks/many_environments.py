@@ -1,6 +1,6 @@
 """Eight environments in processes against one, beside what two processes gain at bare mj_step.
 
-Run by `make bench`. Rounds in turn: one environment here, eight by `SharedOut`, eight by
+Run by `make bench`. Rounds in turn: one environment here, eight by `ChunkedVectorEnv`, eight by
 Gymnasium's `AsyncVectorEnv`, bare mj_step in one process and in all. Prints medians over rounds of
 steps a second by the clock on the wall over those of one, and processor time of a step with all
 processes counted.
@@ -24,8 +24,8 @@ import mujoco
 import numpy as np
 
 from ves_twin.envs import ENVIRONMENTS
+from ves_twin.envs.chunked_vector_env import ChunkedVectorEnv
 from ves_twin.envs.rig_env import CYCLES
-from ves_twin.envs.shared_out import SharedOut
 
 COPIES = 8
 """Environments side by side."""
@@ -96,7 +96,7 @@ class Bare:
 def measure(name: str, plant: str, rounds: int) -> str:
     """A row of the table."""
     one = gym.make(name, plant=plant)
-    shared = SharedOut(name, COPIES, plant=plant)
+    shared = ChunkedVectorEnv(name, COPIES, plant=plant)
     own = gym.make_vec(
         name,
         num_envs=COPIES,
@@ -152,7 +152,7 @@ def main() -> None:
     given = parser.parse_args()
     print(f"{CORES} cores, load {os.getloadavg()[0]:.1f} before it began")
     print(
-        f"{'environment':<31}{'plant':<9}{'one/s':>6} {'eight, SharedOut':>19}"
+        f"{'environment':<31}{'plant':<9}{'one/s':>6} {'eight, ChunkedVectorEnv':>19}"
         f"{'eight, Async':>22}{f'bare, {CORES} processes':>23}   ms: one, shared, async"
     )
     for name in ENVIRONMENTS:

@@ -4,10 +4,10 @@ import time
 
 import numpy as np
 
-from ves_twin.control.emulated import EmulatedSystem
-from ves_twin.planning.coupling_map import coupling_map
-from ves_twin.planning.puma import puma_chain
+from ves_twin.mechanics.emulated import EmulatedSystem
+from ves_twin.mechanics.planning.coupling_map import coupling_map
 from ves_twin.plant.plant import Plant
+from ves_twin.plant.puma_chain import puma_chain
 from ves_twin.procedures.registry import load_procedure
 
 plant = Plant.load("ves2")

@@ -34,7 +34,7 @@ ROWS = (
     Row(
         "eqs 2.4-2.6",
         "admittance model, sampled",
-        "control.emulated:EmulatedSystem",
+        "mechanics.emulated:EmulatedSystem",
         "reproduce C004 --no-cache",
         1,
     ),
@@ -47,14 +47,14 @@ ROWS = (
     Row(
         "eqs 3.3-3.9, D.1",
         "gravity model",
-        "gravity_model.gravity_model:GravityModel",
+        "mechanics.gravity.gravity_model:GravityModel",
         "run beam_model_method --no-rrd",
         3,
     ),
     Row(
         "3.4",
         "47 poses identify payload and sensor",
-        "gravity_model.identify:identify",
+        "mechanics.gravity.identify:identify",
         "run calibrate_47_poses",
     ),
     Row(
@@ -80,34 +80,34 @@ ROWS = (
     Row(
         "eqs 4.1, 4.2",
         "virtual manipulator",
-        "planning.virtual_manipulator:VirtualManipulator",
+        "mechanics.planning.virtual_manipulator:VirtualManipulator",
         "reproduce C112 --no-cache",
     ),
     Row(
         "Fig. 4-1",
         "coupling map",
-        "planning.coupling_map:coupling_map",
+        "mechanics.planning.coupling_map:coupling_map",
         "reproduce fig-4-1 --no-cache",
         4,
     ),
     Row(
         "eq. 4.3",
         "arm on a flexible base",
-        "planning.flexible_base:FlexibleBaseArm",
+        "mechanics.planning.flexible_base:FlexibleBaseArm",
         "reproduce fig-4-4 --no-cache",
         4,
     ),
     Row(
         "eq. 4.4",
         "damping estimator",
-        "planning.pped:damping_estimator",
+        "mechanics.planning.pped:damping_estimator",
         "reproduce fig-4-5 --no-cache",
         4,
     ),
     Row(
         "eqs 4.5, 4.6, Fig. 4-7",
         "PPED and high gains",
-        "planning.pped:search_gains",
+        "mechanics.planning.pped:search_gains",
         "reproduce fig-4-7 --no-cache",
         4,
     ),
@@ -121,21 +121,21 @@ ROWS = (
     Row(
         "Fig. 5-12",
         "closed leg loop",
-        "linear.leg_loop:leg_loop",
+        "simulator.linear.leg_loop:leg_loop",
         "reproduce fig-5-12 --quick --no-cache",
         2,
     ),
     Row(
         "Fig. 5-13",
         "steps",
-        "linear.response:step_response",
+        "simulator.linear.response:step_response",
         "reproduce fig-5-13 --quick --no-cache",
         2,
     ),
     Row(
         "Figs 5-6, 5-8",
         "stability of the emulation",
-        "linear.admittance_loop:admittance_loop",
+        "simulator.linear.admittance_loop:admittance_loop",
         "reproduce fig-5-8 --quick --no-cache",
     ),
     Row(
@@ -147,13 +147,13 @@ ROWS = (
     Row(
         "Appendix A",
         "matrices of the beams",
-        "beams.beam:StraightBeam",
+        "mechanics.beams.beam:StraightBeam",
         "reproduce C104 --no-cache",
     ),
     Row(
         "Appendix E",
         "a session by the handbook",
-        "operation.machine:Machine",
+        "control.operation.machine:Machine",
         "run operation_session --no-rrd",
     ),
 )

@@ -18,13 +18,13 @@ from tempfile import TemporaryDirectory
 import numpy as np
 from scipy.stats import binomtest
 
-from ves_twin.blind.bench import BlindRig
-from ves_twin.blind.pendulum import BlindPendulum
+from ves_twin.core.recording.recording import Recording
 from ves_twin.diagnosis.settings import Settings
 from ves_twin.diagnosis.trend.calendar import Calendar
 from ves_twin.diagnosis.trend.result import Answer, Trend
 from ves_twin.diagnosis.trend.trend import trend
-from ves_twin.recording.recording import Recording
+from ves_twin.suites.bench import BlindRig
+from ves_twin.suites.pendulum import BlindPendulum
 
 MARK = "## Measured on the pendulum"
 BENCH = BlindPendulum()

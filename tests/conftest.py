@@ -1,4 +1,4 @@
-"""Shared fixtures: short runs made once, and figures that tests measure and docs print."""
+"""Plugins, and figures that tests measure and docs print."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ import pytest
 # threads of small matrix products wait for each other where workers share the cores
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
-import ves_twin as vt
+pytest_plugins = ["costs", "once", "shipped"]
 
 
 @dataclass(frozen=True)
@@ -31,7 +31,7 @@ FIGURES = pytest.StashKey[list[Figure]]()
 
 def pytest_addoption(parser: pytest.Parser) -> None:
     parser.addoption(
-        "--mutations", metavar="N", type=int, default=1000, help="harmed files of tests/fuzz"
+        "--mutations", metavar="N", type=int, help="harmed files of tests/fuzz instead of 1000"
     )
     parser.addoption("--figures", metavar="FILE", help="write the measured figures as a page")
 
@@ -47,6 +47,7 @@ def figure(request: pytest.FixtureRequest) -> Callable[[str, float, float, str],
     def measure(what: str, value: float, limit: float, unit: str) -> None:
         test = request.node.nodeid.split("[")[0]
         request.config.stash[FIGURES].append(Figure(what, float(value), limit, unit, test))
+        request.node.user_properties.append(("result", (what, float(value), float(limit), unit)))
         assert value <= limit, f"{what}: {value:.3g} {unit}, limit {limit:.3g}"
 
     return measure
@@ -74,15 +75,3 @@ def _page(figures: list[Figure]) -> str:
             f"| {f.what} | {f.value:.3g} {f.unit} | <= {f.limit:.3g} {f.unit} | `{f.test}` |"
         )
     return "\n".join(lines) + "\n"
-
-
-@pytest.fixture(scope="session")
-def beam_minute() -> vt.Recording:
-    """The beam scenario as shipped, 60 s."""
-    return vt.simulate(vt.Scenario.load("beam_horizontal_truth"))
-
-
-@pytest.fixture(scope="session")
-def beam_short() -> vt.Recording:
-    """Three seconds of the beam scenario: the arm's move."""
-    return vt.simulate(vt.Scenario.load("beam_horizontal_truth", {"run.duration": 3.0}))

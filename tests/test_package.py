@@ -35,7 +35,7 @@ def test_package_and_help_load_nothing_heavy(code):
     assert done.stdout.strip() == "[]"
 
 
-@pytest.mark.slow
+@pytest.mark.nightly
 def test_wheel_carries_models_and_scenarios_and_works_from_another_folder(tmp_path):
     build = [sys.executable, "-m", "pip", "wheel", "--quiet", "--no-deps", "--no-build-isolation"]
     subprocess.run([*build, "--wheel-dir", str(tmp_path), str(ROOT)], check=True)
@@ -64,39 +64,52 @@ def test_wheel_carries_models_and_scenarios_and_works_from_another_folder(tmp_pa
     assert (elsewhere / "runs" / "position_sine" / "recording.parquet").is_file()
 
 
-SOURCES = sorted(PACKAGE.rglob("*.py"))
+SOURCES = {str(p.relative_to(PACKAGE)): p.read_text() for p in sorted(PACKAGE.rglob("*.py"))}
+TREES = {name: ast.parse(text) for name, text in SOURCES.items()}
 
 
-@pytest.mark.parametrize("path", SOURCES, ids=[str(p.relative_to(PACKAGE)) for p in SOURCES])
-def test_house_rules_hold(path):
-    text = path.read_text()
-    tree = ast.parse(text)
-    assert text.count("\n") <= 400
-    assert ast.get_docstring(tree), "the first line says what the file holds"
-    for node in ast.walk(tree):
-        if isinstance(node, ast.FunctionDef):
-            assert node.end_lineno - node.lineno <= 75, node.name
+def functions():
+    """Every function of the package: name of its file, its node."""
+    for name, tree in TREES.items():
+        for node in ast.walk(tree):
+            if isinstance(node, ast.FunctionDef):
+                yield name, node
 
 
-@pytest.mark.parametrize("path", SOURCES, ids=[str(p.relative_to(PACKAGE)) for p in SOURCES])
-def test_every_documented_argument_exists(path):
+def test_no_file_is_longer_than_400_lines():
+    assert [name for name, text in SOURCES.items() if text.count("\n") > 400] == []
+
+
+def test_the_first_line_of_every_file_says_what_it_holds():
+    assert [name for name, tree in TREES.items() if not ast.get_docstring(tree)] == []
+
+
+def test_no_function_is_longer_than_75_lines():
+    long = [f"{name}: {f.name}" for name, f in functions() if f.end_lineno - f.lineno > 75]
+    assert long == []
+
+
+def test_every_documented_argument_exists():
     """An Args section names only arguments that the function has."""
-    for node in ast.walk(ast.parse(path.read_text())):
-        if not isinstance(node, ast.FunctionDef):
-            continue
-        lines = (ast.get_docstring(node) or "").split("\n")
-        if "Args:" not in lines:
-            continue
-        section = lines[lines.index("Args:") + 1 :]
-        end = next(
-            (i for i, line in enumerate(section) if not line.startswith("    ")), len(section)
-        )
-        named = {
-            line.strip().split(":")[0]
-            for line in section[:end]
-            if line.startswith("    ") and not line.startswith("     ")
-        }
-        arguments = {a.arg for a in [*node.args.args, *node.args.kwonlyargs]}
-        if node.args.vararg is not None:
-            arguments.add(f"*{node.args.vararg.arg}")
-        assert named <= arguments, f"{node.name}: {named - arguments}"
+    made_up = {
+        f"{name}: {f.name}": extra for name, f in functions() if (extra := without_argument(f))
+    }
+    assert made_up == {}
+
+
+def without_argument(function: ast.FunctionDef) -> set[str]:
+    """Names of its Args section that are no arguments."""
+    lines = (ast.get_docstring(function) or "").split("\n")
+    if "Args:" not in lines:
+        return set()
+    section = lines[lines.index("Args:") + 1 :]
+    end = next((i for i, line in enumerate(section) if not line.startswith("    ")), len(section))
+    named = {
+        line.strip().split(":")[0]
+        for line in section[:end]
+        if line.startswith("    ") and not line.startswith("     ")
+    }
+    arguments = {a.arg for a in [*function.args.args, *function.args.kwonlyargs]}
+    if function.args.vararg is not None:
+        arguments.add(f"*{function.args.vararg.arg}")
+    return named - arguments

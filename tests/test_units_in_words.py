@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import pytest
 
+from ves_twin.core.units import SI_UNITS, unit_tail
 from ves_twin.diagnosis.verdict import Estimate
-from ves_twin.units import SI_UNITS, unit_tail
 
 
 @pytest.mark.parametrize("unit", sorted(SI_UNITS))

@@ -7,9 +7,9 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from pathlib import Path
 
-from ves_twin.recording.recording import Recording
-from ves_twin.rigs.columns import read_rig_recording
-from ves_twin.rigs.rig import Rig
+from ves_twin.core.recording.recording import Recording
+from ves_twin.machines.mjcf.columns import read_rig_recording
+from ves_twin.machines.mjcf.machine import Rig
 
 
 @dataclass(frozen=True)

@@ -10,15 +10,15 @@ from plant_page import plant_page
 from pydantic import TypeAdapter, create_model
 from schema_tables import schema_tables
 
+from ves_twin.core.recording.recording import RecordingInfo
+from ves_twin.core.signals import SIGNALS
+from ves_twin.data.import_map import ImportMap
 from ves_twin.diagnosis.verdict import Verdict
-from ves_twin.measured.import_map import ImportMap
+from ves_twin.machines.mjcf.description import KIND, RigDescription
+from ves_twin.machines.mjcf.experiment import RigExperiment
 from ves_twin.procedures.registry import PROCEDURES
-from ves_twin.recording.recording import RecordingInfo
-from ves_twin.rigs.description import KIND, RigDescription
-from ves_twin.rigs.experiment import RigExperiment
 from ves_twin.scenario.experiment import Experiment
 from ves_twin.scenario.schema import Scenario
-from ves_twin.signals import SIGNALS
 
 _INDEX = """# File formats
 

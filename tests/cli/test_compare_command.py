@@ -7,7 +7,7 @@ import pytest
 
 import ves_twin as vt
 from ves_twin.cli.main import main
-from ves_twin.recording.files import save_recording
+from ves_twin.core.recording.files import save_recording
 
 CHANGES = {
     "run.duration": 4.0,

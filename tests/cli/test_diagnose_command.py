@@ -7,15 +7,15 @@ import numpy as np
 import pytest
 
 import ves_twin as vt
-from ves_twin.benches.diagnose_rig import RigDiagnosis
-from ves_twin.benches.pendulum import Pendulum
-from ves_twin.benches.ves2 import DRIVE
 from ves_twin.cli.main import main
+from ves_twin.core.recording.files import load_recording, save_recording
+from ves_twin.core.recording.recording import Recording, RecordingInfo
 from ves_twin.diagnosis.diagnose import diagnose
-from ves_twin.diagnosis.forward import Programme
+from ves_twin.diagnosis.forward import Excitation
 from ves_twin.diagnosis.settings import Settings
-from ves_twin.recording.files import load_recording, save_recording
-from ves_twin.recording.recording import Recording, RecordingInfo
+from ves_twin.machines.pendulum.forward import Pendulum
+from ves_twin.machines.ves2.diagnose_rig import RigDiagnosis
+from ves_twin.machines.ves2.forward import DRIVE
 
 SHORT = {"run.duration": 2.0, "run.settle": 0.3}
 
@@ -47,17 +47,17 @@ def test_bad_input_is_one_line_and_exit_2(capsys, tmp_path, recording, options, 
 @pytest.fixture
 def found(monkeypatch, recording):
     """A diagnosis whose verdict was made of a pendulum, so that it takes seconds."""
-    fed = Programme("pendulum", 0.002 * np.arange(2000), {"joint.torque": TORQUE})
+    fed = Excitation("pendulum", 0.002 * np.arange(2000), {"joint.torque": TORQUE})
     rows = Pendulum().simulate(fed, {"joint.friction": 0.1})
     rows += np.random.default_rng(0).normal(size=rows.shape) * [0.001, 0.01]
     signals = {"joint.torque": TORQUE, "joint.angle": rows[:, :1], "joint.rate": rows[:, 1:]}
     data = Recording(fed.time, signals, RecordingInfo("measured"))
     verdict = diagnose(Pendulum(), [data], settings=Settings(nulls=20))
-    setpoints = Programme.of(load_recording(Path(recording)), DRIVE, "next")
+    setpoints = Excitation.of(load_recording(Path(recording)), DRIVE, "next")
     plant = vt.Plant.load("ves2").extended(vt.effects.CoulombFriction("leg.3", level=60.0))
     scenario = vt.Scenario.load("identify_fast")
     result = RigDiagnosis(verdict, plant, "there were no held-out recordings", setpoints, scenario)
-    monkeypatch.setattr("ves_twin.benches.diagnose_rig.diagnose_rig", lambda *a, **k: result)
+    monkeypatch.setattr("ves_twin.machines.ves2.diagnose_rig.diagnose_rig", lambda *a, **k: result)
     return verdict
 
 

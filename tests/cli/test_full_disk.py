@@ -8,7 +8,7 @@ import sys
 
 import pytest
 
-from ves_twin.recording.files import load_recording
+from ves_twin.core.recording.files import load_recording
 
 PROGRAM = """
 import resource, sys

@@ -7,7 +7,7 @@ import pytest
 
 import ves_twin as vt
 from ves_twin.cli.main import main
-from ves_twin.recording.files import load_recording, save_recording
+from ves_twin.core.recording.files import load_recording, save_recording
 
 SCENARIO = {
     "run.duration": 6.0,

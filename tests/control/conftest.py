@@ -7,9 +7,9 @@ import pytest
 
 from ves_twin.control.belief import Belief
 from ves_twin.control.controller import ControlTask
-from ves_twin.control.emulated import EmulatedSystem
-from ves_twin.control.motion import Sine
 from ves_twin.control.readings import Readings
+from ves_twin.mechanics.emulated import EmulatedSystem
+from ves_twin.mechanics.joint_motion import Sine
 from ves_twin.plant.plant import Plant
 
 PERIOD = 1.0 / 80.0

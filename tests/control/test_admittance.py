@@ -7,9 +7,9 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from ves_twin.control.admittance import AdmittanceController
-from ves_twin.control.emulated import EmulatedSystem
-from ves_twin.errors import InvalidInputError
-from ves_twin.kinematics.wrenches import sensor_to_top, top_to_sensor
+from ves_twin.core.errors import InvalidInputError
+from ves_twin.mechanics.emulated import EmulatedSystem
+from ves_twin.mechanics.kinematics.wrenches import sensor_to_top, top_to_sensor
 
 ROUND_OFF = 1e-12
 """m and rad, after up to 1000 cycles whose spectral radius is below one."""

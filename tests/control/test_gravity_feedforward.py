@@ -5,8 +5,8 @@ import numpy as np
 import pytest
 
 import ves_twin as vt
-from ves_twin.gravity_model.chain import DhChain, Joint
-from ves_twin.gravity_model.gravity_model import GravityModel, gravity_in_top
+from ves_twin.mechanics.gravity.gravity_model import GravityModel, gravity_in_top
+from ves_twin.mechanics.kinematics.dh_chain import DhChain, Joint
 from ves_twin.plant.assembly import assemble_free_arm, compile_model
 from ves_twin.scenario.schema import Scenario
 from ves_twin.simulator.simulate import simulate

@@ -7,8 +7,8 @@ import pytest
 
 from ves_twin.control.gravity import GravityCompensation, GravityTask
 from ves_twin.control.registry import GRAVITY_COMPENSATIONS, PLATFORM_CONTROLLERS
-from ves_twin.errors import InvalidInputError
-from ves_twin.gravity_model.learned import LearnedGravity, PlannedExperiment
+from ves_twin.core.errors import InvalidInputError
+from ves_twin.mechanics.gravity.learned import LearnedGravity, PlannedExperiment
 
 PERIOD = 1.0 / 80.0
 

@@ -8,18 +8,18 @@ import numpy as np
 import pytest
 from toy import CAUSES, GAIN, Toy, _cause, programme, record
 
-from ves_twin.diagnosis.bank import build_bank, cached_bank
+from ves_twin.core.errors import InvalidInputError, UnknownNameError
+from ves_twin.core.workers import Workers
 from ves_twin.diagnosis.findable import MARGIN, findable_sizes
 from ves_twin.diagnosis.forward import Hypothesis, check_forward
 from ves_twin.diagnosis.null import cached_thresholds, null_thresholds
-from ves_twin.diagnosis.observe import observe
+from ves_twin.diagnosis.preprocess import preprocess
 from ves_twin.diagnosis.runs import Runs
 from ves_twin.diagnosis.screen import Screen
 from ves_twin.diagnosis.settings import Settings
+from ves_twin.diagnosis.signature_library import build_bank, cached_bank
 from ves_twin.diagnosis.tolerances import cached_scale, tolerance_scale
 from ves_twin.diagnosis.whitening import whitening_declared
-from ves_twin.errors import InvalidInputError, UnknownNameError
-from ves_twin.workers import Workers
 
 
 @pytest.fixture(scope="module")
@@ -77,7 +77,7 @@ def test_a_kept_bank_of_a_plant_whose_code_has_changed_is_built_anew(runs, tmp_p
 def test_kept_thresholds_and_scales_of_changed_code_are_not_read(runs, tmp_path, monkeypatch):
     settings = Settings(nulls=8, cache=tmp_path, simulated_nulls=False)
     rng = np.random.default_rng(3)
-    rigs = [observe(Toy(), [record(rng, spread=2.0)]) for _ in range(3)]
+    rigs = [preprocess(Toy(), [record(rng, spread=2.0)]) for _ in range(3)]
 
     def found():
         bank = cached_bank(runs, tmp_path, lambda: build_bank(runs))

@@ -8,13 +8,13 @@ import numpy as np
 import pytest
 from toy import QUICK, Toy, programme, record, shape
 
+from ves_twin.core.recording.recording import POSES
 from ves_twin.diagnosis.diagnose import diagnose
-from ves_twin.diagnosis.forward import Hypothesis, Programme
-from ves_twin.diagnosis.report.words import basis_sentences
+from ves_twin.diagnosis.forward import Excitation, Hypothesis
 from ves_twin.diagnosis.runs import Runs
 from ves_twin.diagnosis.verdict import Kind
 from ves_twin.diagnosis.whitening import whitening_declared
-from ves_twin.recording.recording import POSES
+from ves_twin.report.diagnosis.words import basis_sentences
 
 PLANT = Toy().without("ripple")
 HIDDEN = {"friction.size": 0.3, "drift.size": 0.4, "lag.size": 0.3}
@@ -87,16 +87,16 @@ def test_poses_at_rest_keep_every_row_and_have_noise_without_memory():
         signals={n: v[:40] for n, v in record(np.random.default_rng(1)).signals.items()},
     )
     poses = replace(poses, info=replace(poses.info, log=POSES))
-    still = Programme.of(poses, ("drive.u",))
+    still = Excitation.of(poses, ("drive.u",))
     assert still.poses
-    assert still.identity != Programme("", uneven, still.drive).identity
+    assert still.identity != Excitation("", uneven, still.drive).identity
     runs = Runs(Toy(), (still,), (0, 1))
     whitening = whitening_declared(runs)
     rows = np.random.default_rng(2).standard_normal((40, 2)).astype(np.float32)
     assert whitening.apply(rows) == pytest.approx((rows / [0.01, 0.05]).ravel(), rel=1e-5)
     assert np.all(whitening.adapted(whitening.apply(rows)).colour == pytest.approx(0.0, abs=1e-9))
     assert np.array_equal(runs.times[0], uneven)
-    assert not Programme.of(
+    assert not Excitation.of(
         replace(poses, time=np.arange(40.0), info=replace(poses.info, log="")), ("drive.u",)
     ).poses
     assert not fed.poses

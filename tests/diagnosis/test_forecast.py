@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 from toy import QUICK, Toy, programme, record
 
+from ves_twin.core.recording.recording import Recording, RecordingInfo
 from ves_twin.diagnosis.diagnose import diagnose
 from ves_twin.diagnosis.forecast import _part
-from ves_twin.diagnosis.forward import Programme
+from ves_twin.diagnosis.forward import Excitation
 from ves_twin.diagnosis.verdict import Kind
-from ves_twin.recording.recording import Recording, RecordingInfo
 
 
 class Passing(Toy):
@@ -25,7 +25,7 @@ def dense(seconds):
     """Rows at 1 kHz."""
     fed, time = programme(), 0.001 * np.arange(int(1000 * seconds))
     u = np.interp(time, fed.time, fed.drive["drive.u"][:, 0])[:, None]
-    return Programme("dense", time, {"drive.u": u})
+    return Excitation("dense", time, {"drive.u": u})
 
 
 def test_a_part_too_short_on_the_grid_is_no_part():

@@ -5,8 +5,8 @@ import pytest
 from toy import PERIOD, SD, Toy, programme, record
 
 from ves_twin.diagnosis.differential import KEPT, Tuned
-from ves_twin.diagnosis.lacking import BANDS, CHANGE, PARAMETERS, Lacking
-from ves_twin.diagnosis.observe import observe
+from ves_twin.diagnosis.preprocess import preprocess
+from ves_twin.diagnosis.unmodelled_dynamics import BANDS, CHANGE, PARAMETERS, Lacking
 
 PLANT = Toy()
 
@@ -18,7 +18,7 @@ def usual(runs):
 
 
 def lacking():
-    runs = observe(PLANT, [record(np.random.default_rng(0), plant=PLANT)]).runs
+    runs = preprocess(PLANT, [record(np.random.default_rng(0), plant=PLANT)]).runs
     rows, time = usual(runs)
     (found,) = Lacking.of(runs, rows)
     return runs, rows, time, found
@@ -51,7 +51,7 @@ def test_it_is_added_where_it_belongs_and_nowhere_else():
 
 
 def test_what_was_tuned_far_may_change_by_more_than_what_was_not():
-    runs = observe(PLANT, [record(np.random.default_rng(0), plant=PLANT)]).runs
+    runs = preprocess(PLANT, [record(np.random.default_rng(0), plant=PLANT)]).runs
     names = [axis.parameter.name for axis in runs.coordinates]
     shift = runs.origin
     shift[names.index("plant.gain")] = 0.5

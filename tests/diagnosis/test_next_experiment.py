@@ -8,7 +8,7 @@ from ves_twin.diagnosis.evidence import Evidence
 from ves_twin.diagnosis.linearise import linearise
 from ves_twin.diagnosis.metric import Metric
 from ves_twin.diagnosis.next_experiment import separations
-from ves_twin.diagnosis.observe import observe
+from ves_twin.diagnosis.preprocess import preprocess
 from ves_twin.diagnosis.refine import refine
 from ves_twin.diagnosis.runs import Runs
 from ves_twin.diagnosis.whitening import whitening_declared
@@ -17,7 +17,7 @@ from ves_twin.diagnosis.whitening import whitening_declared
 def test_a_programme_that_one_rival_leaves_as_it_is_parts_it_from_the_other():
     """At rest a lag shows nothing and a bump does: the bump's size is held by what was recorded."""
     plant = Toy(causes=("lag", "bump"))
-    seen = observe(plant, [record(np.random.default_rng(4), {"lag.size": 0.05}, plant=plant)])
+    seen = preprocess(plant, [record(np.random.default_rng(4), {"lag.size": 0.05}, plant=plant)])
     runs = seen.runs
     base = linearise(runs, runs.origin)
     evidence = Evidence(runs, seen.measured, whitening_declared(runs))

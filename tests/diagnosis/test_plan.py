@@ -9,13 +9,13 @@ from scipy.optimize import brentq
 from toy import CAUSES, Toy, programme, record
 
 from ves_twin.cli.plan_text import plan_text
+from ves_twin.core.errors import InvalidInputError, UnknownNameError
+from ves_twin.diagnosis.aliases import _end
 from ves_twin.diagnosis.diagnose import diagnose
-from ves_twin.diagnosis.forward import Hypothesis, Programme
-from ves_twin.diagnosis.lookalikes import _end
+from ves_twin.diagnosis.forward import Excitation, Hypothesis
 from ves_twin.diagnosis.plan import plan_recording
 from ves_twin.diagnosis.settings import Settings
 from ves_twin.diagnosis.verdict import Kind
-from ves_twin.errors import InvalidInputError, UnknownNameError
 
 
 @pytest.fixture(scope="module")
@@ -140,7 +140,7 @@ def test_a_cause_that_is_always_loud_looks_like_no_other(settings):
 
 
 def test_standing_still_says_nothing_about_what_moves(settings):
-    still = Programme("still", programme().time, {"drive.u": 0 * programme().drive["drive.u"]})
+    still = Excitation("still", programme().time, {"drive.u": 0 * programme().drive["drive.u"]})
     plan = plan_recording(Toy(), still, quick=True, settings=settings)
     lost = {p.effect for p in plan.prospects if p.smallest is None}
     assert lost == {"gain", "friction", "lag"}

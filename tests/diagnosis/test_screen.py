@@ -6,12 +6,12 @@ import numpy as np
 import pytest
 from toy import Toy, programme, record
 
-from ves_twin.diagnosis.bank import build_bank
-from ves_twin.diagnosis.observe import observe
+from ves_twin.core.workers import Workers
+from ves_twin.diagnosis.preprocess import preprocess
 from ves_twin.diagnosis.prewhitened import Prewhitened
 from ves_twin.diagnosis.screen import Screen
+from ves_twin.diagnosis.signature_library import build_bank
 from ves_twin.diagnosis.whitening import whitening_declared
-from ves_twin.workers import Workers
 
 ROUNDING = 1e-9
 """Of sums over 1600 samples in double precision, after four digits cancel."""
@@ -19,7 +19,7 @@ ROUNDING = 1e-9
 
 @pytest.fixture(scope="module")
 def seen():
-    return observe(Toy(), [record(np.random.default_rng(2), fed=programme())], Workers(1), 50.0)
+    return preprocess(Toy(), [record(np.random.default_rng(2), fed=programme())], Workers(1), 50.0)
 
 
 @pytest.fixture(scope="module")

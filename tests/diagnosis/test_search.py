@@ -8,17 +8,17 @@ import numpy as np
 import pytest
 from toy import NUISANCES, QUICK, SD, Toy, programme, record, shape
 
-from ves_twin.diagnosis.bank import build_bank
+from ves_twin.core.errors import InvalidInputError
 from ves_twin.diagnosis.diagnose import diagnose
 from ves_twin.diagnosis.evidence import Evidence
 from ves_twin.diagnosis.linearise import STEP_SD, linearise
 from ves_twin.diagnosis.metric import Metric
-from ves_twin.diagnosis.observe import observe
+from ves_twin.diagnosis.preprocess import preprocess
 from ves_twin.diagnosis.refine import refine, residual_about
 from ves_twin.diagnosis.runs import Runs
+from ves_twin.diagnosis.signature_library import build_bank
 from ves_twin.diagnosis.verdict import Kind
 from ves_twin.diagnosis.whitening import LEVEL_RANGE, whitening_declared
-from ves_twin.errors import InvalidInputError
 
 CHANCE = 0.02
 """Offset that the plant below answers with by chance: two sd of its first channel's noise."""
@@ -104,7 +104,7 @@ def test_rows_of_a_rig_that_has_not_settled_tell_nothing():
 
 def test_settling_takes_a_fifth_of_a_recording_at_most():
     kept = record(np.random.default_rng(6), plant=Standing())
-    runs = observe(Standing(settling=60.0), [kept]).runs
+    runs = preprocess(Standing(settling=60.0), [kept]).runs
     assert np.mean(runs.holes[0]) == pytest.approx(0.2, abs=0.01)
 
 

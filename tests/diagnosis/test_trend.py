@@ -11,9 +11,8 @@ import pytest
 from scipy.stats import binom
 from toy import NUISANCES, SERIES_DAYS, Toy, programme, record
 
+from ves_twin.core.errors import InvalidInputError, UnknownNameError
 from ves_twin.diagnosis.metric import Metric
-from ves_twin.diagnosis.report.trend_page import trend_page
-from ves_twin.diagnosis.report.trend_words import trend_headline
 from ves_twin.diagnosis.settings import Settings
 from ves_twin.diagnosis.trend import trend as trend_module
 from ves_twin.diagnosis.trend.calendar import Calendar
@@ -27,7 +26,8 @@ from ves_twin.diagnosis.trend.series import Series
 from ves_twin.diagnosis.trend.shapes import Shapes
 from ves_twin.diagnosis.trend.study import Study
 from ves_twin.diagnosis.trend.trend import trend
-from ves_twin.errors import InvalidInputError, UnknownNameError
+from ves_twin.report.diagnosis.trend_page import trend_page
+from ves_twin.report.diagnosis.trend_words import trend_headline
 
 DAYS = np.array([0.0, 3.0, 4.0, 7.0, 10.0, 11.0, 14.0, 17.0, 20.0, 21.0])
 SURE = 1e-4
@@ -265,9 +265,9 @@ def test_a_day_with_what_the_library_lacks_is_named_unexplained(settings):
 
 
 @pytest.mark.slow
-def test_unchanged_machines_are_called_changed_as_often_as_stated(settings):
+def test_unchanged_machines_are_called_changed_as_often_as_stated(settings, cases):
     """From recordings to answer, at a rate of 10 % so that there is something to count."""
-    alpha, count = 0.10, 100
+    alpha, count = 0.10, cases(100)
     answers = [
         followed(settings, [0.0] * 4, seed=s, false_alarm=alpha).answer for s in range(count)
     ]
@@ -275,7 +275,8 @@ def test_unchanged_machines_are_called_changed_as_often_as_stated(settings):
     assert changed <= binom.isf(SURE, count, alpha)
     for answer in (Answer.CONSTANT, Answer.MIXED, Answer.UNKNOWN):
         assert answers.count(answer) <= binom.isf(SURE, count, alpha), answer
-    assert any(answer is not Answer.NOTHING for answer in answers)  # the bound is not an empty one
+    if count == 100:  # the bound is not an empty one
+        assert any(answer is not Answer.NOTHING for answer in answers)
 
 
 @pytest.mark.slow

@@ -5,15 +5,15 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from ves_twin.benches import diagnose_rig
-from ves_twin.benches.pendulum import STEP, Pendulum
 from ves_twin.diagnosis.both_views import both_views
-from ves_twin.diagnosis.forward import Programme
+from ves_twin.diagnosis.forward import Excitation
 from ves_twin.diagnosis.gain import Gain
 from ves_twin.diagnosis.refusal import refusal
-from ves_twin.diagnosis.report.words import headline
 from ves_twin.diagnosis.verdict import Basis, Cause, Kind, Statistics, Verdict
 from ves_twin.diagnosis.widened import LEAST, Widened, widening
+from ves_twin.machines.pendulum.forward import STEP, Pendulum
+from ves_twin.machines.ves2 import diagnose_rig
+from ves_twin.report.diagnosis.words import headline
 
 BASIS = Basis("declared", "measured", "none")
 FIGURES = Statistics(1.0, 2.0, 1.0, 2.0)
@@ -53,7 +53,7 @@ def test_a_plant_known_less_well_predicts_the_same():
     plant = Pendulum()
     wide = Widened(plant, 2.5)
     time = STEP * np.arange(50)
-    programme = Programme("", time, {"joint.torque": np.ones((50, 1))})
+    programme = Excitation("", time, {"joint.torque": np.ones((50, 1))})
     values = {"link.mass": 1.1}
     assert np.array_equal(wide.simulate(programme, values), plant.simulate(programme, values))
     assert [p.sd for p in wide.parameters] == [2.5 * p.sd for p in plant.parameters]

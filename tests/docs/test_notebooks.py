@@ -6,6 +6,7 @@ from pathlib import Path
 import nbformat
 import pytest
 from nbclient import NotebookClient
+from sizes import nightly_but
 
 NOTEBOOKS = sorted((Path(__file__).parents[2] / "notebooks").glob("*.ipynb"))
 LONGEST = 200  # s a cell, so that a hanging one ends before the test's own limit
@@ -24,7 +25,7 @@ def test_a_notebook_defines_nothing_and_carries_no_outputs(path):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("path", NOTEBOOKS, ids=lambda p: p.stem)
+@pytest.mark.parametrize("path", nightly_but(1, NOTEBOOKS), ids=lambda p: p.stem)
 def test_a_notebook_runs(path, tmp_path):
     book = nbformat.read(path, as_version=4)
     where = {"metadata": {"path": str(tmp_path)}}

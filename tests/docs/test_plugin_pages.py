@@ -9,8 +9,8 @@ import pytest
 
 import ves_twin as vt
 from ves_twin.cli.main import main
-from ves_twin.code_file import load_class
 from ves_twin.control.controller import PlatformController
+from ves_twin.core.code_file import load_class
 from ves_twin.envs.evaluation import Trial, evaluate
 
 PAGES = Path(__file__).parents[2] / "docs" / "plugins"

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 import ves_twin as vt
-from ves_twin.control.emulated import EmulatedSystem
-from ves_twin.errors import InvalidInputError
+from ves_twin.core.errors import InvalidInputError
+from ves_twin.mechanics.emulated import EmulatedSystem
 from ves_twin.simulator.replay import replay
 
 FLOATING = {"run.duration": 0.6, "run.settle": 0.3}

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import ves_twin as vt
-from ves_twin.errors import InvalidInputError
+from ves_twin.core.errors import InvalidInputError
 
 SHORT = {"run.duration": 0.5, "run.settle": 0.3, "legs.filter": "error"}
 

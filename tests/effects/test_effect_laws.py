@@ -7,11 +7,11 @@ import numpy as np
 import pytest
 
 import ves_twin as vt
+from ves_twin.core.errors import InvalidInputError, UnknownNameError
+from ves_twin.core.signals import SIGNALS, Role
 from ves_twin.effects.magnitude import Sign
 from ves_twin.effects.registry import EFFECTS, build_effect, effects_table, parse_effects
-from ves_twin.errors import InvalidInputError, UnknownNameError
 from ves_twin.plant.assembly import assemble
-from ves_twin.signals import SIGNALS, Role
 
 PLANT = vt.Plant.load("ves2_pressure")
 MOVING = {

@@ -8,6 +8,7 @@ import pytest
 
 from ves_twin.cli.evaluate import UNITS
 from ves_twin.cli.main import main
+from ves_twin.core.errors import ControllerError, InvalidInputError, UnknownNameError
 from ves_twin.envs.baselines import BASELINES
 from ves_twin.envs.evaluation import (
     Trial,
@@ -18,7 +19,6 @@ from ves_twin.envs.evaluation import (
     run_episode,
 )
 from ves_twin.envs.policy import Policy
-from ves_twin.errors import ControllerError, InvalidInputError, UnknownNameError
 
 POLICY = """
 import numpy as np

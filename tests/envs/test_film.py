@@ -8,10 +8,10 @@ from PIL import Image
 
 import ves_twin as vt
 from ves_twin.cli.main import main
+from ves_twin.core.errors import InvalidInputError
+from ves_twin.core.recording.recording import Recording, RecordingInfo
 from ves_twin.envs.film import FRAME, LONGEST, write_gif
 from ves_twin.envs.picture import HEIGHT, WIDTH, NoPictureError, check_off_screen
-from ves_twin.errors import InvalidInputError
-from ves_twin.recording.recording import Recording, RecordingInfo
 
 DURATION = 1.2
 WORDS = ["run", "beam_horizontal_truth", "--plant", "ves2_fast", "--no-rrd"]

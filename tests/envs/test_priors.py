@@ -6,13 +6,13 @@ import numpy as np
 import pytest
 from short_episodes import short
 
-from ves_twin.control.emulated import EmulatedSystem
-from ves_twin.control.motion import Hold
 from ves_twin.envs.rig_env import CYCLES
-from ves_twin.planning.flexible_base import JointGains
-from ves_twin.planning.lagging_base import LaggingBaseArm
-from ves_twin.planning.puma import puma_chain
+from ves_twin.mechanics.emulated import EmulatedSystem
+from ves_twin.mechanics.joint_motion import Hold
+from ves_twin.mechanics.planning.flexible_base import JointGains
+from ves_twin.mechanics.planning.lagging_base import LaggingBaseArm
 from ves_twin.plant.plant import Plant
+from ves_twin.plant.puma_chain import puma_chain
 from ves_twin.scenario.schema import Scenario
 
 QUIET = {"run.noise": False, "run.duration": 4.0}

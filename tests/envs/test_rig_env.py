@@ -7,11 +7,11 @@ import numpy as np
 import pytest
 from gymnasium.utils.env_checker import check_env
 
+from ves_twin.core.errors import InvalidInputError, UnknownNameError, VesTwinError
+from ves_twin.core.signals import SIGNALS, Role
 from ves_twin.envs import ENVIRONMENTS
 from ves_twin.envs.true_state import true_state
-from ves_twin.errors import InvalidInputError, UnknownNameError, VesTwinError
 from ves_twin.plant.plant import Plant
-from ves_twin.signals import SIGNALS, Role
 
 
 def episode(env, seed, actions, options=None):

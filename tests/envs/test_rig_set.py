@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
+from ves_twin.core.errors import InvalidInputError, UnknownNameError, VersionError
 from ves_twin.envs.rig_set import RigSet, commissioned
-from ves_twin.errors import InvalidInputError, UnknownNameError, VersionError
 from ves_twin.plant.plant import Plant
 
 SETS = ("train-v0", "test-v0")

@@ -6,11 +6,11 @@ import pytest
 from short_episodes import make_short, short
 
 import ves_twin as vt
-from ves_twin.control.emulated import EmulatedSystem
-from ves_twin.control.motion import Hold, Sine
+from ves_twin.core.errors import InvalidInputError
 from ves_twin.envs.commanded_arm import CommandedArm
-from ves_twin.errors import InvalidInputError
-from ves_twin.planning.flexible_base import strain_energy
+from ves_twin.mechanics.emulated import EmulatedSystem
+from ves_twin.mechanics.joint_motion import Hold, Sine
+from ves_twin.mechanics.planning.flexible_base import strain_energy
 
 REACH = "VesTwin/VibrationFreeReach-v0"
 DAMPING = "VesTwin/VibrationDamping-v0"

@@ -4,12 +4,12 @@ import gymnasium as gym
 import numpy as np
 import pytest
 
+from ves_twin.core.errors import InvalidInputError
 from ves_twin.envs import ENVIRONMENTS
 from ves_twin.envs.baselines import trained
 from ves_twin.envs.baselines.arm_features import SIZES, ArmFeatures
 from ves_twin.envs.baselines.trained import KEEP, TrainedDamping
 from ves_twin.envs.evaluation import Trial, evaluate
-from ves_twin.errors import InvalidInputError
 
 ROUND_OFF = 1e-12
 """A few sums of 64 products of size one."""

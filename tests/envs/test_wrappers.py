@@ -7,9 +7,9 @@ from dm_env import StepType, specs
 from short_episodes import make_short, short
 
 import ves_twin as vt
+from ves_twin.core.errors import InvalidInputError, UnknownNameError
 from ves_twin.envs.dm_face import DmFace
 from ves_twin.envs.wrappers import BeliefMismatch, LateObservations, RandomRigs, RecordEpisodes
-from ves_twin.errors import InvalidInputError, UnknownNameError
 
 DAMPING, TRACKING = "VesTwin/VibrationDamping-v0", "VesTwin/PlatformTracking-v0"
 

@@ -14,17 +14,17 @@ import pyarrow as pa
 import pyarrow.parquet as pq
 
 import ves_twin as vt
-from ves_twin.comparison.tolerance import Tolerance
-from ves_twin.control.emulated import EmulatedSystem
-from ves_twin.gravity_model.calibration import GravityCalibration
-from ves_twin.gravity_model.learned import LearnedGravity
-from ves_twin.measured.import_log import import_log
-from ves_twin.measured.import_map import ImportMap
-from ves_twin.measured.open_log import open_log
+from ves_twin.core.recording.files import load_recording, save_recording
+from ves_twin.core.recording.stream import RecordingStream
+from ves_twin.core.resources import resource_folder
+from ves_twin.data.import_log import import_log
+from ves_twin.data.import_map import ImportMap
+from ves_twin.data.open_log import open_log
+from ves_twin.machines.ves2.tolerance import Tolerance
+from ves_twin.mechanics.emulated import EmulatedSystem
+from ves_twin.mechanics.gravity.calibration import GravityCalibration
+from ves_twin.mechanics.gravity.learned import LearnedGravity
 from ves_twin.procedures.registry import load_procedure
-from ves_twin.recording.files import load_recording, save_recording
-from ves_twin.recording.stream import RecordingStream
-from ves_twin.resources import resource_folder
 from ves_twin.scenario.experiment import Experiment
 from ves_twin.scenario.load import parse_setting
 from ves_twin.scenario.operator import operator_motion

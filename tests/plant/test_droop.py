@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import ves_twin as vt
-from ves_twin.errors import InvalidInputError
+from ves_twin.core.errors import InvalidInputError
 from ves_twin.plant.droop import creep_speed, frozen_droop
 from ves_twin.plant.hydraulics import fill_chambers
 from ves_twin.plant.known_weight import hang_weight

@@ -4,9 +4,9 @@ import mujoco
 import numpy as np
 import pytest
 
+from ves_twin.core.errors import InvalidInputError, UnknownNameError, VesTwinError
 from ves_twin.effects.magnitude import Sign
 from ves_twin.effects.registry import EFFECTS, build_effect
-from ves_twin.errors import InvalidInputError, UnknownNameError, VesTwinError
 from ves_twin.plant.assembly import assemble
 from ves_twin.plant.fidelity import ABSENT_PARAMETERS, Fidelity
 from ves_twin.plant.layout import Layout

@@ -8,7 +8,7 @@ import pytest
 
 import ves_twin as vt
 from ves_twin.cli.main import main
-from ves_twin.errors import FileAccessError
+from ves_twin.core.errors import FileAccessError
 from ves_twin.plant.assembly import assemble, compile_model
 from ves_twin.plant.mjcf_export import export_mjcf, mjcf_of
 

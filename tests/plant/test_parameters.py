@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from ves_twin.errors import InvalidInputError, UnknownNameError, VersionError, VesTwinError
+from ves_twin.core.errors import InvalidInputError, UnknownNameError, VersionError, VesTwinError
 from ves_twin.plant.parameters import Grade, parse_parameters, read_plant_file
 from ves_twin.plant.plant import Plant, mjcf_part
 

@@ -5,7 +5,7 @@ import dataclasses
 import numpy as np
 import pytest
 
-from ves_twin.errors import FileAccessError, UnknownNameError, VesTwinError
+from ves_twin.core.errors import FileAccessError, UnknownNameError, VesTwinError
 from ves_twin.plant.plant import Plant, flat
 
 

@@ -4,7 +4,7 @@ import mujoco
 import numpy as np
 import pytest
 
-from ves_twin.errors import UnreachableError
+from ves_twin.core.errors import UnreachableError
 from ves_twin.plant.statics import check_reach, static_leg_forces, universal_angles
 
 VIRTUAL_WORK = 1e-4

@@ -3,7 +3,7 @@
 import pytest
 
 import ves_twin as vt
-from ves_twin.errors import FileAccessError
+from ves_twin.core.errors import FileAccessError
 from ves_twin.plant.write_plant import write_plant
 
 

@@ -6,13 +6,12 @@ import numpy as np
 import pytest
 
 import ves_twin as vt
+from ves_twin.core.errors import InvalidInputError, UnknownNameError, VesTwinError
 from ves_twin.effects.cylinder import CoulombFriction
-from ves_twin.errors import InvalidInputError, UnknownNameError, VesTwinError
 from ves_twin.procedures.calibration_files import Fit, write_fit
 from ves_twin.procedures.feasible import Feasible
-from ves_twin.procedures.procedure import Conduct
+from ves_twin.procedures.procedure import RunContext
 from ves_twin.procedures.registry import load_procedure
-from ves_twin.procedures.workers import carry_out_jobs
 
 SHORT = {
     "claims": [
@@ -33,7 +32,7 @@ def test_fit_brings_a_plant_back_into_its_claims(tmp_path):
     """Legs a third too stiff and a gain a third too high; two claims know one number each."""
     off = vt.Plant.load("ves2").with_values({"leg.bending_stiffness": 2000.0})
     procedure = load_procedure("calibrate_plant", SHORT | {"gains.low": 16.5})
-    procedure.carry_out(Conduct(tmp_path, plant=off))
+    procedure.carry_out(RunContext(tmp_path, plant=off))
     result = json.loads((tmp_path / "calibration.json").read_text())
     assert result["worst_margin_of_each_round"][0] < 0.0 < result["worst_margin_of_each_round"][-1]
     assert 11.0 < result["numbers"]["gain.low"]["value"] < 14.0
@@ -78,31 +77,22 @@ def test_shipped_files_name_numbers_and_claims_that_exist(name, tmp_path, monkey
     procedure = load_procedure(name, {"workers": 1})
     monkeypatch.setattr("ves_twin.procedures.calibrate_plant.measure_claims", stop)
     with pytest.raises(ReachedError):
-        procedure.carry_out(Conduct(tmp_path))
+        procedure.carry_out(RunContext(tmp_path))
 
 
 def test_start_outside_its_range_is_refused(tmp_path):
     procedure = load_procedure("calibrate_plant", SHORT | {"gains.low": 30.0})
     with pytest.raises(InvalidInputError, match=r"gain\.low: got 30"):
-        procedure.carry_out(Conduct(tmp_path))
+        procedure.carry_out(RunContext(tmp_path))
 
 
 def test_unknown_number_and_claim_are_answered_with_the_nearest(tmp_path):
     knobs = [{"name": "leg.bending_stiffnes", "low": 1.0, "high": 2.0}]
     with pytest.raises(UnknownNameError, match=r"did you mean 'leg\.bending_stiffness'"):
-        load_procedure("calibrate_plant", SHORT | {"knobs": knobs}).carry_out(Conduct(tmp_path))
+        load_procedure("calibrate_plant", SHORT | {"knobs": knobs}).carry_out(RunContext(tmp_path))
     claims = [{"name": "mode_lowst", "low": 1.0, "scale": 1.0}]
     with pytest.raises(VesTwinError, match="did you mean 'mode_lowest'"):
         load_procedure("calibrate_plant", SHORT | {"claims": claims})
     claims = [{"name": "mode_lowest", "scale": 1.0}]
     with pytest.raises(VesTwinError, match="neither low nor high"):
         load_procedure("calibrate_plant", SHORT | {"claims": claims})
-
-
-@pytest.mark.slow
-def test_jobs_come_back_in_order_and_failures_come_through():
-    shares: list[float] = []
-    assert carry_out_jobs(abs, [-3, 1, -2], 2, shares.append) == [3, 1, 2]
-    assert shares[-1] == 1.0
-    with pytest.raises(ValueError, match="invalid literal"):
-        carry_out_jobs(int, ["1", "x"], 2)

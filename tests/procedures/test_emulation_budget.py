@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import ves_twin as vt
-from ves_twin.procedures.procedure import Conduct
+from ves_twin.procedures.procedure import RunContext
 from ves_twin.procedures.registry import load_procedure
 
 
@@ -12,7 +12,7 @@ from ves_twin.procedures.registry import load_procedure
 def test_half_and_one_percent_move_the_base_six_and_twelve_times_as_far(tmp_path):
     """facts.md, linear model: 6 and 12; the full rig damps more, so 15 % are allowed."""
     procedure = load_procedure("gravity_sensitivity", {"errors": [0.005, 0.01], "duration": 8.0})
-    runs = procedure.carry_out(Conduct(tmp_path)).values["runs"]
+    runs = procedure.carry_out(RunContext(tmp_path)).values["runs"]
     sudden = [run["ratio"] for run in runs if run["how"] == "suddenly"]
     assert sudden == pytest.approx([6.0, 12.0], rel=0.15)
     at_rest = [run["ratio"] for run in runs if run["how"] == "at rest"]
@@ -37,7 +37,7 @@ def test_an_error_since_a_time_leaves_the_run_before_it_as_it_was():
 @pytest.mark.slow
 def test_the_sources_add_up_to_everything_but_small_cross_terms(tmp_path):
     procedure = load_procedure("emulation_error_budget", {"duration": 4.0})
-    values = procedure.carry_out(Conduct(tmp_path)).values
+    values = procedure.carry_out(RunContext(tmp_path)).values
     rms = {name: 1e3 * np.linalg.norm(row[:3]) for name, row in values["rms"].items()}
     assert set(values["ranked"][:2]) == {"leg bandwidth", "delay"}  # docs/emulation-error.md
     assert rms["cross terms"] < 0.1 * rms["everything on"]

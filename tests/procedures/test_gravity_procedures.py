@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 
 import ves_twin as vt
-from ves_twin.errors import InvalidInputError, UnreachableError
-from ves_twin.gravity_model.calibration import GravityCalibration
-from ves_twin.procedures.procedure import Conduct
+from ves_twin.core.errors import InvalidInputError, UnreachableError
+from ves_twin.mechanics.gravity.calibration import GravityCalibration
+from ves_twin.procedures.procedure import RunContext
 from ves_twin.procedures.registry import load_procedure
 from ves_twin.simulator.outcome import Outcome
 
@@ -14,7 +14,7 @@ PRINTED_RMS = np.array([0.46, 0.24, 0.46, 0.62, 1.01, 0.06])  # Table 3-1
 
 
 def carried_out(name, folder, changes=None):
-    account = load_procedure(name, changes).carry_out(Conduct(folder))
+    account = load_procedure(name, changes).carry_out(RunContext(folder))
     assert account.outcome is Outcome.COMPLETED
     return account.values
 
@@ -94,14 +94,14 @@ def test_poses_outside_the_workspace_are_refused(tmp_path):
         "calibrate_47_poses", {"poses.tilt": 0.6, "poses.turn": 0.6, "poses.clearance": 1.9}
     )
     with pytest.raises((InvalidInputError, UnreachableError), match="poses"):
-        procedure.carry_out(Conduct(tmp_path))
+        procedure.carry_out(RunContext(tmp_path))
     assert list(tmp_path.iterdir()) == []
 
 
 def test_too_few_poses_are_refused_before_anything_is_written(tmp_path):
     procedure = load_procedure("calibrate_47_poses", {"poses.count": 2, "poses.choice": "random"})
     with pytest.raises(InvalidInputError, match="not observable"):
-        procedure.carry_out(Conduct(tmp_path))
+        procedure.carry_out(RunContext(tmp_path))
     assert list(tmp_path.iterdir()) == []
 
 
@@ -111,7 +111,7 @@ def test_a_load_beyond_the_sensor_is_refused(tmp_path):
     )
     procedure = load_procedure("calibrate_47_poses", {"poses.choice": "random"})
     with pytest.raises(InvalidInputError, match="saturated"):
-        procedure.carry_out(Conduct(tmp_path, plant))
+        procedure.carry_out(RunContext(tmp_path, plant))
 
 
 def test_a_calibration_of_another_sensor_is_refused_by_a_run():

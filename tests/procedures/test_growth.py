@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from ves_twin.errors import InvalidInputError
+from ves_twin.core.errors import InvalidInputError
 from ves_twin.procedures.growth import oscillation_growth
 
 PERIOD = 37 * 341e-6

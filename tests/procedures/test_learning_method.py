@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 
 import ves_twin as vt
-from ves_twin.errors import InvalidInputError
-from ves_twin.gravity_model.learned import LearnedGravity
-from ves_twin.procedures.procedure import Conduct
+from ves_twin.core.errors import InvalidInputError
+from ves_twin.mechanics.gravity.learned import LearnedGravity
+from ves_twin.procedures.procedure import RunContext
 from ves_twin.procedures.registry import load_procedure
 from ves_twin.simulator.outcome import Outcome
 
@@ -23,7 +23,7 @@ SHORT = {
 
 def learned(folder, plant=None, **changes):
     procedure = load_procedure("beam_learning_method", {**SHORT, **changes})
-    return procedure.carry_out(Conduct(folder, plant or vt.Plant.load("ves2_fast")))
+    return procedure.carry_out(RunContext(folder, plant or vt.Plant.load("ves2_fast")))
 
 
 @pytest.fixture(scope="module")
@@ -49,7 +49,7 @@ def test_changes_fall_below_a_millimetre_and_the_motion_is_that_of_exact_gravity
     assert names == pictures | {"learned_gravity.parquet", "convergence.csv", "motion.csv"}
 
 
-@pytest.mark.slow
+@pytest.mark.nightly
 def test_wrong_gains_and_a_tilted_base_do_not_hurt_it_but_the_model_method(plain, tmp_path):
     """Reading and W_g have the same error: only the dynamic wrench keeps it, 1 % here."""
     crossed = vt.Plant.load("ves2_crosstalk").with_fidelity("fast")
@@ -68,7 +68,7 @@ def test_wrong_gains_and_a_tilted_base_do_not_hurt_it_but_the_model_method(plain
     assert 1e3 * np.sqrt(np.mean(np.sum(rows[:, :3] ** 2, axis=1))) > 2.0 * error
 
 
-@pytest.mark.slow
+@pytest.mark.nightly
 def test_friction_of_the_legs_that_does_not_repeat_hurts_and_it_says_what_was_lost(plain, tmp_path):
     account = learned(tmp_path, vt.Plant.load("ves2_fast").with_values({"leg.dry_friction": 20.0}))
     assert account.values["settled_after"] is None
@@ -77,7 +77,7 @@ def test_friction_of_the_legs_that_does_not_repeat_hurts_and_it_says_what_was_lo
     assert mm(account.values, lost) > 10.0 * mm(plain[0].values, lost)
 
 
-@pytest.mark.slow
+@pytest.mark.nightly
 def test_a_simulated_guess_saves_iterations(tmp_path):
     account = learned(tmp_path, guess="simulated", iterations=1, compare=False)
     assert account.values["iterations"][0]["translation"] < 2e-3  # m; 112 mm without a guess

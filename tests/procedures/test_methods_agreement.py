@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 
 import ves_twin as vt
-from ves_twin.errors import InvalidInputError
+from ves_twin.core.errors import InvalidInputError
 from ves_twin.procedures.error_sources import GRAVITY_SOURCES, ErrorSources
 from ves_twin.procedures.methods_agreement import agreement
-from ves_twin.procedures.procedure import Conduct
+from ves_twin.procedures.procedure import RunContext
 from ves_twin.procedures.registry import load_procedure
 
 COVERAGE = 2.0
@@ -33,7 +33,7 @@ def test_mean_squares_add_over_sources_and_over_methods():
 
 @pytest.mark.slow
 def test_the_methods_differ_by_no_more_than_their_budgets_predict(tmp_path):
-    values = load_procedure("methods_agreement", SHORT).carry_out(Conduct(tmp_path)).values
+    values = load_procedure("methods_agreement", SHORT).carry_out(RunContext(tmp_path)).values
     ratio = np.array(values["ratio"])
     assert np.all(ratio < COVERAGE)
     assert np.max(ratio) > 0.1  # or the budgets would tell nothing
@@ -61,5 +61,5 @@ def test_the_gravity_sources_alone_are_those_of_the_whole_budget():
 def test_what_cannot_be_learned_is_refused(tmp_path):
     procedure = load_procedure("methods_agreement", {**SHORT, "experiment": "teleoperation"})
     with pytest.raises(InvalidInputError, match="not known in advance"):
-        procedure.carry_out(Conduct(tmp_path))
+        procedure.carry_out(RunContext(tmp_path))
     assert list(tmp_path.iterdir()) == []

@@ -8,9 +8,9 @@ import pytest
 
 import ves_twin as vt
 from ves_twin.cli.main import main
-from ves_twin.control.emulated import EmulatedSystem
-from ves_twin.errors import VesTwinError
-from ves_twin.procedures.procedure import Conduct
+from ves_twin.core.errors import VesTwinError
+from ves_twin.mechanics.emulated import EmulatedSystem
+from ves_twin.procedures.procedure import RunContext
 from ves_twin.procedures.registry import load_procedure
 from ves_twin.simulator.zero_gravity import zero_gravity_motion
 
@@ -22,13 +22,13 @@ NONLINEAR = 0.03
 def paths(tmp_path_factory):
     folder = tmp_path_factory.mktemp("paths")
     procedure = load_procedure("coupling_map_paths", {"on_rig": False})
-    return folder, procedure.carry_out(Conduct(folder))
+    return folder, procedure.carry_out(RunContext(folder))
 
 
 @pytest.fixture(scope="module")
 def release(tmp_path_factory):
     folder = tmp_path_factory.mktemp("release")
-    return folder, load_procedure("pped_release").carry_out(Conduct(folder))
+    return folder, load_procedure("pped_release").carry_out(RunContext(folder))
 
 
 def table(path):
@@ -126,7 +126,7 @@ def test_procedures_run_from_the_command_line(tmp_path, capsys):
 )
 def test_wrong_options_are_refused_in_one_line(tmp_path, name, changes, words):
     with pytest.raises(VesTwinError) as caught:
-        load_procedure(name, changes).carry_out(Conduct(tmp_path))
+        load_procedure(name, changes).carry_out(RunContext(tmp_path))
     assert "\n" not in str(caught.value)
     for word in words:
         assert word in str(caught.value)

@@ -5,9 +5,9 @@ import csv
 import numpy as np
 import pytest
 
-from ves_twin.errors import VesTwinError
+from ves_twin.core.errors import VesTwinError
 from ves_twin.plant.plant import Plant
-from ves_twin.procedures.procedure import Conduct
+from ves_twin.procedures.procedure import RunContext
 from ves_twin.procedures.registry import load_procedure
 
 pytestmark = pytest.mark.slow
@@ -20,14 +20,14 @@ FAST = "ves2_fast"
 def paths(tmp_path_factory):
     folder = tmp_path_factory.mktemp("paths")
     procedure = load_procedure("coupling_map_paths", {"rest": 4.0})
-    return folder, procedure.carry_out(Conduct(folder, Plant.load(FAST)))
+    return folder, procedure.carry_out(RunContext(folder, Plant.load(FAST)))
 
 
 @pytest.fixture(scope="module")
 def release(tmp_path_factory):
     folder = tmp_path_factory.mktemp("release")
     procedure = load_procedure("pped_release_emulated", {"duration": 12.0})
-    return folder, procedure.carry_out(Conduct(folder, Plant.load(FAST)))
+    return folder, procedure.carry_out(RunContext(folder, Plant.load(FAST)))
 
 
 def test_good_over_bad_on_the_rig_is_within_15_percent_of_zero_gravity(paths, figure):
@@ -104,7 +104,7 @@ def test_legs_alone_take_more_energy_than_any_gains(release):
 )
 def test_wrong_rig_options_are_refused_in_one_line(tmp_path, name, changes, words):
     with pytest.raises(VesTwinError) as caught:
-        load_procedure(name, changes).carry_out(Conduct(tmp_path, Plant.load(FAST)))
+        load_procedure(name, changes).carry_out(RunContext(tmp_path, Plant.load(FAST)))
     assert "\n" not in str(caught.value)
     for word in words:
         assert word in str(caught.value)

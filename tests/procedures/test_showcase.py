@@ -5,14 +5,14 @@ import json
 import numpy as np
 import pytest
 
-from ves_twin.blind.judge import Judgement, judge
+from ves_twin.core.errors import InvalidInputError, UnknownNameError
+from ves_twin.core.recording.files import load_recording
 from ves_twin.diagnosis.verdict import Basis, Cause, Kind, Statistics, Verdict
-from ves_twin.errors import InvalidInputError, UnknownNameError
 from ves_twin.plant.plant import Plant
-from ves_twin.procedures.procedure import Conduct
+from ves_twin.procedures.procedure import RunContext
 from ves_twin.procedures.registry import load_procedure
-from ves_twin.recording.files import load_recording
 from ves_twin.scenario.load import procedure_questions
+from ves_twin.suites.judge import Judgement, judge
 
 SHOWN = (
     *("nothing", "valve_deadband", "sensor_drift", "soft_leg", "filter_place"),
@@ -21,7 +21,7 @@ SHOWN = (
 
 
 def carried_out(name, folder, changes=None, **conduct):
-    return load_procedure(name, changes).carry_out(Conduct(folder, **conduct))
+    return load_procedure(name, changes).carry_out(RunContext(folder, **conduct))
 
 
 @pytest.fixture(autouse=True)
@@ -52,7 +52,7 @@ def test_two_causes_are_named_and_held_against_the_truth(tmp_path):
     assert recording.info.origin == "measured"
 
 
-@pytest.mark.slow
+@pytest.mark.nightly
 def test_an_effect_outside_the_library_gets_no_name(tmp_path):
     account = carried_out("showcase_outside_library", tmp_path)
     assert account.values["verdict"] == "unknown"
@@ -66,7 +66,7 @@ def test_the_same_pendulum_with_nothing_hidden_is_left_in_peace(tmp_path):
     assert "hidden    nothing" in "\n".join(account.lines)
 
 
-@pytest.mark.slow
+@pytest.mark.nightly
 def test_a_frozen_platform_is_told_by_its_own_readings(tmp_path):
     account = carried_out("showcase_droop", tmp_path)
     values = account.values
@@ -85,7 +85,7 @@ def test_a_frozen_platform_is_told_by_its_own_readings(tmp_path):
     assert len(page) < 5e6
 
 
-@pytest.mark.slow
+@pytest.mark.nightly
 def test_a_platform_under_control_is_left_in_peace(tmp_path):
     account = carried_out("showcase_droop", tmp_path, {"frozen": 0.0, "poses.choice": "grid"})
     assert account.values["verdict"] == "nothing"

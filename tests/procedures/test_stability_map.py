@@ -9,12 +9,12 @@ import pytest
 
 import ves_twin as vt
 from ves_twin.control.leg_loop import FilterPlace
-from ves_twin.errors import InvalidInputError, UnknownNameError
+from ves_twin.core.errors import InvalidInputError, UnknownNameError
+from ves_twin.core.resources import resource_folder
 from ves_twin.plant.modes import structural_modes
-from ves_twin.procedures.procedure import Conduct
+from ves_twin.procedures.procedure import RunContext
 from ves_twin.procedures.registry import load_procedure
 from ves_twin.procedures.stability_bench import StabilityBench
-from ves_twin.resources import resource_folder
 
 RIGID = {"leg.bending_stiffness": 3e5, "leg.bending_damping": 60.0}
 STIFF_OIL = {"hydraulics.oil_stiffness": 4e7, "hydraulics.oil_damping": 8e4}
@@ -87,7 +87,7 @@ def test_map_is_written_and_runs_confirm_it(tmp_path):
         "duration": 12.0,
         "workers": 1,
     }
-    account = load_procedure("stability_map", changes).carry_out(Conduct(tmp_path))
+    account = load_procedure("stability_map", changes).carry_out(RunContext(tmp_path))
     (point,) = json.loads((tmp_path / "stability_map.json").read_text())["points"]
     assert (tmp_path / "stability_map.png").stat().st_size > 20_000
     below, above = point["runs"]
@@ -102,7 +102,7 @@ def test_map_is_written_and_runs_confirm_it(tmp_path):
 def test_range_the_wrong_way_round_is_refused(tmp_path):
     procedure = load_procedure("stability_map", {"lightest": 200.0})
     with pytest.raises(InvalidInputError, match="lightest: got 200"):
-        procedure.carry_out(Conduct(tmp_path))
+        procedure.carry_out(RunContext(tmp_path))
 
 
 def test_scenario_that_emulates_nothing_is_refused():
@@ -120,7 +120,7 @@ def test_a_scenario_file_is_taken_and_an_unknown_name_refused_before_anything_is
     out.mkdir()
     unknown = load_procedure("stability_map", {"scenario": "beam_horizontal_trut"})
     with pytest.raises(UnknownNameError, match="did you mean 'beam_horizontal_truth'"):
-        unknown.carry_out(Conduct(out))
+        unknown.carry_out(RunContext(out))
     assert not list(out.iterdir())
 
 

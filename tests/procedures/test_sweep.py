@@ -4,16 +4,16 @@ import numpy as np
 import pytest
 from scipy.signal import cheby2, freqz
 
-from ves_twin.errors import InvalidInputError
-from ves_twin.linear.admittance_loop import AxisModel, admittance_loop, payload_mass
-from ves_twin.linear.leg_loop import leg_loop
-from ves_twin.linear.response import frequency_response, step_response
+from ves_twin.core.errors import InvalidInputError
 from ves_twin.plant.plant import Plant
 from ves_twin.procedures.frequency_response import actuator_slope, settings_of
 from ves_twin.procedures.measured_poles import measure_poles
 from ves_twin.procedures.measured_step import measure_step
 from ves_twin.procedures.sweep import SweepOptions, sweep_platform
 from ves_twin.scenario.schema import Legs
+from ves_twin.simulator.linear.admittance_loop import AxisModel, admittance_loop, payload_mass
+from ves_twin.simulator.linear.leg_loop import leg_loop
+from ves_twin.simulator.linear.response import frequency_response, step_response
 
 HERTZ = (1.0, 5.0)
 SHORT = SweepOptions(periods=6)

@@ -5,11 +5,11 @@ import re
 import numpy as np
 import pytest
 
+from ves_twin.core.quantity import percent, quantity
 from ves_twin.report.figure import new_figure, svg
 from ves_twin.report.html import Html, bullets, markup, paragraph, table
 from ves_twin.report.page import html_page
 from ves_twin.report.plots import Trace, draw_cells, draw_levels, draw_traces, envelope
-from ves_twin.report.quantity import percent, quantity
 
 
 def test_text_is_escaped_once_and_html_is_not():

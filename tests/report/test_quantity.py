@@ -1,6 +1,6 @@
 """Shares as percent: never all of it where it is not, and ends that differ look different."""
 
-from ves_twin.report.quantity import shares
+from ves_twin.core.quantity import shares
 
 
 def test_a_share_below_one_never_reads_as_all_of_it():

@@ -6,7 +6,7 @@ import matplotlib.image
 import pytest
 from matplotlib.figure import Figure
 
-from ves_twin.errors import FileAccessError
+from ves_twin.core.errors import FileAccessError
 from ves_twin.report.figure import new_figure
 from ves_twin.report.picture import PICTURE_WIDTH, save_picture
 

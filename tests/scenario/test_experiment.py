@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 import ves_twin as vt
-from ves_twin.errors import VesTwinError
-from ves_twin.recording.recording import RecordingInfo
+from ves_twin.core.errors import VesTwinError
+from ves_twin.core.recording.recording import RecordingInfo
 from ves_twin.scenario.experiment import Experiment
 
 

@@ -7,10 +7,10 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from ves_twin.control.emulated import EmulatedSystem
-from ves_twin.errors import FileAccessError, UnknownNameError, VesTwinError
+from ves_twin.core.errors import FileAccessError, UnknownNameError, VesTwinError
+from ves_twin.core.resources import resource_folder
+from ves_twin.mechanics.emulated import EmulatedSystem
 from ves_twin.plant.plant import Plant
-from ves_twin.resources import resource_folder
 from ves_twin.scenario.load import parse_setting, scenario_questions
 from ves_twin.scenario.schema import Scenario
 

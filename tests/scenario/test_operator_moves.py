@@ -6,7 +6,7 @@ import pyarrow.parquet as pq
 import pytest
 
 import ves_twin as vt
-from ves_twin.errors import InvalidInputError, UnknownNameError
+from ves_twin.core.errors import InvalidInputError, UnknownNameError
 from ves_twin.scenario.operator import operator_motion
 
 STILL = np.zeros(3)

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from ves_twin.errors import InvalidInputError, UnknownNameError
+from ves_twin.core.errors import InvalidInputError, UnknownNameError
 from ves_twin.scenario.setpoint_file import read_setpoints
 
 LEGS = ",".join(f"leg.command.{i}" for i in range(1, 7))

@@ -6,8 +6,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from ves_twin.errors import InvalidInputError
-from ves_twin.units import to_si
+from ves_twin.core.errors import InvalidInputError
+from ves_twin.core.units import to_si
 
 
 @pytest.mark.parametrize(

@@ -6,7 +6,7 @@ import pytest
 import ves_twin as vt
 from ves_twin.simulator.emulation_error import emulation_error
 
-pytestmark = [pytest.mark.slow, pytest.mark.xdist_group("beam_minute")]
+pytestmark = pytest.mark.slow
 
 SIX_SECONDS = 476  # rows of 12.617 ms
 

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 import ves_twin as vt
-from ves_twin.errors import VesTwinError
-from ves_twin.recording.files import load_recording
+from ves_twin.core.errors import VesTwinError
+from ves_twin.core.recording.files import load_recording
 from ves_twin.simulator.codes import SLOW
 from ves_twin.simulator.outcome import Outcome
 from ves_twin.simulator.simulate import record

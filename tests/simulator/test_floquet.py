@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 import ves_twin as vt
-from ves_twin.control.emulated import EmulatedSystem
-from ves_twin.errors import VesTwinError
+from ves_twin.core.errors import VesTwinError
+from ves_twin.mechanics.emulated import EmulatedSystem
 from ves_twin.plant.modes import structural_modes
 from ves_twin.procedures.growth import oscillation_growth
 from ves_twin.simulator.floquet import SampledLoop, smooth_readings

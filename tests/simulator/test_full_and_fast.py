@@ -1,13 +1,12 @@
 """The fast rig agrees with the full one in every shipped scenario, and the scenarios are stable."""
 
-import functools
-
 import numpy as np
 import pytest
+from shipped import fast_run, full_run
 
 import ves_twin as vt
-from ves_twin.rerun_log.rig import DrawnRig
-from ves_twin.rerun_log.write import write_rrd
+from ves_twin.report.rerun.rig import DrawnRig
+from ves_twin.report.rerun.write import write_rrd
 from ves_twin.scenario.load import scenario_questions
 from ves_twin.simulator.emulation_error import emulation_error
 
@@ -38,23 +37,13 @@ ERROR_AGREEMENT = 0.05
 """Rms emulation error of fast against full, relative to the worst axis of full: measured 0.02."""
 
 
-@functools.cache
 def runs(name):
     """A scenario as shipped, in both fidelities, with the same noise."""
-    scenario = vt.Scenario.load(name)
-    plant = vt.Plant.load(scenario.plant)
-    return tuple(vt.simulate(scenario, plant.with_fidelity(f)) for f in ("full", "fast"))
+    return full_run(name)[0], fast_run(name)
 
 
 def each_scenario(names):
-    """One process of a parallel run has both tests of a scenario, and so runs it once."""
-    return pytest.mark.parametrize(
-        "name",
-        [
-            pytest.param(n, marks=[pytest.mark.slow, pytest.mark.xdist_group(f"pair {n}")])
-            for n in names
-        ],
-    )
+    return pytest.mark.parametrize("name", [pytest.param(n, marks=pytest.mark.slow) for n in names])
 
 
 @each_scenario([n for n in scenario_questions() if n not in ENDS_EARLY])

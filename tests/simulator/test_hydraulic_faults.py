@@ -2,9 +2,10 @@
 
 import numpy as np
 import pytest
+from once import once
 
 import ves_twin as vt
-from ves_twin.errors import InvalidInputError
+from ves_twin.core.errors import InvalidInputError
 
 GAIN, FULL_SPEED = 12.6, 0.5
 NEUTRAL = {
@@ -22,7 +23,7 @@ def hold(plant: str, faults: dict[str, object], **changes: object) -> vt.Recordi
         "platform.motion.amplitude": [0.0] * 6,
     }  # fmt: skip
     named = {f"parameters.{name}": value for name, value in faults.items()}
-    return vt.simulate(vt.Scenario.load("position_sine", {**standing, **named, **changes}))
+    return once(vt.simulate, vt.Scenario.load("position_sine", {**standing, **named, **changes}))
 
 
 def rest_error(run: vt.Recording) -> np.ndarray:

@@ -5,10 +5,10 @@ import pytest
 
 import ves_twin as vt
 from ves_twin.control.controller import ControlTask, PlatformController
-from ves_twin.control.motion import ArmMotion, Move
+from ves_twin.control.operation.state import State
 from ves_twin.control.readings import Readings
-from ves_twin.operation.laboratory import Laboratory
-from ves_twin.operation.state import State
+from ves_twin.mechanics.joint_motion import ArmMotion, Move
+from ves_twin.plant.laboratory import Laboratory
 
 BRAKED_CREEP = 1e-3
 """How far a braked joint may move [rad]: the engine's dry friction is slightly soft."""
@@ -223,7 +223,7 @@ def test_a_session_runs_on_every_form_of_the_rig(plant):
 def test_a_script_that_cannot_be_is_refused_in_one_line(changes, says):
     with pytest.raises(Exception, match=says) as caught:
         vt.Scenario.load("operation_panic", changes)
-    assert isinstance(caught.value, __import__("ves_twin.errors").errors.VesTwinError)
+    assert isinstance(caught.value, __import__("ves_twin.core.errors").errors.VesTwinError)
     assert "\n" not in str(caught.value)
 
 

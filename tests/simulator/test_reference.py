@@ -4,7 +4,7 @@ import mujoco
 import numpy as np
 
 import ves_twin as vt
-from ves_twin.control.emulated import EmulatedSystem
+from ves_twin.mechanics.emulated import EmulatedSystem
 from ves_twin.plant.assembly import assemble_free_arm
 from ves_twin.simulator import reference as module
 from ves_twin.simulator.arm_commands import arm_motion

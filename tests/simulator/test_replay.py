@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 import ves_twin as vt
+from ves_twin.core.errors import InvalidInputError, UnknownNameError, VesTwinError
 from ves_twin.effects.registry import build_effect
-from ves_twin.errors import InvalidInputError, UnknownNameError, VesTwinError
 
 SAME = {
     "leg.length": 5e-7,

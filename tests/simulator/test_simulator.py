@@ -2,12 +2,12 @@
 
 import copy
 
-import mujoco
 import numpy as np
 import pytest
+from shipped import full_run
 
 import ves_twin as vt
-from ves_twin.errors import ControllerError, UnreachableError
+from ves_twin.core.errors import ControllerError, UnreachableError
 from ves_twin.scenario.load import scenario_questions
 from ves_twin.simulator.outcome import Outcome
 
@@ -91,21 +91,12 @@ CLOSURE_LIMIT = 1e-5  # m, the figure asked of every scenario
 @pytest.mark.slow
 @pytest.mark.parametrize("name", list(scenario_questions()))
 def test_legs_stay_closed_in_every_scenario(name, figure):
-    sim = vt.Simulator(None, vt.Scenario.load(name))
-    worst = 0.0
-    while not sim.done:
-        sim.advance(0.1)
-        if sim.outcome not in (None, Outcome.COMPLETED):
-            break
-        mujoco.mj_kinematics(sim.model, sim.data)
-        for i in range(1, 7):
-            gap = sim.data.site(f"leg{i}/rod_end").xpos - sim.data.site(f"platform/joint{i}").xpos
-            worst = max(worst, float(np.linalg.norm(gap)))
-    figure(f"loop closure in {name}", worst * 1e3, CLOSURE_LIMIT * 1e3, "mm")
+    _, gap = full_run(name)
+    figure(f"loop closure in {name}", gap * 1e3, CLOSURE_LIMIT * 1e3, "mm")
 
 
 def test_unstable_loop_ends_by_name_and_keeps_its_rows():
-    recording = vt.simulate(vt.Scenario.load("beam_horizontal_corrected"))
+    recording, _ = full_run("beam_horizontal_corrected")
     assert recording.info.outcome in {Outcome.WRENCH_RANGE, Outcome.LEG_LIMIT}
     assert len(recording) > 5
     assert recording.info.events[-1].kind == recording.info.outcome
@@ -252,7 +243,7 @@ def test_plant_given_beside_a_scenario_takes_the_scenario_s_parameters():
 
 
 def test_cycle_longer_than_a_block_of_noise_is_refused():
-    from ves_twin.errors import InvalidInputError
+    from ves_twin.core.errors import InvalidInputError
 
     scenario = vt.Scenario.load("position_sine", {**SHORT, "parameters.clock.tick": 1e-6})
     with pytest.raises(InvalidInputError, match=r"platform\.rate"):

@@ -19,6 +19,7 @@ from ves_twin.sweeps.sweep import carry_out_sweep
 pytestmark = [pytest.mark.slow, pytest.mark.xdist_group("dask")]
 
 
+@pytest.mark.nightly
 def test_a_worker_killed_half_way_loses_nothing_and_doubles_nothing(tmp_path):
     plan = plan_sweep(
         "beam_horizontal_truth", ["seed=0..9:10"], {"run.duration": 4.0, "run.settle": 0.2}

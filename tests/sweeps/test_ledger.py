@@ -6,7 +6,7 @@ import sys
 
 import pytest
 
-from ves_twin.errors import FileAccessError, InvalidInputError
+from ves_twin.core.errors import FileAccessError, InvalidInputError
 from ves_twin.sweeps.ledger import ROWS_NAME, Ledger, OtherSweepError
 from ves_twin.sweeps.plan import plan_sweep
 from ves_twin.sweeps.result import LOST, PointResult
@@ -89,7 +89,7 @@ def test_a_full_disk_leaves_whole_rows_and_one_line(small_plan, tmp_path):
     (tmp_path / "fill.py").write_text(f"""
 import resource, sys
 from pathlib import Path
-from ves_twin.errors import FileAccessError
+from ves_twin.core.errors import FileAccessError
 from ves_twin.sweeps.ledger import Ledger
 from ves_twin.sweeps.plan import plan_sweep
 from ves_twin.sweeps.result import PointResult

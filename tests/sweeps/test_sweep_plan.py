@@ -4,7 +4,7 @@ import math
 
 import pytest
 
-from ves_twin.errors import VesTwinError
+from ves_twin.core.errors import VesTwinError
 from ves_twin.plant.plant import Plant
 from ves_twin.sweeps.plan import plan_sweep
 

@@ -4,7 +4,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from ves_twin.errors import InvalidInputError
+from ves_twin.core.errors import InvalidInputError
 from ves_twin.sweeps.variation import Span, Variation
 
 

@@ -28,7 +28,7 @@ def test_every_figure_is_a_picture_of_its_own(drawn):
     are_pictures(drawn)
 
 
-@pytest.mark.slow
+@pytest.mark.nightly
 def test_every_figure_of_the_rig_is_a_picture_of_its_own(drawn_on_rig):
     are_pictures(drawn_on_rig)
 
@@ -49,7 +49,7 @@ def test_lines_of_face_c_are_nearly_vertical_and_those_of_face_b_half_of_them(dr
     assert 30 < numbers["face B, lines within 30 deg of vertical [%]"] < 70
 
 
-@pytest.mark.slow
+@pytest.mark.nightly
 def test_the_energies_of_figures_4_2_and_4_3_differ_clearly(drawn_on_rig):
     numbers = drawn_on_rig["fig-4-2"].numbers
     assert numbers["good over bad, peak energy"] < 0.5
@@ -57,7 +57,7 @@ def test_the_energies_of_figures_4_2_and_4_3_differ_clearly(drawn_on_rig):
     assert drawn_on_rig["fig-4-3"].numbers["not compensated over Model Method"] > 5.0
 
 
-@pytest.mark.slow
+@pytest.mark.nightly
 def test_the_emulated_release_keeps_the_order_of_the_gains(drawn_on_rig):
     numbers = drawn_on_rig["fig-4-7-emulated"].numbers
     on_rig = [numbers[f"{name}, energy integral, rig [J s]"] for name in ("energy", "pped", "high")]

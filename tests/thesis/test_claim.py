@@ -4,7 +4,7 @@ import re
 
 import pytest
 
-from ves_twin.errors import VesTwinError
+from ves_twin.core.errors import VesTwinError
 from ves_twin.plant.plant import Plant
 from ves_twin.thesis.claim import load_claims
 from ves_twin.thesis.evaluation import NotBuilt, NotTestable

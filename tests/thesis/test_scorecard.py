@@ -5,9 +5,9 @@ from dataclasses import replace
 
 import pytest
 
-from ves_twin.errors import UnreachableError
+from ves_twin.core.errors import UnreachableError
+from ves_twin.core.resources import resource_folder
 from ves_twin.plant.plant import Plant
-from ves_twin.resources import resource_folder
 from ves_twin.thesis.context import Context
 from ves_twin.thesis.evaluation import Evaluation, NotBuilt, NotRun, NotTestable
 from ves_twin.thesis.left_out import plant_without

@@ -11,14 +11,14 @@ from math import isnan
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from ves_twin.json_text import json_text
+from ves_twin.core.json_text import json_text
 
 if TYPE_CHECKING:
-    from ves_twin.blind.answers import Answer
-    from ves_twin.blind.mark import Marks
-    from ves_twin.blind.mark_next import NextMarks
-    from ves_twin.blind.recipe import Recipe
-    from ves_twin.blind.truth import Truth
+    from ves_twin.suites.answers import Answer
+    from ves_twin.suites.recipe import Recipe
+    from ves_twin.suites.score import Marks
+    from ves_twin.suites.score_next import NextMarks
+    from ves_twin.suites.truth import Truth
 
 SUMMARY = "hide effects in recordings, answer from the recordings alone, mark anybody's answers"
 
@@ -114,8 +114,8 @@ def _beside(folder: Path, given: str | None, ending: str) -> Path:
 
 
 def _make(arguments: argparse.Namespace, folder: Path, key: Path) -> int:
-    from ves_twin.blind.make import make_suite
     from ves_twin.cli.progress import RunProgress
+    from ves_twin.suites.make import make_suite
 
     recipe = _recipe(arguments)
     with RunProgress("blind make", 1.0, unit="share") as progress:
@@ -125,9 +125,9 @@ def _make(arguments: argparse.Namespace, folder: Path, key: Path) -> int:
 
 
 def _recipe(arguments: argparse.Namespace) -> Recipe:
-    from ves_twin.blind.recipe import Recipe
-    from ves_twin.blind.truth import Hidden
     from ves_twin.diagnosis.tolerances import FEWEST, check_commissioned
+    from ves_twin.suites.recipe import Recipe
+    from ves_twin.suites.truth import Hidden
 
     counts = {sort: getattr(arguments, sort) for sort in QUICK}
     if arguments.cases is not None:
@@ -151,7 +151,7 @@ def _recipe(arguments: argparse.Namespace) -> Recipe:
 
 
 def _background(text: str) -> tuple[str, float]:
-    from ves_twin.errors import InvalidInputError
+    from ves_twin.core.errors import InvalidInputError
 
     kind, _, size = text.partition("=")
     try:
@@ -163,11 +163,11 @@ def _background(text: str) -> tuple[str, float]:
 
 
 def _answer(arguments: argparse.Namespace, folder: Path, answers: Path) -> int:
-    from ves_twin.blind.answer import answer_suite
-    from ves_twin.blind.material import Use
     from ves_twin.cli.progress import RunProgress
-    from ves_twin.compiled import cache_folder
+    from ves_twin.core.compiled import cache_folder
     from ves_twin.diagnosis.settings import Settings
+    from ves_twin.suites.answer import answer_suite
+    from ves_twin.suites.material import Use
 
     use = Use(not arguments.no_commissioning, not arguments.no_baseline, arguments.after or "")
     if use.after and not arguments.answers:
@@ -186,10 +186,10 @@ def _after(answers: Path, choice: str) -> Path:
 
 
 def _play(folder: Path, key: Path, answers: Path, choice: str) -> int:
-    from ves_twin.blind.answers import read_answers
-    from ves_twin.blind.mark import read_truths
-    from ves_twin.blind.play import play_next
     from ves_twin.cli.progress import RunProgress
+    from ves_twin.suites.answers import read_answers
+    from ves_twin.suites.play import play_next
+    from ves_twin.suites.score import read_truths
 
     secret = _read_key(key)
     with RunProgress("blind play", 1.0, unit="share") as progress:
@@ -206,7 +206,7 @@ def _play(folder: Path, key: Path, answers: Path, choice: str) -> int:
 
 
 def _reveal(folder: Path, key: Path) -> int:
-    from ves_twin.blind.mark import read_truths
+    from ves_twin.suites.score import read_truths
 
     for truth in read_truths(folder, _read_key(key)):
         hidden = [
@@ -221,7 +221,7 @@ def _reveal(folder: Path, key: Path) -> int:
 
 
 def _read_key(key: Path) -> str:
-    from ves_twin.errors import FileAccessError
+    from ves_twin.core.errors import FileAccessError
 
     try:
         return key.read_text(encoding="utf-8").strip()
@@ -230,9 +230,9 @@ def _read_key(key: Path) -> str:
 
 
 def _score(arguments: argparse.Namespace, folder: Path, key: Path, answers: Path) -> int:
-    from ves_twin.blind.answers import read_answers
-    from ves_twin.blind.mark import mark, read_truths
-    from ves_twin.blind.mark_gain import mark_gain
+    from ves_twin.suites.answers import read_answers
+    from ves_twin.suites.score import mark, read_truths
+    from ves_twin.suites.score_gain import mark_gain
 
     truths, given = read_truths(folder, _read_key(key)), read_answers(answers)
     other = read_answers(Path(arguments.against)) if arguments.against else None
@@ -260,9 +260,9 @@ def _next_marks(
     folder: Path, truths: Sequence[Truth], given: Mapping[str, Answer], answers: Path
 ) -> NextMarks | None:
     """Of the next experiments that were played and answered; None without."""
-    from ves_twin.blind.answers import read_answers
-    from ves_twin.blind.mark_next import mark_next
-    from ves_twin.blind.play import CHOICES, played_file
+    from ves_twin.suites.answers import read_answers
+    from ves_twin.suites.play import CHOICES, played_file
+    from ves_twin.suites.score_next import mark_next
 
     done = [c for c in CHOICES if _after(answers, c).is_file() and played_file(folder, c).is_file()]
     if not done:

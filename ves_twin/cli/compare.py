@@ -6,18 +6,17 @@ import argparse
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from ves_twin.json_text import json_text
+from ves_twin.core.json_text import json_text
 
 if TYPE_CHECKING:
-    from ves_twin.comparison.compare import Named
-    from ves_twin.comparison.result import Comparison
+    from ves_twin.machines.ves2.compare import Named
+    from ves_twin.machines.ves2.comparison_result import Comparison
 
+from ves_twin.cli.exit_codes import DONE, OUT_OF_TOLERANCE
 from ves_twin.cli.rig_recordings import add_rig_arguments, means_rig
 
 SUMMARY = "show where measured recordings and the simulation part"
 JSON_NAME, PAGE_NAME = "compare.json", "report.html"
-OUT_OF_TOLERANCE = 4
-"""Exit code if a limit of the tolerance is not kept."""
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -41,9 +40,9 @@ def execute(arguments: argparse.Namespace) -> int:
     """Compare, write page and JSON, print the answer."""
     if means_rig(arguments):
         return _rig(arguments)
+    from ves_twin.cli.output_folder import output_folder
     from ves_twin.cli.rig_recordings import refuse_rig_options
-    from ves_twin.cli.run import output_folder
-    from ves_twin.comparison.report import comparison_page
+    from ves_twin.report.comparison.page import comparison_page
     from ves_twin.report.page import write_page
     from ves_twin.simulator.simulate import make_folder
 
@@ -56,17 +55,17 @@ def execute(arguments: argparse.Namespace) -> int:
     write_page(folder / JSON_NAME, text + "\n")
     write_page(folder / PAGE_NAME, page)
     print(text if arguments.json else _text(comparison, folder))
-    return OUT_OF_TOLERANCE if comparison.in_tolerance is False else 0
+    return OUT_OF_TOLERANCE if comparison.in_tolerance is False else DONE
 
 
 def _rig(arguments: argparse.Namespace) -> int:
     """A rig of two files: its own mode, and closed loop where it has controllers."""
+    from ves_twin.cli.output_folder import output_folder
     from ves_twin.cli.rig_recordings import rig_recordings
-    from ves_twin.cli.run import output_folder
-    from ves_twin.errors import InvalidInputError
+    from ves_twin.core.errors import InvalidInputError
+    from ves_twin.machines.mjcf.compare_mjcf import SCHEMA, compare_mjcf
+    from ves_twin.report.comparison.mjcf_page import comparison_lines, rig_comparison_page
     from ves_twin.report.page import write_page
-    from ves_twin.rigs.compare_mjcf import SCHEMA, compare_mjcf
-    from ves_twin.rigs.compare_page import comparison_lines, rig_comparison_page
     from ves_twin.simulator.simulate import make_folder
 
     for option in ("against", "tolerance", "standstill"):
@@ -89,8 +88,8 @@ def _rig(arguments: argparse.Namespace) -> int:
 
 def _compare(arguments: argparse.Namespace) -> Comparison:
     from ves_twin.cli.progress import RunProgress
-    from ves_twin.comparison.compare import compare
-    from ves_twin.comparison.tolerance import Tolerance
+    from ves_twin.machines.ves2.compare import compare
+    from ves_twin.machines.ves2.tolerance import Tolerance
     from ves_twin.plant.plant import Plant
     from ves_twin.scenario.experiment import Experiment
 
@@ -109,21 +108,21 @@ def _compare(arguments: argparse.Namespace) -> Comparison:
 
 
 def _named(path: str) -> Named:
-    from ves_twin.comparison.compare import Named
-    from ves_twin.recording.files import load_recording, recording_name
+    from ves_twin.core.recording.files import load_recording, recording_name
+    from ves_twin.machines.ves2.compare import Named
 
     return Named(recording_name(path), load_recording(path))
 
 
 def _text(comparison: Comparison, folder: Path) -> str:
-    from ves_twin.comparison.words import (
+    from ves_twin.data.quality.check import Grade
+    from ves_twin.report.comparison.words import (
         cost_sentence,
         gap_sentence,
         place_sentence,
         tolerance_sentence,
         trust_sentence,
     )
-    from ves_twin.quality.check import Grade
 
     lines = []
     for r in comparison.recordings:

@@ -10,13 +10,13 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from ves_twin.benches.diagnose_rig import RigDiagnosis
-    from ves_twin.benches.told import Told
+    from ves_twin.core.recording.recording import Recording
     from ves_twin.diagnosis.build_up.result import Proved
     from ves_twin.diagnosis.settings import Settings
+    from ves_twin.machines.mjcf.diagnose_mjcf import MjcfDiagnosis
+    from ves_twin.machines.ves2.diagnose_rig import RigDiagnosis
+    from ves_twin.machines.ves2.told import Told
     from ves_twin.plant.plant import Plant
-    from ves_twin.recording.recording import Recording
-    from ves_twin.rigs.diagnose_mjcf import MjcfDiagnosis
 
 from ves_twin.cli.rig_recordings import add_rig_arguments, means_rig
 
@@ -53,7 +53,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def execute(arguments: argparse.Namespace) -> int:
     """Diagnose, write verdict and plant, print the verdict."""
-    from ves_twin.cli.run import output_folder
+    from ves_twin.cli.output_folder import output_folder
     from ves_twin.simulator.simulate import make_folder
 
     folder = output_folder(arguments.out, "diagnosis")
@@ -68,7 +68,7 @@ def execute(arguments: argparse.Namespace) -> int:
 
 
 def _label(name: str) -> str:
-    from ves_twin.recording.files import recording_name
+    from ves_twin.core.recording.files import recording_name
 
     return recording_name(name)
 
@@ -77,12 +77,12 @@ def _ves2(
     arguments: argparse.Namespace, ready: Callable[[], None]
 ) -> tuple[RigDiagnosis, Callable[[Path, str], None]]:
     """VES II; the output folder is made once all input is read."""
-    from ves_twin.benches.diagnose_rig import diagnose_rig
-    from ves_twin.benches.next_scenario import write_next_experiment
     from ves_twin.cli.progress import RunProgress
     from ves_twin.cli.rig_recordings import refuse_rig_options
+    from ves_twin.core.recording.files import load_recording
+    from ves_twin.machines.ves2.diagnose_rig import diagnose_rig
+    from ves_twin.machines.ves2.next_scenario import write_next_experiment
     from ves_twin.plant.write_plant import write_plant
-    from ves_twin.recording.files import load_recording
 
     refuse_rig_options(arguments)
     measured = [load_recording(name) for name in arguments.measured]
@@ -133,8 +133,8 @@ def _mjcf(
     """A rig of two files."""
     from ves_twin.cli.progress import RunProgress
     from ves_twin.cli.rig_recordings import read_file, rig_recordings
-    from ves_twin.rigs.diagnose_mjcf import diagnose_mjcf
-    from ves_twin.rigs.extend import write_rig
+    from ves_twin.machines.mjcf.diagnose_mjcf import diagnose_mjcf
+    from ves_twin.machines.mjcf.extend import write_rig
 
     given = rig_recordings(arguments, arguments.measured)
     commissioning = [read_file(arguments, given.rig, n) for n in arguments.commissioning]
@@ -162,7 +162,7 @@ def _mjcf(
 
 def diagnosis_settings() -> Settings:
     """All cores, banks kept beside the compiled code."""
-    from ves_twin.compiled import cache_folder
+    from ves_twin.core.compiled import cache_folder
     from ves_twin.diagnosis.settings import Settings
 
     return Settings(workers=os.cpu_count() or 1, cache=cache_folder().parent / "banks")
@@ -172,10 +172,10 @@ def _told(
     arguments: argparse.Namespace, files: Sequence[str], recordings: Sequence[Recording]
 ) -> Told:
     """Recordings, scenario and plant as the experiment file says."""
-    from ves_twin.benches.told import tell
-    from ves_twin.errors import InvalidInputError
+    from ves_twin.core.errors import InvalidInputError
+    from ves_twin.core.recording.files import recording_name
+    from ves_twin.machines.ves2.told import tell
     from ves_twin.plant.plant import Plant
-    from ves_twin.recording.files import recording_name
     from ves_twin.scenario.experiment import Experiment
 
     plant = Plant.load(arguments.plant) if arguments.plant else None
@@ -187,8 +187,8 @@ def _told(
 
 def _needs_drive(name: str, recording: Recording) -> None:
     """Raise unless a recording without an experiment file has all that the rig was told."""
-    from ves_twin.benches.ves2 import DRIVE
-    from ves_twin.errors import InvalidInputError
+    from ves_twin.core.errors import InvalidInputError
+    from ves_twin.machines.ves2.forward import DRIVE
 
     missing = [signal for signal in DRIVE if signal not in recording.signals]
     if missing:
@@ -209,10 +209,10 @@ def _write(
     names: str,
     save: Callable[[Path, str], None],
 ) -> None:
-    from ves_twin.benches.next_scenario import SCENARIO, SETPOINTS
-    from ves_twin.diagnosis.report.page import diagnosis_page
+    from ves_twin.machines.ves2.next_scenario import SCENARIO, SETPOINTS
+    from ves_twin.report.diagnosis.page import diagnosis_page
     from ves_twin.report.page import write_page
-    from ves_twin.rerun_log.diagnosis import write_diagnosis_rrd
+    from ves_twin.report.rerun.diagnosis import write_diagnosis_rrd
 
     of_earlier = ("plant.toml", "plant.candidate.toml", SETPOINTS, SCENARIO)
     for name in of_earlier:
@@ -230,7 +230,7 @@ def _write(
 
 def _plant_sentence(found: RigDiagnosis | MjcfDiagnosis) -> str:
     """What became of the extended plant."""
-    from ves_twin.rigs.diagnose_mjcf import MjcfDiagnosis
+    from ves_twin.machines.mjcf.diagnose_mjcf import MjcfDiagnosis
 
     if found.extended is None and found.verdict.causes:
         return f"No extended plant was written: {found.refused}."
@@ -247,9 +247,9 @@ def _plant_sentence(found: RigDiagnosis | MjcfDiagnosis) -> str:
 
 
 def _text(found: RigDiagnosis | MjcfDiagnosis, folder: Path) -> str:
-    from ves_twin.diagnosis.report.proved import inseparable_sentences, proof_sentence
-    from ves_twin.diagnosis.report.words import ambiguity_sentences, headline
-    from ves_twin.report.quantity import shares
+    from ves_twin.core.quantity import shares
+    from ves_twin.report.diagnosis.proved import inseparable_sentences, proof_sentence
+    from ves_twin.report.diagnosis.words import ambiguity_sentences, headline
 
     verdict = found.verdict
     basis = verdict.basis
@@ -282,8 +282,8 @@ def _text(found: RigDiagnosis | MjcfDiagnosis, folder: Path) -> str:
 
 
 def _proved_line(one: Proved) -> str:
-    from ves_twin.diagnosis.report.proved import standing_words
-    from ves_twin.report.quantity import quantity
+    from ves_twin.core.quantity import quantity
+    from ves_twin.report.diagnosis.proved import standing_words
 
     sizes = ", ".join(
         f"{quantity(s.value, s.unit)} ({quantity(s.low, s.unit)} to {quantity(s.high, s.unit)})"

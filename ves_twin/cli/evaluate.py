@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from dataclasses import asdict
 from typing import TYPE_CHECKING
 
-from ves_twin.json_text import json_text
+from ves_twin.core.json_text import json_text
 
 if TYPE_CHECKING:
     from ves_twin.envs.evaluation import Evaluation, Figure
@@ -60,8 +60,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def execute(arguments: argparse.Namespace) -> int:
     """Run the episodes and print their figures."""
     from ves_twin.cli.progress import RunProgress
+    from ves_twin.core.errors import InvalidInputError
     from ves_twin.envs.evaluation import Trial, evaluate, paired
-    from ves_twin.errors import InvalidInputError
 
     if not 1 <= arguments.seeds <= MOST_SEEDS:
         raise InvalidInputError("--seeds", arguments.seeds, f"1 to {MOST_SEEDS}")

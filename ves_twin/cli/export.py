@@ -17,8 +17,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def execute(arguments: argparse.Namespace) -> int:
     """Write the file."""
-    from ves_twin.measured.export import export_recording
-    from ves_twin.recording.files import load_recording
+    from ves_twin.core.recording.files import load_recording
+    from ves_twin.data.export import export_recording
 
     path = Path(arguments.out)
     form = arguments.format or path.suffix.removeprefix(".")

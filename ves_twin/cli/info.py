@@ -5,9 +5,9 @@ from __future__ import annotations
 import argparse
 from typing import TYPE_CHECKING
 
-from ves_twin.errors import InvalidInputError
-from ves_twin.json_text import json_text
-from ves_twin.units import unit_tail
+from ves_twin.core.errors import InvalidInputError
+from ves_twin.core.json_text import json_text
+from ves_twin.core.units import unit_tail
 
 if TYPE_CHECKING:
     from ves_twin.effects.effect import Effect
@@ -51,16 +51,16 @@ def execute(arguments: argparse.Namespace) -> int:
 
 def general_content() -> dict[str, object]:
     """Versions, plants, emulated systems, controllers, plugins, scenarios, signals."""
-    from ves_twin.compiled import cache_folder
     from ves_twin.control.registry import GRAVITY_COMPENSATIONS, PLATFORM_CONTROLLERS
+    from ves_twin.core.compiled import cache_folder
+    from ves_twin.core.resources import resource_folder
+    from ves_twin.core.signals import SIGNALS
     from ves_twin.effects.registry import EFFECTS
     from ves_twin.envs import ENVIRONMENTS
     from ves_twin.envs.baselines import BASELINES
+    from ves_twin.machines.mjcf.description import shipped_rigs
     from ves_twin.plant.plant import Plant
-    from ves_twin.resources import resource_folder
-    from ves_twin.rigs.description import shipped_rigs
     from ves_twin.scenario.load import scenario_questions
-    from ves_twin.signals import SIGNALS
     from ves_twin.simulator.simulate import versions
 
     models = resource_folder("models")

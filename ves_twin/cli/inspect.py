@@ -5,7 +5,8 @@ from __future__ import annotations
 import argparse
 from pathlib import Path
 
-from ves_twin.json_text import json_text
+from ves_twin.cli.limit import add_limit
+from ves_twin.core.json_text import json_text
 
 SUMMARY = "show what is in a lab file: channels, rates, ranges, gaps; draft a map"
 
@@ -17,18 +18,20 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "--draft-map", action="store_true", help="write a map to edit (default: NAME.map.toml here)"
     )
     parser.add_argument("--out", metavar="MAP", help="where the map goes")
+    add_limit(parser)
     parser.add_argument("--json", action="store_true", help="the content as JSON on stdout")
 
 
 def execute(arguments: argparse.Namespace) -> int:
     """Read the file once, print what is in it, write the map if one is asked for."""
-    from ves_twin.measured.draft_map import draft_map
-    from ves_twin.measured.inspect_log import inspect_log
-    from ves_twin.measured.inspection_text import inspection_text
-    from ves_twin.measured.open_log import open_log
+    from ves_twin.data.draft_map import draft_map
+    from ves_twin.data.inspect_log import inspect_log
+    from ves_twin.data.inspection_text import inspection_text
+    from ves_twin.data.limits import Limits
+    from ves_twin.data.open_log import open_log
     from ves_twin.report.page import write_page
 
-    inspection = inspect_log(open_log(arguments.file))
+    inspection = inspect_log(open_log(arguments.file, Limits.of(arguments.limit)))
     content, text = inspection.to_dict(), inspection_text(inspection)
     if arguments.draft_map or arguments.out:
         path = _place(arguments.out, Path(arguments.file))

@@ -6,6 +6,7 @@ import argparse
 import os
 import re
 import sys
+import warnings
 from collections.abc import Sequence
 from functools import partial
 from typing import NoReturn
@@ -28,7 +29,8 @@ from ves_twin.cli import (
     trend,
     view,
 )
-from ves_twin.errors import UnknownNameError, VesTwinError, one_line
+from ves_twin.cli.exit_codes import BAD_INPUT, DONE, INTERRUPTED
+from ves_twin.core.errors import UnknownNameError, VesTwinError, one_line
 
 COMMANDS = {
     "scenarios": scenarios,
@@ -58,9 +60,6 @@ begin with:
 exit codes: 0 done, 2 bad input, 3 the run ended early, 4 out of tolerance, 130 interrupted
 """
 """What stands below the commands."""
-
-DONE, BAD_INPUT, ENDED_EARLY, INTERRUPTED = 0, 2, 3, 130
-"""Exit codes."""
 
 
 class Parser(argparse.ArgumentParser):
@@ -108,6 +107,14 @@ def main(arguments: Sequence[str] | None = None) -> int:
     Returns:
         0 done; 2 bad input; 3 the run ended early; 4 out of tolerance; 130 interrupted.
     """
+    with warnings.catch_warnings(record=True) as noted:
+        code = _answered(arguments)
+    for one in noted if code != BAD_INPUT else ():  # a refusal is one line
+        warnings.showwarning(one.message, one.category, one.filename, one.lineno)
+    return code
+
+
+def _answered(arguments: Sequence[str] | None) -> int:
     words = list(sys.argv[1:] if arguments is None else arguments)
     try:
         if words and not words[0].startswith("-") and words[0] not in COMMANDS:

@@ -42,12 +42,12 @@ def execute(arguments: argparse.Namespace) -> int:
 
 
 def _plan(arguments: argparse.Namespace) -> Plan:
-    from ves_twin.benches.diagnose_rig import drawn_nulls
-    from ves_twin.benches.ves2_programme import planned_rig
     from ves_twin.cli.progress import RunProgress
-    from ves_twin.compiled import cache_folder
+    from ves_twin.core.compiled import cache_folder
     from ves_twin.diagnosis.plan import check_channels, plan_recording
     from ves_twin.diagnosis.settings import Settings
+    from ves_twin.machines.ves2.diagnose_rig import drawn_nulls
+    from ves_twin.machines.ves2.excitation import planned_rig
     from ves_twin.plant.plant import Plant
     from ves_twin.scenario.schema import Scenario
 

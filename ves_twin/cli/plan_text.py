@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Sequence
 from itertools import groupby
 
-from ves_twin.diagnosis.lookalikes import Lookalike
+from ves_twin.core.quantity import UNSURE, quantity
+from ves_twin.diagnosis.aliases import Lookalike
 from ves_twin.diagnosis.plan import Plan, Prospect
-from ves_twin.diagnosis.report.words import spoken
-from ves_twin.report.quantity import UNSURE, quantity
+from ves_twin.report.diagnosis.words import spoken
 
 MOST = 12
 """Look-alikes that are printed; all of them are in the JSON."""

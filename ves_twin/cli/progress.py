@@ -1,50 +1,88 @@
-"""RunProgress: a progress bar on stderr, and a keyboard stop at a safe point."""
+"""RunProgress: stage, share and time left on stderr, and a keyboard stop at a safe point."""
 
 from __future__ import annotations
 
 import signal
 import sys
+import threading
+import time
 from types import FrameType, TracebackType
 from typing import Any
 
 from tqdm import tqdm
 
-from ves_twin.compiled import cache_folder
+from ves_twin.core.compiled import cache_folder
+
+FIRST = 1.0
+"""A command that is done sooner says nothing [s]: a bad input is then one line alone."""
+
+PAUSE = 10.0
+"""Time between two lines where stderr is no terminal [s]: a log of an hour stays readable."""
 
 
 class RunProgress:
-    """Called with the time reached; the first Ctrl-C ends the run between two slices."""
+    """Called with the amount reached; the first Ctrl-C ends the work between two slices.
 
-    def __init__(self, name: str, duration: float, unit: str = "s") -> None:
+    A terminal shows a bar for each stage. Anywhere else a line is printed after FIRST and then
+    every PAUSE, so that a log, too, tells what is being done and how long that stage still takes.
+
+    Args:
+        name: of the work, before every stage.
+        total: amount of a stage that tells none of its own.
+        unit: "s" for a run, whose amount is its time [s].
+    """
+
+    def __init__(self, name: str, total: float, unit: str = "s") -> None:
+        self._name, self._total = name, total
         self._bar = tqdm(
-            total=duration,
+            total=total,
             desc=name,
             file=sys.stderr,
-            disable=None,  # silent where stderr is no terminal
+            disable=None,  # no bar where stderr is no terminal
             bar_format="{desc} {percentage:3.0f}% |{bar}|"
             + (" {n:.1f}/{total:.1f} s" if unit == "s" else "")
-            + " [{elapsed}]",
+            + " [{elapsed}, {remaining} left]",
         )
+        self._stage, self._done = "", 0.0
+        self._begun = self._stage_begun = time.monotonic()
         self._stopped = False
         self._running = False
         self._before: Any = None
+        self._over = threading.Event()
+        self._teller = threading.Thread(target=self._tell, daemon=True)
 
     def __call__(self, reached: float) -> None:
-        """Move the bar to the time reached [s]; stop if Ctrl-C was pressed."""
+        """Go to the amount reached; stop if Ctrl-C was pressed."""
         self._running = True
+        self._done = reached / self._total
         self._bar.update(reached - self._bar.n)
         if self._stopped:
             raise KeyboardInterrupt
 
     def share(self, done: float, what: str) -> None:
-        """Move the bar to a share done, 0 to 1, of a total of 1; `what` stands before the bar."""
-        self._bar.set_description_str(what)
+        """Go to a share done, 0 to 1, of a stage; another stage begins its own time."""
+        if what != self._stage:
+            self._stage, self._stage_begun = what, time.monotonic()
+            self._bar.reset()
+            self._bar.set_description_str(f"{self._name}: {what}")
         self(done)
+
+    def line(self) -> str:
+        """Stage, share, time so far and time left of the stage, as a log shows them."""
+        now = time.monotonic()
+        what = f"{self._name}: {self._stage}" if self._stage else self._name
+        text = f"{what}, {100.0 * self._done:.0f} %, {_span(now - self._begun)} so far"
+        if 0.0 < self._done < 1.0:
+            left = (now - self._stage_begun) * (1.0 / self._done - 1.0)
+            text += f", about {_span(left)} left" + (" in this stage" if self._stage else "")
+        return text
 
     def __enter__(self) -> RunProgress:
         if not any(cache_folder().iterdir()):
             print("compiling the inner loop, once: about half a minute", file=sys.stderr)
         self._before = signal.signal(signal.SIGINT, self._stop)
+        if self._bar.disable:
+            self._teller.start()
         return self
 
     def __exit__(
@@ -53,10 +91,29 @@ class RunProgress:
         error: BaseException | None,
         trace: TracebackType | None,
     ) -> None:
+        self._over.set()
+        if self._teller.is_alive():
+            self._teller.join()
         signal.signal(signal.SIGINT, self._before)
         self._bar.close()
+
+    def _tell(self) -> None:
+        pause = FIRST
+        while not self._over.wait(pause):
+            print(self.line(), file=sys.stderr, flush=True)
+            pause = PAUSE
 
     def _stop(self, number: int, frame: FrameType | None) -> None:
         if self._stopped or not self._running:  # nothing to keep, or asked twice
             raise KeyboardInterrupt
         self._stopped = True
+
+
+def _span(seconds: float) -> str:
+    """A time as people say it: 8 s, 3 min 20 s, 2 h 5 min."""
+    whole = round(seconds)
+    if whole < 60:
+        return f"{whole} s"
+    if whole < 3600:
+        return f"{whole // 60} min {whole % 60} s"
+    return f"{whole // 3600} h {whole % 3600 // 60} min"

@@ -6,7 +6,7 @@ import argparse
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from ves_twin.json_text import json_text
+from ves_twin.core.json_text import json_text
 
 if TYPE_CHECKING:
     from ves_twin.thesis.context import Context
@@ -41,7 +41,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def execute(arguments: argparse.Namespace) -> int:
     """Evaluate what was asked for and print it."""
     from ves_twin.cli.scorecard_text import figure_text, scorecard_text
-    from ves_twin.errors import UnknownNameError
+    from ves_twin.core.errors import UnknownNameError
     from ves_twin.simulator.simulate import make_folder
     from ves_twin.thesis.claim import load_claims
     from ves_twin.thesis.figures.registry import FIGURES
@@ -102,7 +102,7 @@ def _score(arguments: argparse.Namespace, chosen: list[str], context: Context) -
 def _figures(
     arguments: argparse.Namespace, names: list[str], context: Context
 ) -> list[FigureResult]:
-    from ves_twin.cli.run import output_folder
+    from ves_twin.cli.output_folder import output_folder
     from ves_twin.simulator.simulate import make_folder
     from ves_twin.thesis.figures.registry import FIGURES
 
@@ -114,8 +114,8 @@ def _figures(
 
 
 def _write(folder: Path, card: Scorecard, text: str) -> None:
+    from ves_twin.core.whole_file import write_whole
     from ves_twin.thesis.page import scorecard_page
-    from ves_twin.whole_file import write_whole
 
     write_whole(folder / JSON_NAME, text + "\n")
     write_whole(folder / PAGE_NAME, scorecard_page(card))

@@ -10,9 +10,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from ves_twin.recording.recording import Recording
-    from ves_twin.rigs.rig import Rig
-    from ves_twin.rigs.tell import Told
+    from ves_twin.core.recording.recording import Recording
+    from ves_twin.machines.mjcf.machine import Rig
+    from ves_twin.machines.mjcf.tell import Told
 
 
 @dataclass(frozen=True)
@@ -57,7 +57,7 @@ def add_rig_arguments(parser: argparse.ArgumentParser, alternate: bool = True) -
 
 def refuse_rig_options(arguments: argparse.Namespace) -> None:
     """Raise InvalidInputError where an option that only rigs have meets VES II."""
-    from ves_twin.errors import InvalidInputError
+    from ves_twin.core.errors import InvalidInputError
 
     for option in ("data", "map", "alternate"):
         value = getattr(arguments, option, None)
@@ -70,7 +70,7 @@ def means_rig(arguments: argparse.Namespace) -> bool:
     named = rig_name(arguments)
     if not named:
         return False
-    from ves_twin.rigs.description import is_rig
+    from ves_twin.machines.mjcf.description import is_rig
 
     return is_rig(named)
 
@@ -79,7 +79,7 @@ def rig_name(arguments: argparse.Namespace) -> str:
     """What --plant says, or else the experiment file; a path there starts from that file."""
     if arguments.plant or not getattr(arguments, "experiment", None):
         return arguments.plant or ""
-    from ves_twin.toml_file import read_toml
+    from ves_twin.core.toml_file import read_toml
 
     path = Path(arguments.experiment)
     named = read_toml("experiment", path)[0].get("plant")
@@ -102,8 +102,8 @@ def rig_recordings(
     Raises:
         VesTwinError: a file that is missing or wrong, or recordings of one name.
     """
-    from ves_twin.rigs.alternate import alternate
-    from ves_twin.rigs.rig import Rig
+    from ves_twin.machines.mjcf.interleaved_split import alternate
+    from ves_twin.machines.mjcf.machine import Rig
 
     rig = Rig.load(rig_name(arguments))
     held, usual = (list(getattr(arguments, name, [])) for name in ("held_out", "baseline"))
@@ -127,9 +127,9 @@ def rig_recordings(
 
 def read_file(arguments: argparse.Namespace, rig: Rig, name: str | Path) -> Recording:
     """One recording of a rig, from its path or from the folder of public data."""
-    from ves_twin.measured.import_map import ImportMap
-    from ves_twin.rigs.data_folder import find_data
-    from ves_twin.rigs.read import read_recording
+    from ves_twin.data.import_map import ImportMap
+    from ves_twin.machines.mjcf.data_folder import find_data
+    from ves_twin.machines.mjcf.read import read_recording
 
     told = ImportMap.load(arguments.map) if arguments.map else None
     path = Path(name) if Path(name).is_dir() else find_data(str(name), rig, arguments.data)
@@ -143,10 +143,10 @@ def read_file(arguments: argparse.Namespace, rig: Rig, name: str | Path) -> Reco
 def _told(
     arguments: argparse.Namespace, names: Sequence[str], read: Sequence[Recording], rig: Rig
 ) -> Told:
-    from ves_twin.errors import InvalidInputError
-    from ves_twin.recording.files import recording_name
-    from ves_twin.rigs.experiment import RigExperiment
-    from ves_twin.rigs.tell import tell
+    from ves_twin.core.errors import InvalidInputError
+    from ves_twin.core.recording.files import recording_name
+    from ves_twin.machines.mjcf.experiment import RigExperiment
+    from ves_twin.machines.mjcf.tell import tell
 
     named = dict(zip(map(recording_name, names), read, strict=True))
     if len(named) < len(read):

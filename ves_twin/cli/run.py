@@ -11,7 +11,6 @@ if TYPE_CHECKING:
     from ves_twin.control.controller import PlatformController
     from ves_twin.plant.plant import Plant
     from ves_twin.scenario.schema import Scenario
-    from ves_twin.simulator.outcome import Outcome
     from ves_twin.simulator.simulate import Summary
 
 SUMMARY = "run a scenario and write its recording"
@@ -48,6 +47,7 @@ def add_run_options(parser: argparse.ArgumentParser) -> None:
 
 def execute(arguments: argparse.Namespace) -> int:
     """Run the scenario or procedure; the exit code tells how it ended."""
+    from ves_twin.cli.exit_codes import exit_code
     from ves_twin.cli.run_procedure import run_procedure
 
     ended = run_procedure(arguments)
@@ -72,8 +72,8 @@ def execute(arguments: argparse.Namespace) -> int:
 
 def _draw(folder: Path, video: Path) -> str:
     """Draw a run whose summary is told, and say so; one without rows has nothing to draw."""
+    from ves_twin.core.recording.files import load_recording
     from ves_twin.envs.film import write_gif
-    from ves_twin.recording.files import load_recording
 
     recording = load_recording(folder)
     if not len(recording):
@@ -82,13 +82,9 @@ def _draw(folder: Path, video: Path) -> str:
     return f"  video     {video}"
 
 
-def exit_code(outcome: Outcome) -> int:
-    """0 completed, 130 interrupted, 3 any other end."""
-    return {"completed": 0, "interrupted": 130}.get(outcome.value, 3)
-
-
 def run_scenario(arguments: argparse.Namespace) -> tuple[Summary, Path]:
     """Run the scenario that the arguments name into its output folder."""
+    from ves_twin.cli.output_folder import output_folder
     from ves_twin.cli.progress import RunProgress
     from ves_twin.simulator.simulate import record
 
@@ -98,8 +94,8 @@ def run_scenario(arguments: argparse.Namespace) -> tuple[Summary, Path]:
         controller = load_controller(arguments)
         summary = record(scenario, folder, plant, arguments.seed, progress, controller)
     if not arguments.no_rrd and summary.duration > 0:
-        from ves_twin.recording.files import load_recording
-        from ves_twin.rerun_log.write import write_rrd
+        from ves_twin.core.recording.files import load_recording
+        from ves_twin.report.rerun.write import write_rrd
 
         write_rrd(load_recording(folder), folder / "run.rrd")
     return summary, folder
@@ -111,7 +107,7 @@ def load(arguments: argparse.Namespace) -> tuple[Scenario, Plant | None]:
     Raises:
         VesTwinError: anything in them that cannot be used.
     """
-    from ves_twin.errors import InvalidInputError
+    from ves_twin.core.errors import InvalidInputError
     from ves_twin.plant.plant import Plant
     from ves_twin.scenario.load import parse_setting
     from ves_twin.scenario.schema import Scenario
@@ -133,19 +129,8 @@ def load_controller(arguments: argparse.Namespace) -> type[PlatformController] |
     """
     if arguments.controller is None:
         return None
-    from ves_twin.code_file import load_class
     from ves_twin.control.controller import PlatformController
+    from ves_twin.core.code_file import load_class
 
     found: type[PlatformController] = load_class(arguments.controller, PlatformController)
     return found
-
-
-def output_folder(given: str | None, name: str) -> Path:
-    """The folder asked for, or the next free runs/NAME, runs/NAME-2, ..."""
-    if given is not None:
-        return Path(given)
-    folder, number = Path("runs") / name, 1
-    while folder.exists():
-        number += 1
-        folder = Path("runs") / f"{name}-{number}"
-    return folder

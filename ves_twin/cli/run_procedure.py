@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 from typing import TYPE_CHECKING
 
-from ves_twin.json_text import json_text
+from ves_twin.core.json_text import json_text
 
 if TYPE_CHECKING:
     from ves_twin.procedures.procedure import Account, Procedure
@@ -17,15 +17,16 @@ def run_procedure(arguments: argparse.Namespace) -> int | None:
     Raises:
         VesTwinError: options that cannot be carried out, or a folder that cannot be written.
     """
+    from ves_twin.cli.exit_codes import exit_code
+    from ves_twin.cli.output_folder import output_folder
     from ves_twin.cli.progress import RunProgress
-    from ves_twin.cli.run import exit_code, output_folder
-    from ves_twin.errors import InvalidInputError
+    from ves_twin.core.errors import InvalidInputError
+    from ves_twin.core.whole_file import write_whole
     from ves_twin.plant.plant import Plant
-    from ves_twin.procedures.procedure import Conduct
+    from ves_twin.procedures.procedure import RunContext
     from ves_twin.procedures.registry import load_procedure
     from ves_twin.scenario.load import parse_setting
     from ves_twin.simulator.simulate import SUMMARY_NAME, make_folder
-    from ves_twin.whole_file import write_whole
 
     changes = dict(parse_setting(text) for text in arguments.settings)
     procedure = load_procedure(arguments.scenario, changes)
@@ -41,7 +42,7 @@ def run_procedure(arguments: argparse.Namespace) -> int | None:
     folder = output_folder(arguments.out, procedure.name)
     make_folder(folder)
     with RunProgress(procedure.name, 1.0, unit="share") as progress:
-        conduct = Conduct(folder, plant, arguments.seed, progress.share)
+        conduct = RunContext(folder, plant, arguments.seed, progress.share)
         account = procedure.carry_out(conduct)
     text = json_text(_summary(procedure, account))
     write_whole(folder / SUMMARY_NAME, text + "\n")

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import argparse
 
-from ves_twin.json_text import json_text
+from ves_twin.core.json_text import json_text
 
 SUMMARY = "list the scenarios: name and the question each answers"
 

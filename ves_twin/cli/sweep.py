@@ -7,7 +7,7 @@ import os
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from ves_twin.json_text import json_text
+from ves_twin.core.json_text import json_text
 
 if TYPE_CHECKING:
     from ves_twin.sweeps.engine import Engine
@@ -58,7 +58,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def execute(arguments: argparse.Namespace) -> int:
     """Carry out the sweep; 0 when every point has a result, 3 where some were lost."""
-    from ves_twin.cli.main import DONE, ENDED_EARLY
+    from ves_twin.cli.exit_codes import DONE, ENDED_EARLY
     from ves_twin.cli.progress import RunProgress
     from ves_twin.sweeps.sweep import carry_out_sweep
 
@@ -80,7 +80,7 @@ def execute(arguments: argparse.Namespace) -> int:
 
 
 def _engine(arguments: argparse.Namespace) -> Engine:
-    from ves_twin.errors import InvalidInputError, UnknownNameError
+    from ves_twin.core.errors import InvalidInputError, UnknownNameError
 
     if arguments.engine not in ENGINES:
         raise UnknownNameError("engine", arguments.engine, ENGINES)
@@ -99,7 +99,7 @@ def _engine(arguments: argparse.Namespace) -> Engine:
 
 
 def _plan(arguments: argparse.Namespace) -> SweepPlan:
-    from ves_twin.errors import InvalidInputError
+    from ves_twin.core.errors import InvalidInputError
     from ves_twin.plant.plant import Plant
     from ves_twin.procedures.registry import load_procedure
     from ves_twin.scenario.load import parse_setting
@@ -124,7 +124,7 @@ def _plan(arguments: argparse.Namespace) -> SweepPlan:
 
 def _folder(given: str | None, plan: SweepPlan) -> Path:
     """The folder asked for, or the first of runs/NAME-sweep, -2, ... that is free or this one."""
-    from ves_twin.errors import VesTwinError
+    from ves_twin.core.errors import VesTwinError
     from ves_twin.sweeps.ledger import check_identity
 
     if given is not None:

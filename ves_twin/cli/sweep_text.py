@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pyarrow.parquet as pq
 
-from ves_twin.signals import SIGNALS
+from ves_twin.core.signals import SIGNALS
 
 MOST_ROWS = 12
 """Rows that are printed; the table has them all."""

@@ -8,9 +8,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
+    from ves_twin.core.recording.recording import Recording
     from ves_twin.diagnosis.trend.calendar import Calendar
     from ves_twin.diagnosis.trend.result import DaySize, Trend
-    from ves_twin.recording.recording import Recording
 
 from ves_twin.cli.rig_recordings import add_rig_arguments, means_rig, rig_name, rig_recordings
 
@@ -57,13 +57,13 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def execute(arguments: argparse.Namespace) -> int:
     """Read, follow, write page and JSON, print the answer."""
     from ves_twin.cli.diagnose import diagnosis_settings
+    from ves_twin.cli.output_folder import output_folder
     from ves_twin.cli.progress import RunProgress
-    from ves_twin.cli.run import output_folder
-    from ves_twin.diagnosis.report.trend_page import trend_page
-    from ves_twin.errors import InvalidInputError
+    from ves_twin.core.errors import InvalidInputError
+    from ves_twin.machines.mjcf.trend_mjcf import trend_mjcf
     from ves_twin.plant.plant import Plant
+    from ves_twin.report.diagnosis.trend_page import trend_page
     from ves_twin.report.page import write_page
-    from ves_twin.rigs.trend_mjcf import trend_mjcf
     from ves_twin.simulator.simulate import make_folder
 
     if not means_rig(arguments):
@@ -102,8 +102,8 @@ def recordings_in(given: Sequence[str]) -> list[str]:
     Raises:
         FileAccessError: a folder without one.
     """
-    from ves_twin.errors import FileAccessError
-    from ves_twin.recording.stream import FILE_NAME, STREAM_NAME
+    from ves_twin.core.errors import FileAccessError
+    from ves_twin.core.recording.stream import FILE_NAME, STREAM_NAME
 
     found: list[str] = []
     for name in given:
@@ -122,7 +122,7 @@ def recordings_in(given: Sequence[str]) -> list[str]:
 
 
 def _is_recording(path: Path) -> bool:
-    from ves_twin.recording.stream import FILE_NAME, STREAM_NAME
+    from ves_twin.core.recording.stream import FILE_NAME, STREAM_NAME
 
     if path.name.startswith("."):
         return False
@@ -132,9 +132,9 @@ def _is_recording(path: Path) -> bool:
 
 
 def _calendar(names: Sequence[str], recordings: Sequence[Recording], numbered: bool) -> Calendar:
+    from ves_twin.core.recording.date_of import date_of
+    from ves_twin.core.recording.files import recording_name
     from ves_twin.diagnosis.trend.calendar import Calendar
-    from ves_twin.recording.date_of import date_of
-    from ves_twin.recording.files import recording_name
 
     shown = [recording_name(name) for name in names]
     pairs = zip(shown, recordings, strict=True)
@@ -143,8 +143,8 @@ def _calendar(names: Sequence[str], recordings: Sequence[Recording], numbered: b
 
 
 def _text(trend: Trend, folder: Path) -> str:
-    from ves_twin.diagnosis.report.trend_words import trend_basis, trend_headline
-    from ves_twin.report.quantity import quantity
+    from ves_twin.core.quantity import quantity
+    from ves_twin.report.diagnosis.trend_words import trend_basis, trend_headline
 
     lines = [f"answer    {trend.answer.value}", f"          {trend_headline(trend)}", ""]
     if trend.cause is not None:

@@ -11,8 +11,9 @@ import time
 from collections.abc import Sequence
 from pathlib import Path
 
-from ves_twin.cli.run import add_run_options, exit_code, load, load_controller, run_scenario
-from ves_twin.errors import FileAccessError, InvalidInputError, UnknownNameError, VesTwinError
+from ves_twin.cli.exit_codes import exit_code
+from ves_twin.cli.run import add_run_options, load, load_controller, run_scenario
+from ves_twin.core.errors import FileAccessError, InvalidInputError, UnknownNameError, VesTwinError
 
 OF_A_RUN = {
     "--set": "settings",
@@ -43,7 +44,7 @@ def execute(arguments: argparse.Namespace) -> int:
     if arguments.live:
         _refuse(arguments, NOT_LIVE, "with --live")
         return _live(arguments)
-    from ves_twin.rerun_log.viewer import open_viewer
+    from ves_twin.report.rerun.viewer import open_viewer
 
     path = Path(arguments.scenario)
     is_recording = path.is_dir() or path.suffix in {".parquet", ".arrows", ".rrd"}
@@ -58,8 +59,8 @@ def execute(arguments: argparse.Namespace) -> int:
     if path.suffix == ".rrd":
         check_rrd(path)
         return open_viewer(path, arguments.web)
-    from ves_twin.recording.files import load_recording
-    from ves_twin.rerun_log.write import write_rrd
+    from ves_twin.core.recording.files import load_recording
+    from ves_twin.report.rerun.write import write_rrd
 
     with tempfile.TemporaryDirectory(prefix="ves_twin-") as scratch:
         rrd = write_rrd(load_recording(path), Path(scratch) / "run.rrd")
@@ -92,7 +93,7 @@ def _check_something_is_there(path: Path) -> None:
 
 def _run_folders(folder: Path) -> list[str]:
     """Folders in a folder that hold a recording."""
-    from ves_twin.recording.stream import FILE_NAME, STREAM_NAME
+    from ves_twin.core.recording.stream import FILE_NAME, STREAM_NAME
 
     if not folder.is_dir():
         return []

@@ -6,14 +6,14 @@ from typing import final
 
 import numpy as np
 
-from ves_twin.compiled import compiled
 from ves_twin.control.controller import ControlTask, PlatformController
-from ves_twin.control.emulated import EmulatedSystem
 from ves_twin.control.readings import Readings
-from ves_twin.errors import InvalidInputError
-from ves_twin.kinematics.rotations import matrix_from_angles
-from ves_twin.kinematics.wrenches import rotate_wrench, sensor_to_top
-from ves_twin.types import FloatArray
+from ves_twin.core.compiled import compiled
+from ves_twin.core.errors import InvalidInputError
+from ves_twin.core.types import FloatArray
+from ves_twin.mechanics.emulated import EmulatedSystem
+from ves_twin.mechanics.kinematics.rotations import matrix_from_angles
+from ves_twin.mechanics.kinematics.wrenches import rotate_wrench, sensor_to_top
 
 
 @final

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from ves_twin.gravity_model.gravity_model import GravityModel
-from ves_twin.kinematics.puma560 import Puma560
-from ves_twin.kinematics.stewart import StewartGeometry
-from ves_twin.types import FloatArray
+from ves_twin.core.types import FloatArray
+from ves_twin.mechanics.gravity.gravity_model import GravityModel
+from ves_twin.mechanics.kinematics.puma560 import Puma560
+from ves_twin.mechanics.kinematics.stewart import StewartGeometry
 
 
 @dataclass(frozen=True)

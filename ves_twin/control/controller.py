@@ -6,10 +6,10 @@ import abc
 from dataclasses import dataclass
 
 from ves_twin.control.belief import Belief
-from ves_twin.control.emulated import EmulatedSystem
-from ves_twin.control.motion import PlatformMotion
 from ves_twin.control.readings import Readings
-from ves_twin.types import FloatArray
+from ves_twin.core.types import FloatArray
+from ves_twin.mechanics.emulated import EmulatedSystem
+from ves_twin.mechanics.joint_motion import PlatformMotion
 
 
 @dataclass(frozen=True)

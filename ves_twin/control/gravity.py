@@ -10,9 +10,9 @@ import numpy as np
 
 from ves_twin.control.belief import Belief
 from ves_twin.control.readings import Readings
-from ves_twin.gravity_model.learned import LearnedGravity
-from ves_twin.gravity_model.quick_gravity import QuickGravity
-from ves_twin.types import FloatArray
+from ves_twin.core.types import FloatArray
+from ves_twin.mechanics.gravity.learned import LearnedGravity
+from ves_twin.mechanics.gravity.quick_gravity import QuickGravity
 
 
 class TruthPort(Protocol):

@@ -8,7 +8,7 @@ import numpy as np
 
 from ves_twin.control.belief import Belief
 from ves_twin.control.readings import Readings
-from ves_twin.types import FloatArray
+from ves_twin.core.types import FloatArray
 
 
 @final

@@ -6,9 +6,9 @@ from enum import StrEnum
 
 import numpy as np
 
-from ves_twin.compiled import compiled
-from ves_twin.errors import InvalidInputError
-from ves_twin.types import FloatArray, Record
+from ves_twin.core.compiled import compiled
+from ves_twin.core.errors import InvalidInputError
+from ves_twin.core.types import FloatArray, Record
 
 PARAMETERS = np.dtype(
     [

@@ -7,8 +7,8 @@ from typing import final
 
 import numpy as np
 
-from ves_twin.control.motion import PlatformMotion, quintic
-from ves_twin.types import FloatArray
+from ves_twin.core.types import FloatArray
+from ves_twin.mechanics.joint_motion import PlatformMotion, quintic
 
 AXES = 6
 

@@ -8,10 +8,10 @@ from typing import final
 import numpy as np
 
 from ves_twin.control.gravity import GravityCompensation, GravityTask
-from ves_twin.control.motion import JointMotion, PlatformMotion
 from ves_twin.control.readings import Readings
-from ves_twin.errors import InvalidInputError
-from ves_twin.types import FloatArray
+from ves_twin.core.errors import InvalidInputError
+from ves_twin.core.types import FloatArray
+from ves_twin.mechanics.joint_motion import JointMotion, PlatformMotion
 
 AHEAD = 3
 """Points beyond a record's end: the spline looks two ahead, from the last cycle on."""

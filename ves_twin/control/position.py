@@ -5,9 +5,9 @@ from __future__ import annotations
 from typing import final
 
 from ves_twin.control.controller import ControlTask, PlatformController
-from ves_twin.control.motion import Hold, PlatformMotion
 from ves_twin.control.readings import Readings
-from ves_twin.types import FloatArray
+from ves_twin.core.types import FloatArray
+from ves_twin.mechanics.joint_motion import Hold, PlatformMotion
 
 
 @final

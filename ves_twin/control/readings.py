@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from ves_twin.types import FloatArray
+from ves_twin.core.types import FloatArray
 
 
 @dataclass(frozen=True)

@@ -15,7 +15,7 @@ from ves_twin.control.gravity import (
 )
 from ves_twin.control.played import learned_wrench
 from ves_twin.control.position import PositionController
-from ves_twin.plugins import Registry, lacks
+from ves_twin.core.plugins import Registry, lacks
 
 PLATFORM_CONTROLLERS: Registry[type[PlatformController]] = Registry(
     "ves_twin.controllers",

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from ves_twin.compiled import compiled
-from ves_twin.kinematics.stewart import leg_lengths
-from ves_twin.types import FloatArray
+from ves_twin.core.compiled import compiled
+from ves_twin.core.types import FloatArray
+from ves_twin.mechanics.kinematics.stewart import leg_lengths
 
 SAFE, NOT_A_POSE = 0, -1
 

@@ -6,7 +6,7 @@ from typing import final
 
 from ves_twin.control.gravity import GravityCompensation
 from ves_twin.control.readings import Readings
-from ves_twin.types import FloatArray
+from ves_twin.core.types import FloatArray
 
 
 @final

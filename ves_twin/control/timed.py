@@ -7,9 +7,9 @@ from typing import final
 
 import numpy as np
 
-from ves_twin.control.motion import JointMotion, PlatformMotion
 from ves_twin.control.played import AHEAD, spline_points
-from ves_twin.types import FloatArray
+from ves_twin.core.types import FloatArray
+from ves_twin.mechanics.joint_motion import JointMotion, PlatformMotion
 
 
 @final

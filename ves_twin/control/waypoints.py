@@ -5,8 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import final
 
-from ves_twin.control.motion import PlatformMotion, quintic
-from ves_twin.types import FloatArray
+from ves_twin.core.types import FloatArray
+from ves_twin.mechanics.joint_motion import PlatformMotion, quintic
 
 
 @dataclass(frozen=True)

@@ -8,8 +8,8 @@ from itertools import pairwise
 import numpy as np
 from scipy.stats import norm
 
+from ves_twin.core.types import FloatArray
 from ves_twin.diagnosis.whitening import Whitening
-from ves_twin.types import FloatArray
 
 BANDS = 12
 """Frequency bands, geometric from two lines up."""

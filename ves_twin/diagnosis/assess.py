@@ -7,14 +7,14 @@ from dataclasses import dataclass, replace
 import numpy as np
 from scipy.stats import norm
 
+from ves_twin.core.types import FloatArray, SingleArray
 from ves_twin.diagnosis.adequacy import cells, misfit
-from ves_twin.diagnosis.bank import Bank
 from ves_twin.diagnosis.evidence import Evidence
 from ves_twin.diagnosis.prewhitened import Prewhitened
 from ves_twin.diagnosis.refine import Fit, bare_residual, refine, residual_about
-from ves_twin.diagnosis.screen import Screen, Suspect
+from ves_twin.diagnosis.screen import Candidate, Screen
+from ves_twin.diagnosis.signature_library import SignatureLibrary
 from ves_twin.diagnosis.whitening import Whitening
-from ves_twin.types import FloatArray, SingleArray
 
 ROUNDS = 3
 """Linearisations at most for the commissioning errors of one record."""
@@ -45,7 +45,7 @@ class Assessment:
     screen: Screen
     z: FloatArray
     left: FloatArray
-    suspects: list[Suspect]
+    suspects: list[Candidate]
     misfit: float
     commissioning: Fit | None
     bends: float = 0.0
@@ -84,7 +84,7 @@ class Assessment:
 
 def assess(
     measured: SingleArray,
-    bank: Bank,
+    bank: SignatureLibrary,
     whitening: Whitening,
     effect: float,
     level: float,
@@ -148,7 +148,7 @@ def _look(evidence: Evidence, screen: Screen, fit: Fit | None) -> Assessment:
     return Assessment(evidence, screen, z, left, screen.suspects(z), worst, fit)
 
 
-def pull_limit(bank: Bank, alpha: float) -> float:
+def pull_limit(bank: SignatureLibrary, alpha: float) -> float:
     """Declared sd that the largest commissioning error of a rig in order passes with alpha.
 
     It catches what the library lacks and the commissioning parameters would swallow: a cause that

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import numpy as np
 
+from ves_twin.core.types import FloatArray
 from ves_twin.diagnosis.evidence import Evidence
 from ves_twin.diagnosis.linearise import Linearisation
 from ves_twin.diagnosis.refine import refine
 from ves_twin.diagnosis.whitening import Whitening
-from ves_twin.types import FloatArray
 
 
 def detectability(

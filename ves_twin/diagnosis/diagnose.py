@@ -5,28 +5,28 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
+from ves_twin.core.errors import UnknownNameError
+from ves_twin.core.recording.recording import Recording
+from ves_twin.core.workers import Workers
+from ves_twin.diagnosis.assemble_verdict import Findings, assemble_verdict
 from ves_twin.diagnosis.assess import assess, pull_limit
-from ves_twin.diagnosis.bank import Bank, build_bank, cached_bank
 from ves_twin.diagnosis.both_views import both_views, is_firm
-from ves_twin.diagnosis.compose import Findings, compose
-from ves_twin.diagnosis.conclude import HeldOut, conclude
+from ves_twin.diagnosis.decide import HeldOut, decide
 from ves_twin.diagnosis.differential import differential
 from ves_twin.diagnosis.disagreement import Alone, disagreement
-from ves_twin.diagnosis.explain import Desk, Explanation, explain
-from ves_twin.diagnosis.forward import Forward, Programme
+from ves_twin.diagnosis.explain import Explanation, FitContext, explain
+from ves_twin.diagnosis.forward import Excitation, Forward
 from ves_twin.diagnosis.likeness import check_likeness
 from ves_twin.diagnosis.next_experiment import separations
 from ves_twin.diagnosis.null import cached_thresholds
-from ves_twin.diagnosis.observe import Observed, observe
+from ves_twin.diagnosis.preprocess import Dataset, preprocess
 from ves_twin.diagnosis.runs import Progress, Runs, silent
 from ves_twin.diagnosis.settings import Settings
+from ves_twin.diagnosis.signature_library import SignatureLibrary, build_bank, cached_bank
 from ves_twin.diagnosis.tolerances import cached_scale, check_commissioned, naming_limit
 from ves_twin.diagnosis.verdict import Basis, Kind, Proposal, Verdict
 from ves_twin.diagnosis.whitening import Whitening, whitening_of
 from ves_twin.diagnosis.widened import Widened, widening
-from ves_twin.errors import UnknownNameError
-from ves_twin.recording.recording import Recording
-from ves_twin.workers import Workers
 
 
 def diagnose(
@@ -37,7 +37,7 @@ def diagnose(
     commissioning: Sequence[Recording] = (),
     standstill: Recording | None = None,
     baseline: Sequence[Recording] = (),
-    next_programmes: Sequence[Programme] | Callable[[], Sequence[Programme]] = (),
+    next_programmes: Sequence[Excitation] | Callable[[], Sequence[Excitation]] = (),
     exclude: Sequence[str] = (),
     settings: Settings | None = None,
     progress: Progress = silent,
@@ -101,7 +101,7 @@ class _Material:
     held_out: tuple[Recording, ...]
     standstill: Recording | None
     baseline: tuple[Recording, ...]
-    next_programmes: Sequence[Programme] | Callable[[], Sequence[Programme]]
+    next_programmes: Sequence[Excitation] | Callable[[], Sequence[Excitation]]
     exclude: tuple[str, ...]
     scale: float | None
 
@@ -135,7 +135,7 @@ class _View:
     ) -> _View:
         """Look; the forward's tolerances are `widened` times the declared ones."""
         recordings, standstill = material.recordings, material.standstill
-        seen = observe(forward, recordings, workers, chosen.rate)
+        seen = preprocess(forward, recordings, workers, chosen.rate)
         whitening = whitening_of(seen.runs, standstill)
         if material.baseline:
             usual = material.baseline
@@ -162,14 +162,14 @@ class _View:
         seen, chosen, first = findings.seen, findings.settings, findings.first
         basis = _basis(material)
         if not self.loud:
-            return compose(findings, Kind.NOTHING, basis, material.exclude)
-        desk = Desk(first, findings.limits, chosen, progress)
+            return assemble_verdict(findings, Kind.NOTHING, basis, material.exclude)
+        desk = FitContext(first, findings.limits, chosen, progress)
         if alone and not _one_is_enough(desk):
-            return compose(findings, Kind.UNKNOWN, basis, material.exclude)
+            return assemble_verdict(findings, Kind.UNKNOWN, basis, material.exclude)
         held_out, still, workers = material.held_out, material.standstill, seen.runs.workers
         own = seen.runs.forward  # tuned to this rig where there is a baseline
         held = HeldOut.of(own, held_out, still, chosen, workers) if held_out else None
-        end = conclude(desk, own, (*material.recordings, *held_out), held, still)
+        end = decide(desk, own, (*material.recordings, *held_out), held, still)
         found, kind = end.found, end.kind
         ambiguous = kind is Kind.AMBIGUOUS
         proposals = _next(seen.runs, found, material.next_programmes) if ambiguous else ()
@@ -188,35 +188,35 @@ class _View:
             proposals=proposals,
             apart=apart,
         )
-        return compose(findings, kind, basis, material.exclude)
+        return assemble_verdict(findings, kind, basis, material.exclude)
 
 
-def _one_is_enough(desk: Desk) -> bool:
+def _one_is_enough(desk: FitContext) -> bool:
     """Whether a single cause leaves noise."""
     found = explain(desk.first, desk.thresholds, desk.settings, desk.progress, pairs=False)
     return found is not None and found.adequate
 
 
 def _changed(
-    seen: Observed,
+    seen: Dataset,
     whitening: Whitening,
     recordings: Sequence[Recording],
     baseline: Sequence[Recording],
     standstill: Recording | None,
     settings: Settings,
-) -> tuple[Observed, Whitening]:
+) -> tuple[Dataset, Whitening]:
     """The record about the rig as its baseline shows it, and its noise."""
 
-    def again(tuned: Forward) -> Observed:
-        return observe(tuned, recordings, seen.runs.workers, settings.rate)
+    def again(tuned: Forward) -> Dataset:
+        return preprocess(tuned, recordings, seen.runs.workers, settings.rate)
 
     changed = differential(seen, baseline, again, whitening)
     own = whitening_of(changed.seen.runs, standstill)
     return changed.seen, replace(own, level=own.level * changed.noise)
 
 
-def _bank(seen: Observed, settings: Settings, progress: Progress) -> Bank:
-    def build() -> Bank:
+def _bank(seen: Dataset, settings: Settings, progress: Progress) -> SignatureLibrary:
+    def build() -> SignatureLibrary:
         check_likeness(seen, seen.runs.one(seen.runs.origin))  # before minutes of simulation
         return build_bank(seen.runs, progress=progress)
 
@@ -246,14 +246,14 @@ def _scale(
 ) -> float | None:
     if not commissioning:
         return None
-    rigs = [observe(forward, [recording], workers, chosen.rate) for recording in commissioning]
+    rigs = [preprocess(forward, [recording], workers, chosen.rate) for recording in commissioning]
     return cached_scale([(rig.runs, rig.measured) for rig in rigs], chosen.cache)
 
 
 def _next(
     runs: Runs,
     found: Explanation | None,
-    programmes: Sequence[Programme] | Callable[[], Sequence[Programme]],
+    programmes: Sequence[Excitation] | Callable[[], Sequence[Excitation]],
 ) -> tuple[Proposal, ...]:
     if found is None:
         return ()

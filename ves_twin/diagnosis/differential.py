@@ -2,23 +2,23 @@
 
 from __future__ import annotations
 
-import hashlib
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 
+from ves_twin.core.errors import InvalidInputError
+from ves_twin.core.recording.recording import Recording
+from ves_twin.core.types import FloatArray, SingleArray
 from ves_twin.diagnosis.evidence import Evidence
-from ves_twin.diagnosis.forward import Channel, Forward, Hypothesis, Parameter, Programme
-from ves_twin.diagnosis.lacking import CHANGE, PARAMETERS, Lacking
+from ves_twin.diagnosis.forward import Excitation, Forward, Parameter
+from ves_twin.diagnosis.forward_wrapper import ForwardWrapper
 from ves_twin.diagnosis.linearise import linearise, with_bends
-from ves_twin.diagnosis.observe import Observed, observe
+from ves_twin.diagnosis.preprocess import Dataset, preprocess
 from ves_twin.diagnosis.refine import refine
 from ves_twin.diagnosis.runs import Runs
+from ves_twin.diagnosis.unmodelled_dynamics import CHANGE, PARAMETERS, Lacking
 from ves_twin.diagnosis.whitening import Whitening
-from ves_twin.errors import InvalidInputError
-from ves_twin.recording.recording import Recording
-from ves_twin.types import FloatArray, SingleArray
 
 KEPT = 0.3
 """Share of a commissioning sd that a rig is allowed to change by between two recordings."""
@@ -36,14 +36,14 @@ class Differential:
         noise: sd of its noise against that of one recording.
     """
 
-    seen: Observed
+    seen: Dataset
     noise: float
 
 
 def differential(
-    seen: Observed,
+    seen: Dataset,
     baseline: Sequence[Recording],
-    again: Callable[[Forward], Observed],
+    again: Callable[[Forward], Dataset],
     whitening: Whitening,
 ) -> Differential:
     """Tune the commissioning parameters on the baseline, and take what then stays off the record.
@@ -79,17 +79,17 @@ def differential(
 
 
 @dataclass(frozen=True)
-class Tuned:
+class Tuned(ForwardWrapper):
     """A forward whose commissioning parameters were found on its own rig.
 
+    Departures count from the rig's own values.
+
     Attributes:
-        forward: the one with nominal values.
         tuned: its parameters with those of the rig as nominal, and KEPT of their sd, or CHANGE of
             what they were tuned by if that is more: it stands for what the model lacks.
         lacking: traces that may grow and turn, by programme.
     """
 
-    forward: Forward
     tuned: tuple[Parameter, ...]
     lacking: tuple[Lacking, ...] = ()
 
@@ -116,34 +116,16 @@ class Tuned:
     @property
     def identity(self) -> str:
         """Of the forward, the values and the traces."""
-        told = f"{self.forward.identity} {[(p.nominal, p.sd) for p in self.parameters]}"
-        digest = hashlib.sha256(told.encode())
-        for trace in self.lacking:
-            digest.update(trace.programme.encode() + trace.traces.tobytes())
-        return digest.hexdigest()[:16]
+        traces = (trace.programme.encode() + trace.traces.tobytes() for trace in self.lacking)
+        return self.identified(f"{[(p.nominal, p.sd) for p in self.parameters]}", b"".join(traces))
 
     @property
     def parameters(self) -> tuple[Parameter, ...]:
         """The tuned ones, and what the lacking physics may do."""
         return (*self.tuned, *PARAMETERS) if self.lacking else self.tuned
 
-    @property
-    def channels(self) -> tuple[Channel, ...]:
-        """Those of the forward."""
-        return self.forward.channels
-
-    @property
-    def drive(self) -> tuple[str, ...]:
-        """That of the forward."""
-        return self.forward.drive
-
-    @property
-    def hypotheses(self) -> tuple[Hypothesis, ...]:
-        """Those of the forward; departures count from the rig's own values."""
-        return self.forward.hypotheses
-
     def simulate(
-        self, programme: Programme, values: Mapping[str, float], refined: bool = False
+        self, programme: Excitation, values: Mapping[str, float], refined: bool = False
     ) -> FloatArray:
         """As the forward, at the rig's own values where nothing else is said."""
         own = {p.name: p.nominal for p in self.tuned if not p.per_recording} | dict(values)
@@ -155,11 +137,11 @@ class Tuned:
         return rows
 
 
-def _usual(seen: Observed, baseline: Sequence[Recording]) -> tuple[SingleArray, int]:
+def _usual(seen: Dataset, baseline: Sequence[Recording]) -> tuple[SingleArray, int]:
     """Mean baseline of each programme (rows, c), and the fewest recordings of one."""
     runs = seen.runs
     rate = runs.programmes[0].rate
-    others = [observe(runs.forward, [recording], runs.workers, rate) for recording in baseline]
+    others = [preprocess(runs.forward, [recording], runs.workers, rate) for recording in baseline]
     pieces, fewest = [], len(others)
     for k, programme in enumerate(runs.programmes):
         same = [

@@ -6,12 +6,12 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 from ves_twin.diagnosis.assess import assess, pull_limit
-from ves_twin.diagnosis.bank import Bank
 from ves_twin.diagnosis.explain import explain
 from ves_twin.diagnosis.null import Thresholds
-from ves_twin.diagnosis.observe import Observed
+from ves_twin.diagnosis.preprocess import Dataset
 from ves_twin.diagnosis.runs import Progress, silent
 from ves_twin.diagnosis.settings import Settings
+from ves_twin.diagnosis.signature_library import SignatureLibrary
 from ves_twin.diagnosis.slices import of_recording
 from ves_twin.diagnosis.whitening import Whitening
 
@@ -34,8 +34,8 @@ class Alone:
 
 
 def disagreement(
-    seen: Observed,
-    bank: Bank,
+    seen: Dataset,
+    bank: SignatureLibrary,
     whitening: Whitening,
     limits: Thresholds,
     settings: Settings,

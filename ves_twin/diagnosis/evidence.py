@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from ves_twin.core.types import SingleArray
 from ves_twin.diagnosis.runs import Runs
 from ves_twin.diagnosis.whitening import Whitening
-from ves_twin.types import SingleArray
 
 
 @dataclass(frozen=True)

@@ -6,9 +6,9 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from ves_twin.core.types import FloatArray
 from ves_twin.diagnosis.adequacy import Cell, cells, misfit
 from ves_twin.diagnosis.assess import Assessment, pull_limit
-from ves_twin.diagnosis.bank import build_bank
 from ves_twin.diagnosis.evidence import Evidence
 from ves_twin.diagnosis.forward import Hypothesis
 from ves_twin.diagnosis.linearise import Linearisation, renewed
@@ -16,9 +16,9 @@ from ves_twin.diagnosis.null import Thresholds
 from ves_twin.diagnosis.probability import probabilities
 from ves_twin.diagnosis.refine import Fit, bare_residual, refine, residual_about
 from ves_twin.diagnosis.runs import Progress, silent
-from ves_twin.diagnosis.screen import Screen, Suspect
+from ves_twin.diagnosis.screen import Candidate, Screen
 from ves_twin.diagnosis.settings import Settings
-from ves_twin.types import FloatArray
+from ves_twin.diagnosis.signature_library import build_bank
 
 HOPELESS = 4.0
 """A fit with this many times the chi^2 of the best is not worth new nuisance columns."""
@@ -81,7 +81,7 @@ class Explanation:
 
 
 @dataclass(frozen=True)
-class Desk:
+class FitContext:
     """What all stages work with."""
 
     first: Assessment
@@ -109,14 +109,14 @@ def explain(
     Returns:
         The best explanation, adequate or not; None if the library is empty or fits nothing.
     """
-    desk = Desk(first, thresholds, settings, progress)
+    desk = FitContext(first, thresholds, settings, progress)
     single = _singles(desk)
     if single is None or single.adequate or not pairs:
         return single
     return _pairs(desk, single) or single
 
 
-def _singles(desk: Desk) -> Explanation | None:
+def _singles(desk: FitContext) -> Explanation | None:
     """Suspects near the likeliest, two at least; all, where none of those leaves noise.
 
     Two, so that the page has a rival to show.
@@ -133,7 +133,9 @@ def _singles(desk: Desk) -> Explanation | None:
     return replace(found, hopeless=tuple(fit for fit in fits if fit.causes not in judged))
 
 
-def _tried(desk: Desk, suspects: list[Suspect], others: list[Fit]) -> tuple[Explanation, list[Fit]]:
+def _tried(
+    desk: FitContext, suspects: list[Candidate], others: list[Fit]
+) -> tuple[Explanation, list[Fit]]:
     """Suspects fitted and judged beside what was fitted before; every fit that was made."""
     first = desk.first
     start = _start(first)
@@ -185,7 +187,7 @@ def _job(
     return _Job(evidence, causes, shift, start.local, start.step_share)
 
 
-def _refined(jobs: list[_Job], desk: Desk, what: str) -> list[Fit]:
+def _refined(jobs: list[_Job], desk: FitContext, what: str) -> list[Fit]:
     fits: list[Fit] = []
     for fit in desk.first.evidence.runs.workers.map(_Job.run, jobs):
         desk.progress(len(fits) / len(jobs), what)
@@ -210,7 +212,7 @@ def _start(first: Assessment) -> _Start:
     return _Start(last.shift, last.local, last.step_share)
 
 
-def _settled(evidence: Evidence, fits: list[Fit], desk: Desk) -> list[Fit]:
+def _settled(evidence: Evidence, fits: list[Fit], desk: FitContext) -> list[Fit]:
     """Fits by columns computed at the leader: what rivals share of the commissioning errors.
 
     Hopeless rivals stay as they are. Where a rival leads then, once more at its own.
@@ -233,7 +235,7 @@ def _again(evidence: Evidence, fit: Fit, rounds: int) -> Fit:
     return refine(evidence, fit.causes, fit.shift, fit.local, rounds, fit.step_share)
 
 
-def _starts(first: Assessment, suspect: Suspect) -> list[FloatArray]:
+def _starts(first: Assessment, suspect: Candidate) -> list[FloatArray]:
     """The screen's scaled size, and the unscaled size of the bank nearest to the record."""
     rows = first.screen.bank.entries(suspect.hypothesis)
     match = first.screen.match(first.z)[rows]
@@ -243,7 +245,7 @@ def _starts(first: Assessment, suspect: Suspect) -> list[FloatArray]:
     return [suspect.sizes, other] if apart else [suspect.sizes]
 
 
-def judge(desk: Desk, fits: list[Fit]) -> Explanation:
+def judge(desk: FitContext, fits: list[Fit]) -> Explanation:
     """Whiten by what the best fit leaves, fit again, weigh the rivals, test what is left."""
     first, settings = desk.first, desk.settings
     runs = first.evidence.runs
@@ -283,7 +285,7 @@ def judge(desk: Desk, fits: list[Fit]) -> Explanation:
     )
 
 
-def _commissioning(desk: Desk, evidence: Evidence, leader: Fit) -> Fit:
+def _commissioning(desk: FitContext, evidence: Evidence, leader: Fit) -> Fit:
     """The best fit without a cause, from the first look, and beside the leader.
 
     Beside the leader: what it moves, where commissioning may have moved it too, stays. Columns are
@@ -299,7 +301,7 @@ def _commissioning(desk: Desk, evidence: Evidence, leader: Fit) -> Fit:
     return _again(evidence, best, desk.settings.rounds)
 
 
-def _second(desk: Desk, evidence: Evidence, fit: Fit, allowance: float) -> float:
+def _second(desk: FitContext, evidence: Evidence, fit: Fit, allowance: float) -> float:
     """Best score of a further cause beside a fit: by the nominal bank, then by one at the fit."""
     bank = desk.first.screen.bank
     z = residual_about(evidence, fit, bank.base)
@@ -311,8 +313,8 @@ def _second(desk: Desk, evidence: Evidence, fit: Fit, allowance: float) -> float
 
 
 def suspects_at(
-    desk: Desk, evidence: Evidence, fit: Fit
-) -> tuple[tuple[Hypothesis, ...], list[Suspect]]:
+    desk: FitContext, evidence: Evidence, fit: Fit
+) -> tuple[tuple[Hypothesis, ...], list[Candidate]]:
     """Further causes as a bank linearised at a fit sees them: the likeliest by the nominal bank."""
     bank = desk.first.screen.bank
     about = residual_about(evidence, fit, bank.base)
@@ -325,7 +327,7 @@ def suspects_at(
     return rest, Screen(local, evidence.whitening, fit.free).suspects(z)
 
 
-def _pairs(desk: Desk, single: Explanation) -> Explanation | None:
+def _pairs(desk: FitContext, single: Explanation) -> Explanation | None:
     """Pairs from the bank in closed form, and second causes beside the two best single ones."""
     first, library = desk.first, desk.first.screen.bank.hypotheses
     starts: dict[frozenset[str], tuple[tuple[Hypothesis, ...], list[FloatArray]]] = {}

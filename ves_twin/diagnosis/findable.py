@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
+from ves_twin.core.types import FloatArray
 from ves_twin.diagnosis.screen import Screen
-from ves_twin.types import FloatArray
 
 TWINS_FROM = 0.95
 """Cosine of two marginalised signatures above which causes are called twins."""

@@ -6,18 +6,18 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from ves_twin.core.errors import InvalidInputError
+from ves_twin.core.recording.recording import POSES, Recording
+from ves_twin.core.workers import Workers
 from ves_twin.diagnosis.evidence import Evidence
 from ves_twin.diagnosis.forward import Forward
 from ves_twin.diagnosis.gain import Gain, held_out_gain
 from ves_twin.diagnosis.grid import AnalysisGrid
 from ves_twin.diagnosis.linearise import linearise
-from ves_twin.diagnosis.observe import FEWEST_POSES, FEWEST_ROWS, observe
+from ves_twin.diagnosis.preprocess import FEWEST_POSES, FEWEST_ROWS, preprocess
 from ves_twin.diagnosis.refine import Fit, refine
 from ves_twin.diagnosis.settings import Settings
 from ves_twin.diagnosis.whitening import whitening_of
-from ves_twin.errors import InvalidInputError
-from ves_twin.recording.recording import POSES, Recording
-from ves_twin.workers import Workers
 
 LEARNT = 0.7
 """Share of the time that is fitted; the rest is forecast."""
@@ -55,7 +55,7 @@ def forecast(
     if not before or not after:
         return None
     try:
-        early, late = (observe(forward, part, workers, rate) for part in (before, after))
+        early, late = (preprocess(forward, part, workers, rate) for part in (before, after))
         noise, whitening = (whitening_of(part.runs, standstill) for part in (early, late))
     except InvalidInputError:  # all of them together could be looked at, so it is the holes
         return None

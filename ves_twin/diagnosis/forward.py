@@ -11,10 +11,10 @@ from typing import Protocol
 
 import numpy as np
 
+from ves_twin.core.errors import InvalidInputError, UnknownNameError
+from ves_twin.core.recording.recording import POSES, Recording
+from ves_twin.core.types import FloatArray
 from ves_twin.diagnosis.grid import RATE
-from ves_twin.errors import InvalidInputError, UnknownNameError
-from ves_twin.recording.recording import POSES, Recording
-from ves_twin.types import FloatArray
 
 LEVELS = 5
 """Sizes of a one-parameter hypothesis in the bank: a factor of 2 to 4 apart, which the amplitude
@@ -135,7 +135,7 @@ class Hypothesis:
 
 
 @dataclass(frozen=True)
-class Programme:
+class Excitation:
     """What was fed into the plant: drive signals on one clock.
 
     Attributes:
@@ -170,7 +170,7 @@ class Programme:
     @staticmethod
     def of(
         recording: Recording, drive: tuple[str, ...], name: str = "", rate: float = RATE
-    ) -> Programme:
+    ) -> Excitation:
         """What a recording says was fed in; poses at rest have `POSES` as the clock of their rows.
 
         Raises:
@@ -181,11 +181,11 @@ class Programme:
         poses = recording.info.log == POSES
         if poses and len(steps):
             fed = {signal: recording[signal] for signal in drive}
-            return Programme(name, recording.time, fed, True, rate)
+            return Excitation(name, recording.time, fed, True, rate)
         if len(steps) < 2 or np.ptp(steps) > 0.01 * np.mean(steps):
             raise InvalidInputError("recording time", "uneven or too few rows", "equidistant rows")
         fed = {signal: recording[signal] for signal in drive}
-        return Programme(name, recording.time, fed, False, rate)
+        return Excitation(name, recording.time, fed, False, rate)
 
 
 class Forward(Protocol):
@@ -212,7 +212,7 @@ class Forward(Protocol):
         """The library of causes."""
 
     def simulate(
-        self, programme: Programme, values: Mapping[str, float], refined: bool = False
+        self, programme: Excitation, values: Mapping[str, float], refined: bool = False
     ) -> FloatArray:
         """Noise-free channels (n, channels) at the programme's rows; NaN if the plant fails there.
 

@@ -7,12 +7,12 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
+from ves_twin.core.types import FloatArray, IntArray, SingleArray
 from ves_twin.diagnosis.linearise import STIFF, Linearisation, linearise, strangeness
 from ves_twin.diagnosis.metric import Metric
 from ves_twin.diagnosis.refine import Fit
 from ves_twin.diagnosis.runs import Runs
 from ves_twin.diagnosis.whitening import Whitening
-from ves_twin.types import FloatArray, IntArray, SingleArray
 
 BLOCK_SECONDS = 0.5
 """Length of the stretches of time that are drawn again: longer than a residual remembers."""

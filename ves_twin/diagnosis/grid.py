@@ -8,7 +8,7 @@ from functools import cached_property
 import numpy as np
 from scipy import signal
 
-from ves_twin.types import BoolArray, FloatArray, SingleArray
+from ves_twin.core.types import BoolArray, FloatArray, SingleArray
 
 RATE = 100.0
 """Analysis rate aimed at [Hz]: the rig's modes end near 40 Hz (thesis 5.2)."""

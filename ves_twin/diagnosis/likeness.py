@@ -6,9 +6,9 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from ves_twin.diagnosis.observe import Observed
-from ves_twin.errors import InvalidInputError
-from ves_twin.types import FloatArray, SingleArray
+from ves_twin.core.errors import InvalidInputError
+from ves_twin.core.types import FloatArray, SingleArray
+from ves_twin.diagnosis.preprocess import Dataset
 
 FACTORS = {
     "rad": {"degrees": 180.0 / np.pi},
@@ -34,7 +34,7 @@ MOVES = 20.0
 """A prediction moves if its spread is so many sd of its noise."""
 
 
-def check_likeness(seen: Observed, nominal: SingleArray) -> None:
+def check_likeness(seen: Dataset, nominal: SingleArray) -> None:
     """Hold each measured column against the nominal prediction of every channel.
 
     Faults change a channel; they do not multiply it by 57.3, turn it round or make two channels
@@ -52,7 +52,7 @@ def check_likeness(seen: Observed, nominal: SingleArray) -> None:
             raise InvalidInputError(f"{channel} of {programme.name}", came, expected)
 
 
-def _oddities(seen: Observed, nominal: SingleArray, rows: slice) -> Iterator[tuple[str, str, str]]:
+def _oddities(seen: Dataset, nominal: SingleArray, rows: slice) -> Iterator[tuple[str, str, str]]:
     channels = [seen.runs.forward.channels[c] for c in seen.runs.columns]
     measured, expected = _centred(seen.measured[rows]), _centred(nominal[rows])
     spread, should = np.std(measured, axis=0), np.std(expected, axis=0)

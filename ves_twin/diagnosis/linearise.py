@@ -6,8 +6,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from ves_twin.core.types import FloatArray, IntArray, SingleArray
 from ves_twin.diagnosis.runs import Progress, Runs, silent
-from ves_twin.types import FloatArray, IntArray, SingleArray
 
 STEP_SD = 2.0
 """Prior sd of the discretisation column. A first-order integrator is off by twice what halving its

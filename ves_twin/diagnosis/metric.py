@@ -8,7 +8,7 @@ from functools import cached_property
 import numpy as np
 from scipy.linalg import cho_factor, cho_solve, solve_triangular
 
-from ves_twin.types import FloatArray
+from ves_twin.core.types import FloatArray
 
 
 @dataclass(frozen=True)

@@ -7,13 +7,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ves_twin.diagnosis.forward import Programme
+from ves_twin.core.types import FloatArray, IntArray
+from ves_twin.diagnosis.forward import Excitation
 from ves_twin.diagnosis.linearise import linearise
 from ves_twin.diagnosis.metric import Metric
 from ves_twin.diagnosis.refine import Fit
 from ves_twin.diagnosis.runs import Runs
 from ves_twin.diagnosis.whitening import whitening_declared
-from ves_twin.types import FloatArray, IntArray
 
 NUISANCES = 16
 """Commissioning parameters of the plant that are marginalised where there are more: those that go
@@ -24,12 +24,12 @@ along most with what parts the rivals. Each costs two runs of every programme.""
 class Separation:
     """A programme and the chi^2 by which it is expected to part the two likest rivals."""
 
-    programme: Programme
+    programme: Excitation
     chi2: float
 
 
 def separations(
-    there: Runs, rivals: Sequence[Fit], programmes: Sequence[Programme]
+    there: Runs, rivals: Sequence[Fit], programmes: Sequence[Excitation]
 ) -> list[Separation]:
     """Candidate programmes by falling separation of the rivals.
 

@@ -9,15 +9,15 @@ from functools import cached_property
 import numpy as np
 from scipy.stats import chi2
 
+from ves_twin.core.types import FloatArray, SingleArray
 from ves_twin.diagnosis.adequacy import cells, misfit_floor
 from ves_twin.diagnosis.assess import assess, first_look, pull_limit
-from ves_twin.diagnosis.bank import Bank, bank_key, write_arrays
 from ves_twin.diagnosis.linearise import STEP_SD
 from ves_twin.diagnosis.prewhitened import Prewhitened
 from ves_twin.diagnosis.runs import Progress, silent
 from ves_twin.diagnosis.settings import Settings
+from ves_twin.diagnosis.signature_library import SignatureLibrary, bank_key, write_arrays
 from ves_twin.diagnosis.whitening import Whitening
-from ves_twin.types import FloatArray, SingleArray
 
 DECLARED = ((0.9, 1.12), (0.0, 0.25))
 """Ranges that a null rig's noise is drawn from: sd against the noise model's, lag-one colour."""
@@ -51,13 +51,13 @@ class Thresholds:
     bends: float = 0.0
 
 
-def noise_floor(bank: Bank, alpha: float) -> float:
+def noise_floor(bank: SignatureLibrary, alpha: float) -> float:
     """chi^2 of the best of a bank's independent hypotheses that white noise passes with alpha."""
     return float(chi2.isf(alpha / max(len(bank.hypotheses), 1), 1))
 
 
 def null_thresholds(
-    bank: Bank,
+    bank: SignatureLibrary,
     whitening: Whitening,
     count: int,
     alpha: float,
@@ -103,7 +103,7 @@ def null_thresholds(
 class _NullStudy:
     """What one null rig is drawn from and judged by."""
 
-    bank: Bank
+    bank: SignatureLibrary
     whitening: Whitening
     effect: float
     misfit: float
@@ -154,7 +154,7 @@ def _draws(
 
 
 def cached_thresholds(
-    bank: Bank, whitening: Whitening, settings: Settings, progress: Progress = silent
+    bank: SignatureLibrary, whitening: Whitening, settings: Settings, progress: Progress = silent
 ) -> Thresholds:
     """The thresholds from a file beside the bank's, computed and written where there is none.
 

@@ -6,20 +6,20 @@ import json
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass
 
-from ves_twin.diagnosis.bank import build_bank, cached_bank
+from ves_twin.core.errors import InvalidInputError, UnknownNameError
+from ves_twin.core.workers import Workers
+from ves_twin.diagnosis.aliases import Lookalike, lookalikes
 from ves_twin.diagnosis.findable import findable_sizes
-from ves_twin.diagnosis.forward import Forward, Programme, check_forward
-from ves_twin.diagnosis.lookalikes import Lookalike, lookalikes
+from ves_twin.diagnosis.forward import Excitation, Forward, check_forward
 from ves_twin.diagnosis.null import cached_thresholds, noise_floor
-from ves_twin.diagnosis.observe import FEWEST_ROWS
+from ves_twin.diagnosis.preprocess import FEWEST_ROWS
 from ves_twin.diagnosis.runs import Progress, Runs, silent
 from ves_twin.diagnosis.screen import Screen
 from ves_twin.diagnosis.settings import Settings
+from ves_twin.diagnosis.signature_library import build_bank, cached_bank
 from ves_twin.diagnosis.slices import of_channels, of_time
 from ves_twin.diagnosis.tolerances import naming_limit
 from ves_twin.diagnosis.whitening import whitening_declared
-from ves_twin.errors import InvalidInputError, UnknownNameError
-from ves_twin.workers import Workers
 
 SCHEMA = 1
 """Version of the plan as JSON; fields are added without a new one."""
@@ -77,7 +77,7 @@ class Plan:
 
 def plan_recording(
     forward: Forward,
-    programme: Programme,
+    programme: Excitation,
     *,
     channels: Sequence[str] = (),
     seconds: float | None = None,

@@ -7,10 +7,10 @@ from functools import cached_property
 
 import numpy as np
 
-from ves_twin.diagnosis.bank import Bank
+from ves_twin.core.types import FloatArray
 from ves_twin.diagnosis.metric import Metric
+from ves_twin.diagnosis.signature_library import SignatureLibrary
 from ves_twin.diagnosis.whitening import Whitening
-from ves_twin.types import FloatArray
 
 
 @dataclass(frozen=True)
@@ -25,7 +25,7 @@ class Prewhitened:
         whitening: whose filters and mixing are taken.
     """
 
-    bank: Bank
+    bank: SignatureLibrary
     whitening: Whitening
 
     def columns(self, own: Whitening) -> FloatArray:

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
+from ves_twin.core.types import FloatArray
 from ves_twin.diagnosis.search import Point, Search
-from ves_twin.types import FloatArray
 
 REACH = 6.0
 """Sd to either side of the fit that are simulated: what sticks and slips by chance, some 5 sigma,

@@ -6,13 +6,13 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from ves_twin.core.types import FloatArray, IntArray, SingleArray
 from ves_twin.diagnosis.evidence import Evidence
 from ves_twin.diagnosis.forward import Hypothesis
 from ves_twin.diagnosis.linearise import STEP_SD, Linearisation, renewed
 from ves_twin.diagnosis.probe import probe
 from ves_twin.diagnosis.runs import Runs
 from ves_twin.diagnosis.search import FARTHEST, WORTHLESS, Point, Search
-from ves_twin.types import FloatArray, IntArray, SingleArray
 
 NEAR = 0.3
 """Commissioning sd within which nuisance columns are taken to hold; absent parameters: 6 %."""

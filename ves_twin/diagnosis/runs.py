@@ -9,10 +9,10 @@ from itertools import pairwise
 
 import numpy as np
 
-from ves_twin.diagnosis.forward import Forward, Hypothesis, Parameter, Programme
+from ves_twin.core.types import BoolArray, FloatArray, IntArray, SingleArray
+from ves_twin.core.workers import Workers
+from ves_twin.diagnosis.forward import Excitation, Forward, Hypothesis, Parameter
 from ves_twin.diagnosis.grid import AnalysisGrid
-from ves_twin.types import BoolArray, FloatArray, IntArray, SingleArray
-from ves_twin.workers import Workers
 
 Progress = Callable[[float, str], None]
 """Called with the share done, 0 to 1, and what is being done."""
@@ -46,7 +46,7 @@ class Runs:
     """
 
     forward: Forward
-    programmes: tuple[Programme, ...]
+    programmes: tuple[Excitation, ...]
     columns: tuple[int, ...]
     workers: Workers = field(default_factory=Workers, compare=False)
     holes: tuple[BoolArray, ...] = ()
@@ -86,7 +86,7 @@ class Runs:
         return tuple(self._grid(programme) for programme in self.programmes)
 
     @staticmethod
-    def _grid(programme: Programme) -> AnalysisGrid:
+    def _grid(programme: Excitation) -> AnalysisGrid:
         if programme.poses:
             return AnalysisGrid(programme.period, 1)
         return AnalysisGrid.of(programme.period, programme.rate)

@@ -7,18 +7,18 @@ from functools import cached_property
 
 import numpy as np
 
-from ves_twin.diagnosis.bank import Bank
+from ves_twin.core.types import FloatArray
 from ves_twin.diagnosis.metric import Metric
 from ves_twin.diagnosis.prewhitened import Prewhitened
+from ves_twin.diagnosis.signature_library import SignatureLibrary
 from ves_twin.diagnosis.whitening import Whitening
-from ves_twin.types import FloatArray
 
 AMPLITUDE = (0.35, 2.8)
 """How far a signature may be scaled: beyond, the size next to it in the bank is nearer."""
 
 
 @dataclass(frozen=True)
-class Suspect:
+class Candidate:
     """A hypothesis as the screen sees it.
 
     Attributes:
@@ -46,7 +46,7 @@ class Screen:
         shaped: the bank before this record's colour and level; made here if None.
     """
 
-    bank: Bank
+    bank: SignatureLibrary
     whitening: Whitening
     extra: FloatArray | None = None
     shaped: Prewhitened | None = None
@@ -93,7 +93,7 @@ class Screen:
         power = np.sum(self.shapes**2, axis=0) - np.sum(self._reduced**2, axis=0)
         return np.asarray(np.maximum(power[self.bank.shape] * self.bank.factor**2, 1e-12))
 
-    def suspects(self, z: FloatArray) -> list[Suspect]:
+    def suspects(self, z: FloatArray) -> list[Candidate]:
         """Every hypothesis at its best size, by falling score.
 
         The score is max over a of 2 a <s, z> - a^2 <s, s>, a within AMPLITUDE.
@@ -110,12 +110,12 @@ class Screen:
             if len(rows):
                 k = int(rows[np.argmax(score[rows])])
                 sizes = amplitude[k] * self.bank.sizes[k]
-                best.append(Suspect(h, float(score[k]), sizes, k))
+                best.append(Candidate(h, float(score[k]), sizes, k))
         return sorted(best, key=lambda suspect: -suspect.score)
 
     def pairs(
         self, z: FloatArray, count: int, amplitude: tuple[float, float] = AMPLITUDE
-    ) -> list[tuple[Suspect, Suspect]]:
+    ) -> list[tuple[Candidate, Candidate]]:
         """The best pairs of hypotheses, by closed-form fit of every two signatures.
 
         Args:
@@ -132,14 +132,14 @@ class Screen:
         low, high = amplitude
         bad = (a < low) | (a > high) | (self.bank.owner[:, None] == self.bank.owner)
         score = np.triu(np.where(bad | bad.T, -np.inf, score), 1)
-        found: dict[tuple[int, int], tuple[Suspect, Suspect]] = {}
+        found: dict[tuple[int, int], tuple[Candidate, Candidate]] = {}
         for flat in np.argsort(-score, axis=None):
             i, j = divmod(int(flat), len(p))
             if score[i, j] <= 0.0 or len(found) == count:
                 break
             key = (int(self.bank.owner[i]), int(self.bank.owner[j]))
             if key not in found:
-                first = Suspect(key[0], float(score[i, j]), a[i, j] * self.bank.sizes[i], i)
-                second = Suspect(key[1], float(score[i, j]), a[j, i] * self.bank.sizes[j], j)
+                first = Candidate(key[0], float(score[i, j]), a[i, j] * self.bank.sizes[i], i)
+                second = Candidate(key[1], float(score[i, j]), a[j, i] * self.bank.sizes[j], j)
                 found[key] = (first, second)
         return list(found.values())

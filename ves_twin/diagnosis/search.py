@@ -6,9 +6,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ves_twin.core.types import FloatArray, IntArray, SingleArray
 from ves_twin.diagnosis.evidence import Evidence
 from ves_twin.diagnosis.linearise import GUESS, Linearisation
-from ves_twin.types import FloatArray, IntArray, SingleArray
 
 ITERATIONS = 40
 """Steps at most from one linearisation."""

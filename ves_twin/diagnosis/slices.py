@@ -7,13 +7,13 @@ from dataclasses import replace
 
 import numpy as np
 
-from ves_twin.diagnosis.bank import Bank
+from ves_twin.core.types import IntArray
 from ves_twin.diagnosis.linearise import Linearisation
 from ves_twin.diagnosis.runs import Runs
-from ves_twin.types import IntArray
+from ves_twin.diagnosis.signature_library import SignatureLibrary
 
 
-def of_recording(bank: Bank, number: int) -> Bank:
+def of_recording(bank: SignatureLibrary, number: int) -> SignatureLibrary:
     """The bank of one recording alone; what is drawn anew for the others is gone.
 
     Args:
@@ -29,7 +29,7 @@ def of_recording(bank: Bank, number: int) -> Bank:
     return _part(bank, part, [*kept, len(axes)], rows)
 
 
-def of_channels(bank: Bank, columns: Sequence[int]) -> Bank:
+def of_channels(bank: SignatureLibrary, columns: Sequence[int]) -> SignatureLibrary:
     """The bank of some of the channels.
 
     Args:
@@ -48,7 +48,7 @@ def of_channels(bank: Bank, columns: Sequence[int]) -> Bank:
     return replace(bank, base=base, bent=bank.bent[..., here])
 
 
-def of_time(bank: Bank, seconds: float) -> Bank:
+def of_time(bank: SignatureLibrary, seconds: float) -> SignatureLibrary:
     """The bank of the first seconds of its one programme: what comes later changes nothing before.
 
     Args:
@@ -64,7 +64,9 @@ def of_time(bank: Bank, seconds: float) -> Bank:
     return _part(bank, part, list(every), np.arange(len(part.times[0])))
 
 
-def _part(bank: Bank, runs: Runs, columns: list[int], rows: IntArray) -> Bank:
+def _part(
+    bank: SignatureLibrary, runs: Runs, columns: list[int], rows: IntArray
+) -> SignatureLibrary:
     base = Linearisation(
         runs,
         runs.origin,

@@ -9,14 +9,19 @@ import numpy as np
 from scipy.optimize import brentq
 from scipy.stats import chi2, norm
 
-from ves_twin.diagnosis.bank import Bank, bank_key, still_predicts, write_arrays
+from ves_twin.core.errors import InvalidInputError
+from ves_twin.core.types import FloatArray, SingleArray
 from ves_twin.diagnosis.evidence import Evidence
 from ves_twin.diagnosis.linearise import linearise
 from ves_twin.diagnosis.refine import bare_residual, refine, residual_about
 from ves_twin.diagnosis.runs import Runs
+from ves_twin.diagnosis.signature_library import (
+    SignatureLibrary,
+    bank_key,
+    still_predicts,
+    write_arrays,
+)
 from ves_twin.diagnosis.whitening import whitening_declared
-from ves_twin.errors import InvalidInputError
-from ves_twin.types import FloatArray, SingleArray
 
 VISIBLE = 3.0
 """A direction counts if one declared sd of it shows with this variance in noise units."""
@@ -106,7 +111,7 @@ def _directions(runs: Runs, measured: SingleArray) -> tuple[FloatArray, FloatArr
     return along, weights[kept]
 
 
-def naming_limit(bank: Bank, scale: float | None) -> float:
+def naming_limit(bank: SignatureLibrary, scale: float | None) -> float:
     """kappa: declared sd beyond which a departure is called a fault, and no commissioning error.
 
     kappa = s z(1 - alpha / 2 m), m nuisances.

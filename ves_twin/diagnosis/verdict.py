@@ -8,16 +8,16 @@ from dataclasses import asdict, dataclass, field, replace
 from enum import StrEnum
 from pathlib import Path
 
+from ves_twin.core.units import unit_tail
+from ves_twin.core.whole_file import write_whole
+from ves_twin.data.quality.check import Check
+from ves_twin.diagnosis.aliases import Lookalike
 from ves_twin.diagnosis.build_up.result import Inseparable, Left, Proved
 from ves_twin.diagnosis.disagreement import Alone
-from ves_twin.diagnosis.exhibit import Exhibit
 from ves_twin.diagnosis.gain import Gain
-from ves_twin.diagnosis.leftover import Leftover
-from ves_twin.diagnosis.lookalikes import Lookalike
+from ves_twin.diagnosis.report_traces import ReportTraces
+from ves_twin.diagnosis.residual_structure import ResidualStructure
 from ves_twin.diagnosis.rivals import Rival
-from ves_twin.quality.check import Check
-from ves_twin.units import unit_tail
-from ves_twin.whole_file import write_whole
 
 MANY = 6
 """Parameters of a cause that are told one by one."""
@@ -201,7 +201,7 @@ class Verdict:
     gain: Gain | None = None
     forecast: Gain | None = None
     tuned: Mapping[str, Estimate] = field(default_factory=dict)
-    leftover: Leftover | None = None
+    leftover: ResidualStructure | None = None
     suspect: str = ""
     rivals: tuple[Rival, ...] = ()
     smallest_findable: Mapping[str, Findable] = field(default_factory=dict)
@@ -219,7 +219,7 @@ class Verdict:
     left: Mapping[str, Left] = field(default_factory=dict)
     inseparable: tuple[Inseparable, ...] = ()
     nearest: tuple[Cause, ...] = ()
-    exhibit: Exhibit | None = field(default=None, repr=False, compare=False)
+    exhibit: ReportTraces | None = field(default=None, repr=False, compare=False)
     schema: int = SCHEMA
 
     def to_dict(self) -> dict[str, object]:

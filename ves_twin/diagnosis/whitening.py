@@ -10,10 +10,10 @@ import numpy as np
 from scipy.linalg import solve_toeplitz
 from scipy.signal import lfilter
 
+from ves_twin.core.errors import InvalidInputError
+from ves_twin.core.recording.recording import Recording
+from ves_twin.core.types import BoolArray, FloatArray, SingleArray
 from ves_twin.diagnosis.runs import Runs
-from ves_twin.errors import InvalidInputError
-from ves_twin.recording.recording import Recording
-from ves_twin.types import BoolArray, FloatArray, SingleArray
 
 ORDER = 8
 """Order of the autoregression, as in the study behind the method (AR(8))."""

@@ -2,15 +2,13 @@
 
 from __future__ import annotations
 
-import hashlib
-from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
 
-from ves_twin.diagnosis.forward import Channel, Forward, Hypothesis, Parameter, Programme
-from ves_twin.types import FloatArray
+from ves_twin.diagnosis.forward import Parameter
+from ves_twin.diagnosis.forward_wrapper import ForwardWrapper
 
 STEP = 1.2
 """Ratio of the factors that tolerances are widened by, so that banks are used again."""
@@ -20,48 +18,20 @@ LEAST = 1.4
 
 
 @dataclass(frozen=True)
-class Widened:
-    """The same plant, known less well.
+class Widened(ForwardWrapper):
+    """The same plant, known less well: `factor` is on every commissioning sd."""
 
-    Attributes:
-        forward: with the tolerances as declared.
-        factor: on every commissioning sd.
-    """
-
-    forward: Forward
     factor: float
 
     @property
     def identity(self) -> str:
         """Of the forward and the factor."""
-        told = f"{self.forward.identity} widened {self.factor!r}"
-        return hashlib.sha256(told.encode()).hexdigest()[:16]
-
-    @property
-    def channels(self) -> tuple[Channel, ...]:
-        """Those of the forward."""
-        return self.forward.channels
-
-    @property
-    def drive(self) -> tuple[str, ...]:
-        """That of the forward."""
-        return self.forward.drive
+        return self.identified(f"widened {self.factor!r}")
 
     @cached_property
     def parameters(self) -> tuple[Parameter, ...]:
         """With wider sd."""
         return tuple(replace(p, sd=self.factor * p.sd) for p in self.forward.parameters)
-
-    @property
-    def hypotheses(self) -> tuple[Hypothesis, ...]:
-        """Those of the forward."""
-        return self.forward.hypotheses
-
-    def simulate(
-        self, programme: Programme, values: Mapping[str, float], refined: bool = False
-    ) -> FloatArray:
-        """As the forward."""
-        return self.forward.simulate(programme, values, refined)
 
 
 def widening(scale: float | None) -> float:

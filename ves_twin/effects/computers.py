@@ -11,10 +11,10 @@ from typing import ClassVar, final
 
 import numpy as np
 
+from ves_twin.core.errors import InvalidInputError
+from ves_twin.core.types import FloatArray
 from ves_twin.effects.effect import Effect
 from ves_twin.effects.magnitude import Magnitude, Sign
-from ves_twin.errors import InvalidInputError
-from ves_twin.types import FloatArray
 
 _COMPUTERS = ("computers",)
 

@@ -5,9 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import ClassVar, final
 
+from ves_twin.core.types import FloatArray
 from ves_twin.effects.effect import LEGS, Effect
 from ves_twin.effects.magnitude import Magnitude, Sign
-from ves_twin.types import FloatArray
 
 
 @final

@@ -7,10 +7,10 @@ from abc import ABC
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, ClassVar
 
+from ves_twin.core.errors import InvalidInputError, UnknownNameError
+from ves_twin.core.types import FloatArray
+from ves_twin.core.units import unit_tail
 from ves_twin.effects.magnitude import Magnitude
-from ves_twin.errors import InvalidInputError, UnknownNameError
-from ves_twin.types import FloatArray
-from ves_twin.units import unit_tail
 
 if TYPE_CHECKING:
     import mujoco

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 
+from ves_twin.core.errors import InvalidInputError, UnknownNameError
+from ves_twin.core.plugins import Registry, lacks
 from ves_twin.effects import (
     arm,
     computers,
@@ -18,8 +20,6 @@ from ves_twin.effects import (
     valve,
 )
 from ves_twin.effects.effect import Effect
-from ves_twin.errors import InvalidInputError, UnknownNameError
-from ves_twin.plugins import Registry, lacks
 
 _KINDS: tuple[type[Effect], ...] = (
     valve.ValveNull,

@@ -7,20 +7,20 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ves_twin.compiled import compiled
-from ves_twin.control.emulated import EmulatedSystem
+from ves_twin.core.compiled import compiled
+from ves_twin.core.errors import InvalidInputError
+from ves_twin.core.types import FloatArray
 from ves_twin.envs.channels import Channel, Channels
 from ves_twin.envs.commanded_arm import CommandedArm
 from ves_twin.envs.priors import arm_prior
 from ves_twin.envs.rig_env import CYCLES, RigEnv
 from ves_twin.envs.true_state import true_state
-from ves_twin.errors import InvalidInputError
+from ves_twin.mechanics.emulated import EmulatedSystem
 from ves_twin.plant.plant import Plant
 from ves_twin.scenario.schema import Scenario
-from ves_twin.simulator.board import Board
 from ves_twin.simulator.recorder import NoSink
+from ves_twin.simulator.signal_bus import SignalBus
 from ves_twin.simulator.simulator import Simulator
-from ves_twin.types import FloatArray
 
 if TYPE_CHECKING:
     from control import StateSpace
@@ -117,7 +117,7 @@ class ArmEnv(RigEnv[CommandedArm], abc.ABC):
     def _energies(self, poses: FloatArray) -> list[float]:
         return list(map(float, strain_energies(poses, self._home, self._stiffness)))
 
-    def readings(self, board: Board) -> dict[str, FloatArray]:
+    def readings(self, board: SignalBus) -> dict[str, FloatArray]:
         """Measurements and set-points."""
         names = ("sensor.wrench", "gravity.estimate", "arm.q", "arm.torque", "arm.command")
         return {

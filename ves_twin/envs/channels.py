@@ -7,8 +7,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ves_twin.compiled import compiled
-from ves_twin.types import FloatArray
+from ves_twin.core.compiled import compiled
+from ves_twin.core.types import FloatArray
 
 
 @dataclass(frozen=True)

@@ -6,9 +6,9 @@ from typing import final
 
 import numpy as np
 
-from ves_twin.compiled import compiled
-from ves_twin.control.motion import JointMotion
-from ves_twin.types import FloatArray
+from ves_twin.core.compiled import compiled
+from ves_twin.core.types import FloatArray
+from ves_twin.mechanics.joint_motion import JointMotion
 
 
 @final

@@ -7,10 +7,10 @@ from typing import final
 import numpy as np
 
 from ves_twin.control.controller import ControlTask, PlatformController
-from ves_twin.control.motion import Hold, PlatformMotion
 from ves_twin.control.readings import Readings
-from ves_twin.kinematics.stewart import StewartGeometry
-from ves_twin.types import FloatArray
+from ves_twin.core.types import FloatArray
+from ves_twin.mechanics.joint_motion import Hold, PlatformMotion
+from ves_twin.mechanics.kinematics.stewart import StewartGeometry
 
 SLEW = 0.1
 """Fastest change of an offset [m/s]: what the platform does anyway, so that jumps of an action do

@@ -6,8 +6,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ves_twin.compiled import compiled
-from ves_twin.types import FloatArray
+from ves_twin.core.compiled import compiled
+from ves_twin.core.types import FloatArray
 
 FREE_SHARE = 0.9
 """Share of a limit that costs nothing; from there the cost grows linearly to 1 at the limit."""

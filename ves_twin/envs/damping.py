@@ -8,12 +8,12 @@ from typing import ClassVar, final
 import numpy as np
 from pydantic import TypeAdapter, ValidationError
 
+from ves_twin.core.errors import InvalidInputError
+from ves_twin.core.types import FloatArray
 from ves_twin.envs.arm_env import ArmEnv, time_left
 from ves_twin.envs.channels import Channels
-from ves_twin.errors import InvalidInputError
 from ves_twin.scenario.fields import Pose
 from ves_twin.scenario.schema import Scenario
-from ves_twin.types import FloatArray
 
 
 @final

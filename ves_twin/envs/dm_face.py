@@ -9,8 +9,8 @@ import gymnasium as gym
 import numpy as np
 from dm_env import specs
 
+from ves_twin.core.types import FloatArray
 from ves_twin.envs.rig_env import rig_env
-from ves_twin.types import FloatArray
 
 
 @final

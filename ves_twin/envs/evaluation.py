@@ -10,21 +10,21 @@ from dataclasses import asdict, dataclass
 import gymnasium as gym
 import numpy as np
 
-from ves_twin.code_file import load_class
-from ves_twin.envs import ENVIRONMENTS
-from ves_twin.envs.baselines import BASELINES
-from ves_twin.envs.policy import Policy
-from ves_twin.envs.rig_env import rig_env
-from ves_twin.envs.wrappers import RandomRigs
-from ves_twin.errors import (
+from ves_twin.core.code_file import load_class
+from ves_twin.core.errors import (
     ControllerError,
     InvalidInputError,
     UnknownNameError,
     VesTwinError,
     one_line,
 )
-from ves_twin.types import FloatArray
-from ves_twin.workers import Workers
+from ves_twin.core.types import FloatArray
+from ves_twin.core.workers import Workers
+from ves_twin.envs import ENVIRONMENTS
+from ves_twin.envs.baselines import BASELINES
+from ves_twin.envs.policy import Policy
+from ves_twin.envs.rig_env import rig_env
+from ves_twin.envs.wrappers import RandomRigs
 
 RESAMPLES = 2000
 """Of the bootstrap; its intervals then repeat to a few per cent of their width."""

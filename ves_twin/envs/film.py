@@ -9,14 +9,14 @@ import mujoco
 import numpy as np
 from PIL import Image
 
+from ves_twin.core.errors import InvalidInputError
+from ves_twin.core.recording.recording import Recording
+from ves_twin.core.types import IntArray
+from ves_twin.core.whole_file import check_writable, whole_file
 from ves_twin.envs.picture import Picture, check_off_screen
-from ves_twin.errors import InvalidInputError
 from ves_twin.plant.statics import place_rig
-from ves_twin.recording.recording import Recording
-from ves_twin.rerun_log.poses import MACHINE_ARM, MACHINE_POSE, first_present
-from ves_twin.rerun_log.rig import DrawnRig
-from ves_twin.types import IntArray
-from ves_twin.whole_file import check_writable, whole_file
+from ves_twin.report.rerun.poses import MACHINE_ARM, MACHINE_POSE, first_present
+from ves_twin.report.rerun.rig import DrawnRig
 
 FRAME = 0.08
 """Time between two pictures [s]; the format counts in hundredths."""

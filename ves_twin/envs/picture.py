@@ -10,7 +10,7 @@ import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
-from ves_twin.errors import VesTwinError
+from ves_twin.core.errors import VesTwinError
 
 WIDTH, HEIGHT = 640, 480
 """Pixels; MuJoCo's own off-screen buffer."""

@@ -7,18 +7,18 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from ves_twin.control.emulated import EmulatedSystem
+from ves_twin.core.types import FloatArray
 from ves_twin.envs.channels import Channels
+from ves_twin.mechanics.emulated import EmulatedSystem
 from ves_twin.plant.plant import Plant
 from ves_twin.scenario.schema import Scenario
-from ves_twin.types import FloatArray
 
 if TYPE_CHECKING:
     from control import StateSpace
 
 
 @dataclass(frozen=True)
-class Briefing:
+class TaskSpec:
     """What a policy may know of an environment; nothing in it tells the truth about a plant.
 
     Attributes:
@@ -47,7 +47,7 @@ class Policy(abc.ABC):
 
     @classmethod
     @abc.abstractmethod
-    def build(cls, briefing: Briefing) -> Policy:
+    def build(cls, briefing: TaskSpec) -> Policy:
         """A policy for an environment; raises InvalidInputError where it does not fit."""
 
     @abc.abstractmethod

@@ -6,11 +6,11 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ves_twin.control.emulated import EmulatedSystem
-from ves_twin.planning.puma import puma_chain
+from ves_twin.core.types import FloatArray
+from ves_twin.mechanics.emulated import EmulatedSystem
 from ves_twin.plant.plant import Plant
+from ves_twin.plant.puma_chain import puma_chain
 from ves_twin.scenario.schema import Scenario
-from ves_twin.types import FloatArray
 
 if TYPE_CHECKING:
     from control import StateSpace
@@ -34,7 +34,7 @@ def arm_prior(scenario: Scenario, rate: float) -> StateSpace:
         States (Y, Y', P, P', q, q', c, i) (36,) as deviations; inputs are the actions a (3,);
         outputs are deviations of `platform.pose`, `arm.q` and `arm.command` (12,).
 
-    Source: thesis 4.3.2, 5.1; `ves_twin.planning.lagging_base`.
+    Source: thesis 4.3.2, 5.1; `ves_twin.mechanics.planning.lagging_base`.
     """
     from control import StateSpace  # slow to import
 

@@ -9,13 +9,13 @@ from typing import ClassVar, final
 import numpy as np
 from pydantic import TypeAdapter, ValidationError
 
+from ves_twin.core.errors import InvalidInputError
+from ves_twin.core.types import FloatArray
 from ves_twin.envs.arm_env import JOINT_UNITS, ArmEnv, time_left
 from ves_twin.envs.channels import Channel, Channels
-from ves_twin.errors import InvalidInputError
 from ves_twin.scenario.fields import Joints
 from ves_twin.scenario.schema import Scenario
-from ves_twin.simulator.board import Board
-from ves_twin.types import FloatArray
+from ves_twin.simulator.signal_bus import SignalBus
 
 ENERGY = 0.1
 """Strain energy that costs as much as a radian from the goal [J]: about the peak of the planned
@@ -70,7 +70,7 @@ class VibrationFreeReach(ArmEnv):
         self._away = away[-1]
         return self.strain(poses) / ENERGY + sum(away)
 
-    def readings(self, board: Board) -> dict[str, FloatArray]:
+    def readings(self, board: SignalBus) -> dict[str, FloatArray]:
         """Measurements, set-points, goal."""
         return {**super().readings(board), "goal": self._goal}
 

@@ -10,21 +10,21 @@ from typing import TYPE_CHECKING, Any, ClassVar, Generic
 import gymnasium as gym
 import numpy as np
 
-from ves_twin.control.emulated import EmulatedSystem
+from ves_twin.core.errors import InvalidInputError, UnknownNameError
+from ves_twin.core.types import FloatArray
 from ves_twin.envs.channels import Channels
 from ves_twin.envs.costs import Costs, Limits
 from ves_twin.envs.picture import Picture
-from ves_twin.envs.policy import Briefing
+from ves_twin.envs.policy import TaskSpec
 from ves_twin.envs.settled_rigs import Hand, SettledRig, SettledRigs
 from ves_twin.envs.true_state import Place, read_state, state_place, true_state
-from ves_twin.errors import InvalidInputError, UnknownNameError
+from ves_twin.mechanics.emulated import EmulatedSystem
 from ves_twin.plant.plant import Plant
 from ves_twin.scenario.schema import Scenario
-from ves_twin.simulator.board import Board
 from ves_twin.simulator.outcome import Outcome
 from ves_twin.simulator.recorder import Sink
+from ves_twin.simulator.signal_bus import SignalBus
 from ves_twin.simulator.simulator import Simulator
-from ves_twin.types import FloatArray
 
 if TYPE_CHECKING:
     from control import StateSpace
@@ -131,7 +131,7 @@ class RigEnv(gym.Env[FloatArray, FloatArray], abc.ABC, Generic[Hand]):
         """
 
     @abc.abstractmethod
-    def readings(self, board: Board) -> dict[str, FloatArray]:
+    def readings(self, board: SignalBus) -> dict[str, FloatArray]:
         """The observation's values by name; bounds are applied by the caller."""
 
     @abc.abstractmethod
@@ -146,10 +146,10 @@ class RigEnv(gym.Env[FloatArray, FloatArray], abc.ABC, Generic[Hand]):
     def prior(self) -> StateSpace:
         """The linear model that the believed rig has: actions in, deviations of readings out."""
 
-    def briefing(self) -> Briefing:
+    def briefing(self) -> TaskSpec:
         """What a policy may know before it begins: tables, times, beliefs, the linear model."""
         emulated = self._scenario.platform.emulated
-        return Briefing(
+        return TaskSpec(
             observations=self.observations,
             actions=self.actions,
             step=self.span,

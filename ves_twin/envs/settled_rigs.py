@@ -6,7 +6,7 @@ from collections import OrderedDict
 from dataclasses import dataclass
 from typing import Generic, TypeVar
 
-from ves_twin.errors import InvalidInputError
+from ves_twin.core.errors import InvalidInputError
 from ves_twin.plant.plant import Plant
 from ves_twin.scenario.schema import Scenario
 from ves_twin.simulator.noise import NoiseStreams

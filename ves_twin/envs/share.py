@@ -12,8 +12,8 @@ import numpy as np
 from gymnasium.vector import AutoresetMode, SyncVectorEnv
 
 import ves_twin.envs  # noqa: F401  (a process that begins here knows the ids)
-from ves_twin.errors import VesTwinError, one_line
-from ves_twin.types import FloatArray
+from ves_twin.core.errors import VesTwinError, one_line
+from ves_twin.core.types import FloatArray
 
 
 @dataclass(frozen=True)

@@ -7,20 +7,20 @@ from typing import TYPE_CHECKING, ClassVar, final
 
 import numpy as np
 
-from ves_twin.control.motion import PlatformMotion, Sine
+from ves_twin.core.errors import InvalidInputError
+from ves_twin.core.types import FloatArray
 from ves_twin.envs.arm_env import POSE_LIMIT, POSE_UNITS, WRENCH_UNITS
 from ves_twin.envs.channels import Channel, Channels
 from ves_twin.envs.commanded_legs import CommandedLegs
 from ves_twin.envs.priors import legs_prior
 from ves_twin.envs.rig_env import RigEnv
 from ves_twin.envs.true_state import true_state
-from ves_twin.errors import InvalidInputError
+from ves_twin.mechanics.joint_motion import PlatformMotion, Sine
 from ves_twin.plant.plant import Plant
 from ves_twin.scenario.schema import Scenario
-from ves_twin.simulator.board import Board
 from ves_twin.simulator.recorder import NoSink
+from ves_twin.simulator.signal_bus import SignalBus
 from ves_twin.simulator.simulator import Simulator
-from ves_twin.types import FloatArray
 
 if TYPE_CHECKING:
     from control import StateSpace
@@ -144,7 +144,7 @@ class PlatformTracking(RigEnv[CommandedLegs]):
         error[3:] *= RADIUS
         return float(np.linalg.norm(error)) / MILLIMETRE
 
-    def readings(self, board: Board) -> dict[str, FloatArray]:
+    def readings(self, board: SignalBus) -> dict[str, FloatArray]:
         """Measurements, set-points, reference."""
         home, now = self._costs.home_lengths, self.sim.time
         return {

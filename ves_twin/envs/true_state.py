@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 
-from ves_twin.compiled import compiled
-from ves_twin.kinematics.rotations import angles_from_matrix, matrix_from_quaternion
+from ves_twin.core.compiled import compiled
+from ves_twin.core.types import FloatArray, IntArray
+from ves_twin.mechanics.kinematics.rotations import angles_from_matrix, matrix_from_quaternion
 from ves_twin.simulator.rig import Rig
-from ves_twin.types import FloatArray, IntArray
 
 Place = tuple[FloatArray, int, IntArray, FloatArray]
 """Live qpos of a rig, first index of the platform, indices of the joints, origin at home [m]."""

@@ -5,16 +5,16 @@ from __future__ import annotations
 import mujoco
 import numpy as np
 
-from ves_twin.errors import InvalidInputError, one_line
-from ves_twin.gravity_model.gravity_model import gravity_in_top
-from ves_twin.kinematics.stewart import StewartGeometry
+from ves_twin.core.errors import InvalidInputError, one_line
+from ves_twin.core.types import FloatArray
+from ves_twin.mechanics.gravity.gravity_model import gravity_in_top
+from ves_twin.mechanics.kinematics.stewart import StewartGeometry
 from ves_twin.plant.arm_part import arm_part
 from ves_twin.plant.fidelity import Fidelity
 from ves_twin.plant.leg_part import leg_part
 from ves_twin.plant.parameters import LEGS, ParameterTable
 from ves_twin.plant.plant import Plant, mjcf_part
 from ves_twin.plant.tendon_legs import add_tendon_legs
-from ves_twin.types import FloatArray
 
 JOINTS = ("q1", "q2", "q3")
 

@@ -5,15 +5,15 @@ from __future__ import annotations
 import mujoco
 import numpy as np
 
-from ves_twin.errors import InvalidInputError
-from ves_twin.kinematics.stewart import pose_jacobian
+from ves_twin.core.errors import InvalidInputError
+from ves_twin.core.types import FloatArray
+from ves_twin.mechanics.kinematics.stewart import pose_jacobian
 from ves_twin.plant.assembly import assemble, compile_model
 from ves_twin.plant.hydraulics import fill_chambers
 from ves_twin.plant.layout import Layout
 from ves_twin.plant.physics import chambers
 from ves_twin.plant.plant import Plant
 from ves_twin.plant.statics import place_rig, static_leg_forces
-from ves_twin.types import FloatArray
 
 _STEPS = 8
 """Runge-Kutta steps over the time; twice as many change a droop of 0.5 deg by less than 1e-6."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from enum import StrEnum
 
-from ves_twin.errors import InvalidInputError
+from ves_twin.core.errors import InvalidInputError
 
 
 class Fidelity(StrEnum):

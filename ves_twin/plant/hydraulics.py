@@ -1,6 +1,6 @@
 """Hydraulics: which form of the hydraulics a plant has, and the numbers of the pressure form.
 
-Its codes are part of the compiled loop and enter the hash of `ves_twin.compiled`.
+Its codes are part of the compiled loop and enter the hash of `ves_twin.core.compiled`.
 """
 
 from __future__ import annotations
@@ -9,9 +9,9 @@ from enum import StrEnum
 
 import numpy as np
 
-from ves_twin.errors import InvalidInputError
+from ves_twin.core.errors import InvalidInputError
+from ves_twin.core.types import FloatArray
 from ves_twin.plant.parameters import ParameterTable
-from ves_twin.types import FloatArray
 
 LINEAR_FORM, PRESSURE_FORM = 0, 1
 """Codes of the compiled loop."""

@@ -7,9 +7,9 @@ from dataclasses import dataclass
 import mujoco
 import numpy as np
 
+from ves_twin.core.types import FloatArray, IntArray
 from ves_twin.plant.assembly import JOINTS
 from ves_twin.plant.parameters import LEGS
-from ves_twin.types import FloatArray, IntArray
 
 
 @dataclass(frozen=True)

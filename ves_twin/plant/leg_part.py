@@ -5,9 +5,9 @@ from __future__ import annotations
 import mujoco
 import numpy as np
 
-from ves_twin.kinematics.stewart import StewartGeometry
+from ves_twin.core.types import FloatArray
+from ves_twin.mechanics.kinematics.stewart import StewartGeometry
 from ves_twin.plant.parameters import ParameterTable
-from ves_twin.types import FloatArray
 
 
 def leg_frame(geometry: StewartGeometry, leg: int) -> FloatArray:

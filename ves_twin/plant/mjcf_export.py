@@ -9,9 +9,9 @@ from textwrap import fill
 
 import numpy as np
 
+from ves_twin.core.whole_file import write_whole
 from ves_twin.plant.assembly import assemble, compile_model
 from ves_twin.plant.plant import Plant
-from ves_twin.whole_file import write_whole
 
 POINT_INERTIA = 1e-9
 """Inertia [kg m^2] given to point masses: MuJoCo writes no mass of a body that has none."""

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import mujoco
 import numpy as np
 
+from ves_twin.core.types import FloatArray
 from ves_twin.plant.assembly import JOINTS, assemble, compile_model
 from ves_twin.plant.fidelity import Fidelity
 from ves_twin.plant.hydraulics import Hydraulics, chamber_stiffness, fill_chambers
@@ -15,7 +16,6 @@ from ves_twin.plant.parameters import LEGS
 from ves_twin.plant.physics import chambers
 from ves_twin.plant.plant import Plant
 from ves_twin.plant.statics import place_rig, static_leg_forces
-from ves_twin.types import FloatArray
 
 SETTLE_SECONDS = 3.0
 """Time for the preload error of the placed rig to die out: ten time constants of the first mode."""

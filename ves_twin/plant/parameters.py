@@ -9,10 +9,10 @@ from pathlib import Path
 
 import numpy as np
 
-from ves_twin.errors import InvalidInputError, UnknownNameError
-from ves_twin.toml_file import check_schema, read_toml
-from ves_twin.types import FloatArray
-from ves_twin.units import check_unit, to_si, unit_tail
+from ves_twin.core.errors import InvalidInputError, UnknownNameError
+from ves_twin.core.toml_file import check_schema, read_toml
+from ves_twin.core.types import FloatArray
+from ves_twin.core.units import check_unit, to_si, unit_tail
 
 SCHEMA = 1
 """Version of the plant file format."""

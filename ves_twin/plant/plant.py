@@ -10,13 +10,13 @@ from pathlib import Path
 
 import numpy as np
 
+from ves_twin.core.errors import InvalidInputError, UnknownNameError
+from ves_twin.core.resources import beside, find_resource, resource_folder
 from ves_twin.effects.effect import Effect
 from ves_twin.effects.registry import parse_effects
-from ves_twin.errors import InvalidInputError, UnknownNameError
-from ves_twin.gravity_model.chain import DhChain
-from ves_twin.gravity_model.gravity_model import GravityModel
-from ves_twin.kinematics.puma560 import Puma560
-from ves_twin.kinematics.stewart import StewartGeometry
+from ves_twin.mechanics.gravity.gravity_model import GravityModel
+from ves_twin.mechanics.kinematics.puma560 import Puma560
+from ves_twin.mechanics.kinematics.stewart import StewartGeometry
 from ves_twin.plant.fidelity import Fidelity, check_room
 from ves_twin.plant.hydraulics import Hydraulics
 from ves_twin.plant.parameters import (
@@ -25,7 +25,6 @@ from ves_twin.plant.parameters import (
     parse_parameters,
     read_plant_file,
 )
-from ves_twin.resources import beside, find_resource, resource_folder
 
 NOMINAL = "ves2"
 """The plant that has every number."""
@@ -181,7 +180,7 @@ class Plant:
         """M_total and P of the arm's own masses."""
         array = self.parameters.array
         return GravityModel.of(
-            DhChain.of_puma560(self.arm),
+            self.arm.chain,
             array("arm.mass"),
             array("arm.com"),
             self.parameters.number("gravity"),

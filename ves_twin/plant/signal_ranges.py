@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from ves_twin.kinematics.stewart import leg_lengths
+from ves_twin.core.types import FloatArray
+from ves_twin.mechanics.kinematics.stewart import leg_lengths
 from ves_twin.plant.plant import Plant
-from ves_twin.types import FloatArray
 
 TILT = np.pi / 4.0
 """Platform angles stay below this [rad]: the legs' stroke ends earlier."""

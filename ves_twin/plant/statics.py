@@ -7,12 +7,12 @@ from dataclasses import replace
 import mujoco
 import numpy as np
 
-from ves_twin.errors import UnreachableError
-from ves_twin.kinematics.rotations import matrix_from_angles, quaternion_from_angles
-from ves_twin.kinematics.stewart import StewartGeometry
+from ves_twin.core.errors import UnreachableError
+from ves_twin.core.types import FloatArray
+from ves_twin.mechanics.kinematics.rotations import matrix_from_angles, quaternion_from_angles
+from ves_twin.mechanics.kinematics.stewart import StewartGeometry
 from ves_twin.plant.layout import Layout
 from ves_twin.plant.leg_part import leg_frame
-from ves_twin.types import FloatArray
 
 
 def place_rig(

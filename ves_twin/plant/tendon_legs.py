@@ -5,7 +5,7 @@ from __future__ import annotations
 import mujoco
 import numpy as np
 
-from ves_twin.kinematics.stewart import StewartGeometry
+from ves_twin.mechanics.kinematics.stewart import StewartGeometry
 
 LEG_COLOUR = np.array([0.72, 0.55, 0.20, 1.0])
 

@@ -5,10 +5,10 @@ from __future__ import annotations
 import json
 from pathlib import Path
 
+from ves_twin.core.whole_file import write_whole
 from ves_twin.effects.registry import effects_table
 from ves_twin.plant.parameters import SCHEMA
 from ves_twin.plant.plant import Plant
-from ves_twin.whole_file import write_whole
 
 
 def write_plant(plant: Plant, path: Path, note: str = "", name: str = "") -> None:

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 
-from ves_twin.recording.recording import Recording
+from ves_twin.core.recording.recording import Recording
 from ves_twin.report.picture import save_picture
 
 

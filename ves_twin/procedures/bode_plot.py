@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from ves_twin.linear.response import FrequencyResponse
 from ves_twin.procedures.sine_fit import MeasuredResponse
 from ves_twin.report.figure import new_figure
 from ves_twin.report.picture import PICTURE_WIDTH, save_picture
+from ves_twin.simulator.linear.response import FrequencyResponse
 
 HEIGHT = 5.2
 """Height of a picture [inch]."""

@@ -8,16 +8,16 @@ from typing import Annotated, Self
 import numpy as np
 from pydantic import Field, JsonValue, model_validator
 
-from ves_twin.errors import InvalidInputError, UnknownNameError, VesTwinError
+from ves_twin.core.errors import InvalidInputError, UnknownNameError, VesTwinError
+from ves_twin.core.types import FloatArray
+from ves_twin.core.workers import Workers
 from ves_twin.plant.plant import Plant
 from ves_twin.procedures.calibration_files import Fit, write_fit
 from ves_twin.procedures.claims import KNOWN_CLAIMS, Evaluation, Gains, measure_claims
 from ves_twin.procedures.feasible import Feasible
-from ves_twin.procedures.procedure import Account, Conduct, Procedure
-from ves_twin.procedures.workers import carry_out_jobs
+from ves_twin.procedures.procedure import Account, Procedure, RunContext
 from ves_twin.scenario.fields import Part, PerSecond, named
 from ves_twin.simulator.outcome import Outcome
-from ves_twin.types import FloatArray
 
 GAINS = ("gain.low", "gain.high")
 """Leg gains that are fitted like numbers of the plant; the K1 scale is not in the thesis."""
@@ -87,7 +87,7 @@ class CalibratePlant(Procedure):
     verify: bool = True
     workers: Annotated[int, Field(ge=1, le=64)] = 2
 
-    def carry_out(self, conduct: Conduct) -> Account:
+    def carry_out(self, conduct: RunContext) -> Account:
         """Fit, say what pulls against what, and write the plant and its entries."""
         plant = conduct.plant or Plant.load(self.plant)
         for knob in self.knobs:
@@ -132,7 +132,7 @@ class CalibratePlant(Procedure):
         }
 
     def _search(
-        self, plant: Plant, at: FloatArray, low: FloatArray, high: FloatArray, conduct: Conduct
+        self, plant: Plant, at: FloatArray, low: FloatArray, high: FloatArray, conduct: RunContext
     ) -> tuple[FloatArray, list[float], Feasible, dict[str, float]]:
         """Best point found, worst margin of each round, region about it, values at it."""
         reach, rounds = self.reach, 0
@@ -151,22 +151,24 @@ class CalibratePlant(Procedure):
         return at, history, region, values
 
     def _linearise(
-        self, plant: Plant, at: FloatArray, conduct: Conduct, rounds: int
+        self, plant: Plant, at: FloatArray, conduct: RunContext, rounds: int
     ) -> tuple[Feasible, dict[str, float]]:
         points = [at, *(at + self.difference * row for row in np.eye(len(at)))]
         jobs = [self._evaluation(plant, point) for point in points]
         share = 1.0 / (self.rounds + 1 + self.verify)
-        found = carry_out_jobs(
-            measure_claims, jobs, self.workers,
-            lambda done: conduct.progress(share * (rounds + done), f"round {rounds}"),
-        )  # fmt: skip
+        with Workers(self.workers) as workers:
+            found = workers.collect(
+                measure_claims,
+                jobs,
+                lambda done: conduct.progress(share * (rounds + done), f"round {rounds}"),
+            )
         rows = [self._margins(values) for values in found]
         margins = np.array([list(row.values()) for row in rows])
         jacobian = (margins[1:] - margins[0]).T / self.difference
         return Feasible(tuple(rows[0]), margins[0], jacobian), found[0]
 
     def _at_ends(
-        self, plant: Plant, at: FloatArray, ends: FloatArray, conduct: Conduct
+        self, plant: Plant, at: FloatArray, ends: FloatArray, conduct: RunContext
     ) -> dict[str, list[float]]:
         """Worst margin with one knob at each end of its width, measured, not linearised."""
         if not np.all(np.isfinite(ends)):
@@ -175,16 +177,18 @@ class CalibratePlant(Procedure):
             at + ends[i, side] * row for i, row in enumerate(np.eye(len(at))) for side in (0, 1)
         ]
         jobs = [self._evaluation(plant, point) for point in points]
-        found = carry_out_jobs(
-            measure_claims, jobs, self.workers, lambda share: conduct.progress(0.9, "ends")
-        )
+        with Workers(self.workers) as workers:
+            found = workers.collect(
+                measure_claims, jobs, lambda share: conduct.progress(0.9, "ends")
+            )
         worst = [min(self._margins(values).values()) for values in found]
         return {k.name: worst[2 * i : 2 * i + 2] for i, k in enumerate(self.knobs)}
 
     def _worst(self, plant: Plant, points: list[FloatArray]) -> list[float]:
         """Worst margin at each point; minus infinity for a plant that cannot stand."""
         jobs = [self._evaluation(plant, point) for point in points]
-        found = carry_out_jobs(_measure_or_nothing, jobs, self.workers)
+        with Workers(self.workers) as workers:
+            found = workers.collect(_measure_or_nothing, jobs)
         return [min(self._margins(v).values()) if v else -np.inf for v in found]
 
     def _margins(self, values: dict[str, float]) -> dict[str, float]:

@@ -8,19 +8,19 @@ from typing import Annotated
 import numpy as np
 from pydantic import Field
 
-from ves_twin.errors import InvalidInputError
-from ves_twin.gravity_model.alternate import alternate
-from ves_twin.gravity_model.calibration import GravityCalibration
-from ves_twin.gravity_model.identify import identify
-from ves_twin.gravity_model.observations import Observations
-from ves_twin.gravity_model.poses import conditioning
+from ves_twin.core.errors import InvalidInputError
+from ves_twin.core.types import FloatArray
+from ves_twin.mechanics.gravity.calibration import GravityCalibration
+from ves_twin.mechanics.gravity.identify import identify
+from ves_twin.mechanics.gravity.interleaved_split import alternate
+from ves_twin.mechanics.gravity.observations import Observations
+from ves_twin.mechanics.gravity.poses import conditioning
 from ves_twin.plant.plant import Plant
 from ves_twin.procedures.gravity_report import Calibrated, account_of, write_report
 from ves_twin.procedures.held_poses import HeldPosesProcedure
-from ves_twin.procedures.procedure import Account, Conduct, part_of
+from ves_twin.procedures.procedure import Account, RunContext, part_of
 from ves_twin.scenario.fields import named, si
 from ves_twin.simulator.build import belief_of
-from ves_twin.types import FloatArray
 
 
 class Pin(StrEnum):
@@ -44,7 +44,7 @@ class CalibratePoses(HeldPosesProcedure):
     gain_sd: Annotated[float, Field(gt=0, le=1)] = 0.005
     weight: Annotated[float, si("kg"), Field(gt=0, le=20)] = 5.0
 
-    def carry_out(self, conduct: Conduct) -> Account:
+    def carry_out(self, conduct: RunContext) -> Account:
         """Hold, fit, write `gravity.toml`, `report.md` and `residuals.png`.
 
         Raises:
@@ -77,7 +77,7 @@ class CalibratePoses(HeldPosesProcedure):
         return account_of(result)
 
     def _observe(
-        self, conduct: Conduct, plant: Plant, poses: FloatArray, q: FloatArray, seed: int
+        self, conduct: RunContext, plant: Plant, poses: FloatArray, q: FloatArray, seed: int
     ) -> Observations:
         if self.pin is not Pin.WEIGHT:
             return self.read(plant, poses, q, seed, conduct.progress)

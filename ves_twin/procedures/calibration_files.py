@@ -8,12 +8,12 @@ from pathlib import Path
 
 import numpy as np
 
-from ves_twin.json_text import json_text
+from ves_twin.core.json_text import json_text
+from ves_twin.core.types import FloatArray
+from ves_twin.core.whole_file import write_whole
 from ves_twin.plant.plant import Plant
 from ves_twin.plant.write_plant import write_plant
 from ves_twin.procedures.feasible import Feasible
-from ves_twin.types import FloatArray
-from ves_twin.whole_file import write_whole
 
 SOURCE = "docs/calibration.md"
 

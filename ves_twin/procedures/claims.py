@@ -7,13 +7,13 @@ from dataclasses import dataclass
 import numpy as np
 
 from ves_twin.control.leg_loop import EDGE, FilterPlace
-from ves_twin.linear.leg_settings import RATE_GAIN_PER_K2
 from ves_twin.plant.modes import structural_modes
 from ves_twin.plant.plant import Plant
 from ves_twin.procedures.one_axis import OneAxis
 from ves_twin.procedures.stability_bench import StabilityBench
 from ves_twin.scenario.schema import Scenario
 from ves_twin.simulator.floquet import smooth_readings
+from ves_twin.simulator.linear.leg_settings import RATE_GAIN_PER_K2
 from ves_twin.simulator.simulate import simulate
 
 HEAVES = (-0.15, 0.0, 0.15)

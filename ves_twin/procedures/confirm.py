@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ves_twin.control.admittance import AdmittanceController
-from ves_twin.errors import InvalidInputError
+from ves_twin.core.errors import InvalidInputError
 from ves_twin.plant.plant import Plant
 from ves_twin.procedures.growth import oscillation_growth
 from ves_twin.procedures.stability_bench import still

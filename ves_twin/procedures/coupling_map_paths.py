@@ -9,24 +9,24 @@ from typing import Annotated
 import numpy as np
 from pydantic import Field, JsonValue
 
-from ves_twin.control.emulated import EmulatedSystem
-from ves_twin.control.path_motion import path_lengths
-from ves_twin.planning.base_motion import base_motion
-from ves_twin.planning.chain import SerialChain
-from ves_twin.planning.coupling import coupling_length
-from ves_twin.planning.flexible_base import strain_energy
-from ves_twin.planning.hot_spot import hot_spot_path
-from ves_twin.planning.puma import puma_chain
-from ves_twin.planning.timed_path import evenly, rounded, timed_path
+from ves_twin.core.types import FloatArray
+from ves_twin.mechanics.emulated import EmulatedSystem
+from ves_twin.mechanics.path_motion import path_lengths
+from ves_twin.mechanics.planning.base_motion import base_motion
+from ves_twin.mechanics.planning.chain import SerialChain
+from ves_twin.mechanics.planning.coupling import coupling_length
+from ves_twin.mechanics.planning.flexible_base import strain_energy
+from ves_twin.mechanics.planning.hot_spot import hot_spot_path
+from ves_twin.mechanics.planning.timed_path import evenly, rounded, timed_path
 from ves_twin.plant.plant import Plant
+from ves_twin.plant.puma_chain import puma_chain
 from ves_twin.procedures.number_table import write_table
 from ves_twin.procedures.paths_on_rig import PathsOnRig
-from ves_twin.procedures.procedure import Account, Conduct, Procedure, Progress
+from ves_twin.procedures.procedure import Account, Procedure, Progress, RunContext
 from ves_twin.procedures.rig_energy import RigOptions
 from ves_twin.scenario.fields import Joints, Seconds
 from ves_twin.simulator.outcome import Outcome
 from ves_twin.simulator.zero_gravity import zero_gravity_motion
-from ves_twin.types import FloatArray
 
 CYCLE = 1.0 / 80.0
 """Time between two commands to the joints [s]. Source: the beam models' rate, thesis App. E."""
@@ -122,7 +122,7 @@ class CouplingMapPaths(Procedure):
         times = (self.duration, self.rest)
         return PathsOnRig.run(self.rig, plant, seed, self.emulated, paths, times, bare, progress)
 
-    def carry_out(self, conduct: Conduct) -> Account:
+    def carry_out(self, conduct: RunContext) -> Account:
         """Run the paths; write `paths.csv` and `paths_on_rig.csv` with energies over time.
 
         Raises:

@@ -8,14 +8,14 @@ from typing import Annotated
 import numpy as np
 from pydantic import Field, JsonValue
 
+from ves_twin.core.types import FloatArray
+from ves_twin.core.whole_file import whole_file
 from ves_twin.plant.plant import Plant
 from ves_twin.procedures.error_sources import GRAVITY_SOURCES, RIG_SOURCES, ErrorSources
-from ves_twin.procedures.procedure import Account, Conduct, Procedure
+from ves_twin.procedures.procedure import Account, Procedure, RunContext
 from ves_twin.report.picture import save_picture
 from ves_twin.scenario.fields import Seconds
 from ves_twin.simulator.outcome import Outcome
-from ves_twin.types import FloatArray
-from ves_twin.whole_file import whole_file
 
 AXES = ("x", "y", "z", "rx", "ry", "rz")
 
@@ -33,7 +33,7 @@ class EmulationErrorBudget(Procedure):
     duration: Annotated[Seconds, Field(gt=0, le=1e4)] = 20.0
     seed: Annotated[int, Field(ge=0, lt=2**63)] = 0
 
-    def carry_out(self, conduct: Conduct) -> Account:
+    def carry_out(self, conduct: RunContext) -> Account:
         """Run; write `budget.csv` and `budget.png`.
 
         Raises:
@@ -104,7 +104,7 @@ def _without(table: dict[str, FloatArray]) -> float:
     return 1e3 * float(np.linalg.norm(np.concatenate([row[:3] for row in sources[1:]])))
 
 
-def _picture(table: dict[str, FloatArray], conduct: Conduct) -> None:
+def _picture(table: dict[str, FloatArray], conduct: RunContext) -> None:
     from matplotlib.backends.backend_agg import FigureCanvasAgg  # slow to import
     from matplotlib.figure import Figure
 

@@ -8,15 +8,15 @@ from typing import Any
 
 import numpy as np
 
-from ves_twin.errors import VesTwinError
+from ves_twin.core.errors import VesTwinError
+from ves_twin.core.recording.recording import Recording
+from ves_twin.core.types import FloatArray
 from ves_twin.plant.fidelity import Fidelity
 from ves_twin.plant.plant import Plant
 from ves_twin.procedures.procedure import Progress, part_of
-from ves_twin.recording.recording import Recording
 from ves_twin.scenario.schema import Scenario
 from ves_twin.simulator.outcome import Outcome
 from ves_twin.simulator.simulate import simulate
-from ves_twin.types import FloatArray
 
 QUICK: Mapping[str, Any] = {
     "platform.rate": 400.0,

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ves_twin.types import FloatArray
+from ves_twin.core.types import FloatArray
 
 OPPOSED = -0.5
 """Cosine of two margins' gradients below which they pull against each other."""

@@ -7,16 +7,16 @@ from typing import Annotated, Literal, final
 import numpy as np
 from pydantic import Field, JsonValue
 
-from ves_twin.linear.leg_loop import leg_actuator, leg_loop, section
-from ves_twin.linear.leg_settings import LegSettings
-from ves_twin.linear.response import FrequencyResponse, bandwidth, frequency_response
 from ves_twin.plant.plant import Plant
 from ves_twin.procedures.bode_plot import BodePlot
-from ves_twin.procedures.procedure import Account, Conduct, Procedure
+from ves_twin.procedures.procedure import Account, Procedure, RunContext
 from ves_twin.procedures.sine_fit import MeasuredResponse
 from ves_twin.procedures.sweep import Sweep, SweepOptions, sweep_platform
 from ves_twin.scenario.fields import Hertz, Metres
 from ves_twin.scenario.schema import Legs
+from ves_twin.simulator.linear.leg_loop import leg_actuator, leg_loop, section
+from ves_twin.simulator.linear.leg_settings import LegSettings
+from ves_twin.simulator.linear.response import FrequencyResponse, bandwidth, frequency_response
 from ves_twin.simulator.outcome import Outcome
 
 PICTURE = "frequency_response.png"
@@ -43,7 +43,7 @@ class FrequencyResponseTest(Procedure):
     periods: Annotated[int, Field(ge=3, le=1000)] = 12
     held: bool = False
 
-    def carry_out(self, conduct: Conduct) -> Account:
+    def carry_out(self, conduct: RunContext) -> Account:
         """Sweep, compare with the linear model, draw."""
         plant = conduct.plant or Plant.load(self.plant)
         options = SweepOptions(self.amplitude, self.rate, self.periods, self.held)

@@ -7,17 +7,17 @@ from typing import Annotated
 import numpy as np
 from pydantic import Field, JsonValue
 
-from ves_twin.gravity_model.alternate import Pass, alternate
-from ves_twin.gravity_model.observations import Observations
-from ves_twin.gravity_model.sensitivity import AXES
+from ves_twin.core.types import FloatArray
+from ves_twin.core.whole_file import write_whole
+from ves_twin.mechanics.gravity.interleaved_split import Pass, alternate
+from ves_twin.mechanics.gravity.observations import Observations
+from ves_twin.mechanics.gravity.sensitivity import AXES
 from ves_twin.plant.droop import frozen_droop
 from ves_twin.procedures.held_poses import HeldPosesProcedure
-from ves_twin.procedures.procedure import Account, Conduct, part_of
+from ves_twin.procedures.procedure import Account, RunContext, part_of
 from ves_twin.scenario.fields import Seconds, si
 from ves_twin.simulator.build import belief_of
 from ves_twin.simulator.outcome import Outcome
-from ves_twin.types import FloatArray
-from ves_twin.whole_file import write_whole
 
 CONDITIONS = ("position control", "frozen", "tilted base", "same, no turn")
 
@@ -38,7 +38,7 @@ class FrozenDroop(HeldPosesProcedure):
     level: Annotated[float, si("rad"), Field(ge=0, le=0.05)] = 0.008726646259971648
     passes: Annotated[int, Field(ge=1, le=50)] = 5
 
-    def carry_out(self, conduct: Conduct) -> Account:
+    def carry_out(self, conduct: RunContext) -> Account:
         """Hold, alternate, write `passes.csv`; the account compares the conditions."""
         plant, seed = self.world(conduct)
         belief = belief_of(self.scenario)
@@ -62,7 +62,7 @@ class FrozenDroop(HeldPosesProcedure):
         return _account(fitted, droop, self.level)
 
 
-def _write_passes(fitted: dict[str, tuple[Pass, ...]], conduct: Conduct) -> None:
+def _write_passes(fitted: dict[str, tuple[Pass, ...]], conduct: RunContext) -> None:
     lines = ["condition,pass," + ",".join(f"rms_{axis}" for axis in AXES)]
     for name, passes in fitted.items():
         for number, one in enumerate(passes, 1):

@@ -8,15 +8,15 @@ from pathlib import Path
 import numpy as np
 from pydantic import JsonValue
 
-from ves_twin.gravity_model.alternate import Pass
-from ves_twin.gravity_model.identify import Identification
-from ves_twin.gravity_model.poses import Conditioning
-from ves_twin.gravity_model.sensitivity import AXES
+from ves_twin.core.types import FloatArray
+from ves_twin.core.whole_file import write_whole
+from ves_twin.mechanics.gravity.identify import Identification
+from ves_twin.mechanics.gravity.interleaved_split import Pass
+from ves_twin.mechanics.gravity.poses import Conditioning
+from ves_twin.mechanics.gravity.sensitivity import AXES
 from ves_twin.procedures.procedure import Account
 from ves_twin.report.picture import save_picture
 from ves_twin.simulator.outcome import Outcome
-from ves_twin.types import FloatArray
-from ves_twin.whole_file import write_whole
 
 
 @dataclass(frozen=True)

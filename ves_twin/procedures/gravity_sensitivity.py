@@ -7,17 +7,17 @@ from typing import Annotated, Any
 import numpy as np
 from pydantic import Field, JsonValue
 
-from ves_twin.kinematics.wrenches import sensor_to_top
+from ves_twin.core.recording.recording import Recording
+from ves_twin.core.types import FloatArray
+from ves_twin.mechanics.kinematics.wrenches import sensor_to_top
 from ves_twin.plant.plant import Plant
 from ves_twin.procedures.gravity_shift import gravity_shift
-from ves_twin.procedures.procedure import Account, Conduct, Procedure, part_of
-from ves_twin.recording.recording import Recording
+from ves_twin.procedures.procedure import Account, Procedure, RunContext, part_of
 from ves_twin.report.picture import save_picture
 from ves_twin.scenario.fields import Seconds
 from ves_twin.scenario.schema import Scenario
 from ves_twin.simulator.outcome import Outcome
 from ves_twin.simulator.simulate import simulate
-from ves_twin.types import FloatArray
 
 HOW = ("suddenly", "at rest")
 
@@ -35,7 +35,7 @@ class GravitySensitivity(Procedure):
     errors: Annotated[tuple[float, ...], Field(min_length=1, max_length=20)] = (0.005, 0.01, 0.05)
     sudden: Annotated[Seconds, Field(ge=0)] = 0.0
 
-    def carry_out(self, conduct: Conduct) -> Account:
+    def carry_out(self, conduct: RunContext) -> Account:
         """Run; write `sensitivity.png`. A run that ends early is kept, with its outcome.
 
         Raises:
@@ -112,7 +112,7 @@ def _picture(
     exact: Recording,
     runs: dict[tuple[str, float], Recording],
     position: FloatArray,
-    conduct: Conduct,
+    conduct: RunContext,
 ) -> None:
     from matplotlib.backends.backend_agg import FigureCanvasAgg  # slow to import
     from matplotlib.figure import Figure

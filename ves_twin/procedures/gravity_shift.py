@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ves_twin.recording.recording import Recording
+from ves_twin.core.recording.recording import Recording
 
 
 @dataclass(frozen=True)

@@ -7,8 +7,8 @@ from enum import StrEnum
 
 import numpy as np
 
-from ves_twin.errors import InvalidInputError
-from ves_twin.types import BoolArray, FloatArray
+from ves_twin.core.errors import InvalidInputError
+from ves_twin.core.types import BoolArray, FloatArray
 
 STOP_BAND = 100.0
 """Attenuation outside the band [dB]: a slow swing of 100 mm leaves 1 um."""

@@ -8,15 +8,15 @@ from typing import Annotated
 import numpy as np
 from pydantic import Field
 
-from ves_twin.gravity_model.observations import Observations
+from ves_twin.core.types import FloatArray
+from ves_twin.mechanics.gravity.observations import Observations
 from ves_twin.plant.known_weight import hang_weight
 from ves_twin.plant.plant import Plant
-from ves_twin.procedures.procedure import Conduct, Procedure, Progress
+from ves_twin.procedures.procedure import Procedure, Progress, RunContext
 from ves_twin.procedures.rig_poses import RigPoses
 from ves_twin.scenario.fields import PerSecond, Seconds
 from ves_twin.scenario.schema import Scenario
-from ves_twin.simulator.holds import HoldTimes, hold_poses
-from ves_twin.types import FloatArray
+from ves_twin.simulator.static_poses import HoldTimes, hold_poses
 
 
 class HeldPosesProcedure(Procedure, ABC):
@@ -35,7 +35,7 @@ class HeldPosesProcedure(Procedure, ABC):
     noise: bool = True
     seed: Annotated[int, Field(ge=0, lt=2**63)] = 0
 
-    def world(self, conduct: Conduct) -> tuple[Plant, int]:
+    def world(self, conduct: RunContext) -> tuple[Plant, int]:
         """Plant and seed that count."""
         seed = self.seed if conduct.seed is None else conduct.seed
         return conduct.plant or Plant.load(self.plant), seed

@@ -10,11 +10,12 @@ from typing import Any
 import numpy as np
 
 from ves_twin.control.played import PlayedJoints, PlayedPoses, PlayedWrench, Script
-from ves_twin.errors import VesTwinError
-from ves_twin.gravity_model.learned import LearnedGravity, PlannedExperiment
+from ves_twin.core.errors import VesTwinError
+from ves_twin.core.recording.recording import Recording
+from ves_twin.core.types import FloatArray
+from ves_twin.mechanics.gravity.learned import LearnedGravity, PlannedExperiment
 from ves_twin.plant.plant import Plant
 from ves_twin.procedures.procedure import Progress
-from ves_twin.recording.recording import Recording
 from ves_twin.scenario.schema import Scenario
 from ves_twin.simulator.arm_commands import arm_motion
 from ves_twin.simulator.outcome import Outcome
@@ -22,7 +23,6 @@ from ves_twin.simulator.planned import planned_experiment
 from ves_twin.simulator.recorder import MemorySink
 from ves_twin.simulator.simulate import SLICE, recording_info, simulate
 from ves_twin.simulator.simulator import Simulator
-from ves_twin.types import FloatArray
 
 CUBIC = 3
 """Order of the local polynomials that smooth W_g: they leave its slope and curvature alone."""

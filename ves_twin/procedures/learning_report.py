@@ -8,13 +8,13 @@ from pathlib import Path
 import numpy as np
 from pydantic import JsonValue
 
+from ves_twin.core.recording.recording import Recording
+from ves_twin.core.types import FloatArray
 from ves_twin.procedures.agreement_picture import write_agreement
 from ves_twin.procedures.number_table import write_table
 from ves_twin.procedures.procedure import Account
-from ves_twin.recording.recording import Recording
 from ves_twin.report.picture import save_picture
 from ves_twin.simulator.outcome import Outcome
-from ves_twin.types import FloatArray
 
 AXES = ("x", "y", "z", "rx", "ry", "rz")
 

@@ -7,11 +7,11 @@ from tempfile import TemporaryDirectory
 
 import numpy as np
 
-from ves_twin.linear.admittance_loop import AxisModel
+from ves_twin.core.types import ComplexArray, FloatArray
 from ves_twin.plant.plant import Plant
 from ves_twin.scenario.schema import Legs, Scenario
+from ves_twin.simulator.linear.admittance_loop import AxisModel
 from ves_twin.simulator.simulate import simulate
-from ves_twin.types import ComplexArray, FloatArray
 
 HEAVE = 2
 HEAVY = 4000.0

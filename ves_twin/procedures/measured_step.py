@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 
-from ves_twin.linear.leg_loop import leg_period
-from ves_twin.linear.response import StepResponse
 from ves_twin.plant.plant import Plant
 from ves_twin.scenario.schema import Legs, Scenario
+from ves_twin.simulator.linear.leg_loop import leg_period
+from ves_twin.simulator.linear.response import StepResponse
 from ves_twin.simulator.simulate import simulate
 
 HEAVE = 2

@@ -9,15 +9,15 @@ from typing import Annotated, Any
 import numpy as np
 from pydantic import Field, JsonValue
 
+from ves_twin.core.types import FloatArray
 from ves_twin.plant.plant import Plant
 from ves_twin.procedures.error_sources import GRAVITY_SOURCES, ErrorSources
 from ves_twin.procedures.learning_method import Guess, LearningMethod
 from ves_twin.procedures.learning_report import AXES
 from ves_twin.procedures.number_table import write_table
-from ves_twin.procedures.procedure import Account, Conduct, Procedure, Progress, part_of
+from ves_twin.procedures.procedure import Account, Procedure, Progress, RunContext, part_of
 from ves_twin.scenario.fields import Seconds
 from ves_twin.simulator.outcome import Outcome
-from ves_twin.types import FloatArray
 
 LOST = "lost_against_gravity_known_exactly"
 LEVEL = "platform.level"
@@ -44,7 +44,7 @@ class MethodsAgreement(Procedure):
     draws: Annotated[int, Field(ge=1, le=100)] = 2
     seed: Annotated[int, Field(ge=0, lt=2**62)] = 0
 
-    def carry_out(self, conduct: Conduct) -> Account:
+    def carry_out(self, conduct: RunContext) -> Account:
         """Run; write `agreement.csv`, and what the Learning Method writes.
 
         Raises:
@@ -54,7 +54,9 @@ class MethodsAgreement(Procedure):
         real, ideal = conduct.plant or Plant.load(self.plant), Plant.load(self.ideal)
         parts = 1 + 2 * self.draws
         both = self._learning(seed, 1.0, 1.0).carry_out(
-            Conduct(conduct.folder, _tilted(real, seed), None, part_of(conduct.progress, 0, parts))
+            RunContext(
+                conduct.folder, _tilted(real, seed), None, part_of(conduct.progress, 0, parts)
+            )
         )
         if both.outcome is not Outcome.COMPLETED:
             return both
@@ -115,7 +117,7 @@ class MethodsAgreement(Procedure):
         self, plant: Plant, seed: int, grades: tuple[float, float], progress: Progress
     ) -> Any:
         with TemporaryDirectory() as folder:
-            conduct = Conduct(Path(folder), plant, None, progress)
+            conduct = RunContext(Path(folder), plant, None, progress)
             return self._learning(seed, *grades).carry_out(conduct).values.get(LOST, [np.nan] * 6)
 
     def _model_budget(

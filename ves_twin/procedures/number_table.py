@@ -8,8 +8,8 @@ from pathlib import Path
 
 import numpy as np
 
-from ves_twin.types import FloatArray
-from ves_twin.whole_file import whole_file
+from ves_twin.core.types import FloatArray
+from ves_twin.core.whole_file import whole_file
 
 
 def write_table(path: Path, columns: Mapping[str, FloatArray]) -> None:

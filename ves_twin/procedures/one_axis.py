@@ -9,9 +9,9 @@ from math import lcm
 import numpy as np
 
 from ves_twin.control.leg_loop import FilterPlace, chebyshev_section
+from ves_twin.core.types import ComplexArray, FloatArray
 from ves_twin.plant.hydraulics import Hydraulics
 from ves_twin.plant.plant import Plant
-from ves_twin.types import ComplexArray, FloatArray
 
 _ROD, _SPEED, _HELD, _VALVE, _Z1, _Z2, _B1, _B2, _READING, _POSE, _RATE, _COMMAND = range(12)
 _STATES = 12

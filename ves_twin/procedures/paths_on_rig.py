@@ -9,11 +9,11 @@ from pathlib import Path
 import numpy as np
 from pydantic import JsonValue
 
+from ves_twin.core.types import FloatArray
 from ves_twin.plant.plant import Plant
 from ves_twin.procedures.number_table import write_table
 from ves_twin.procedures.procedure import Progress
 from ves_twin.procedures.rig_energy import RigEnergy, RigOptions
-from ves_twin.types import FloatArray
 
 
 @dataclass(frozen=True)

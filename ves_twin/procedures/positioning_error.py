@@ -11,16 +11,16 @@ import numpy as np
 from pydantic import Field, JsonValue
 
 from ves_twin.control.leg_loop import FilterPlace
+from ves_twin.core.signals import SIGNALS
+from ves_twin.core.types import FloatArray
 from ves_twin.plant.plant import Plant
-from ves_twin.procedures.procedure import Account, Conduct, Procedure
+from ves_twin.procedures.procedure import Account, Procedure, RunContext
 from ves_twin.report.figure import new_figure
 from ves_twin.report.picture import PICTURE_WIDTH, save_picture
 from ves_twin.scenario.fields import Seconds
 from ves_twin.scenario.schema import Legs, Scenario
-from ves_twin.signals import SIGNALS
 from ves_twin.simulator.outcome import Outcome
 from ves_twin.simulator.simulate import simulate
-from ves_twin.types import FloatArray
 
 PICTURE = "positioning_error.png"
 AXES = SIGNALS["truth.pose"].axes
@@ -105,7 +105,7 @@ class PositioningErrorTest(Procedure):
         Legs(gain=20.9, filter=FilterPlace.FEEDBACK),
     )
 
-    def carry_out(self, conduct: Conduct) -> Account:
+    def carry_out(self, conduct: RunContext) -> Account:
         """Release, compare, draw."""
         plant = conduct.plant or Plant.load(self.plant)
         releases = compare_releases(plant, self.legs, self.duration, conduct.seed, conduct.progress)

@@ -8,29 +8,29 @@ from typing import Annotated
 import numpy as np
 from pydantic import Field, JsonValue
 
-from ves_twin.control.emulated import EmulatedSystem
-from ves_twin.planning.flexible_base import (
+from ves_twin.core.types import ComplexArray, FloatArray
+from ves_twin.mechanics.emulated import EmulatedSystem
+from ves_twin.mechanics.planning.flexible_base import (
     HIGH_GAINS,
     PPED_GAINS,
     FlexibleBaseArm,
     JointGains,
     strain_energy,
 )
-from ves_twin.planning.pped import (
+from ves_twin.mechanics.planning.pped import (
     Build,
     Measure,
     damping_estimator,
     search_gains,
     strain_energy_integral,
 )
-from ves_twin.planning.puma import puma_chain
 from ves_twin.plant.plant import Plant
+from ves_twin.plant.puma_chain import puma_chain
 from ves_twin.procedures.number_table import write_table
-from ves_twin.procedures.procedure import Account, Conduct, Procedure
+from ves_twin.procedures.procedure import Account, Procedure, RunContext
 from ves_twin.scenario.fields import Joints, Pose, Seconds
 from ves_twin.simulator.outcome import Outcome
 from ves_twin.simulator.zero_gravity import zero_gravity_motion
-from ves_twin.types import ComplexArray, FloatArray
 
 CYCLE = 1.0 / 80.0
 """Time between two rows [s]. Source: the beam models' rate, thesis App. E."""
@@ -146,7 +146,7 @@ class PpedRelease(Procedure):
             joint_peak=np.max(np.abs(motion.q - commands), axis=0),
         )
 
-    def carry_out(self, conduct: Conduct) -> Account:
+    def carry_out(self, conduct: RunContext) -> Account:
         """Search, release, write `release.csv` with translation and energy over time.
 
         Raises:

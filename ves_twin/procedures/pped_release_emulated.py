@@ -8,18 +8,23 @@ from typing import Any
 import numpy as np
 from pydantic import Field, JsonValue
 
-from ves_twin.control.emulated import EmulatedSystem
-from ves_twin.planning.flexible_base import HIGH_GAINS, PPED_GAINS, FlexibleBaseArm, JointGains
-from ves_twin.planning.lagging_base import LaggingBaseArm
-from ves_twin.planning.pped import strain_energy_integral
-from ves_twin.planning.puma import puma_chain
+from ves_twin.core.types import FloatArray
+from ves_twin.mechanics.emulated import EmulatedSystem
+from ves_twin.mechanics.planning.flexible_base import (
+    HIGH_GAINS,
+    PPED_GAINS,
+    FlexibleBaseArm,
+    JointGains,
+)
+from ves_twin.mechanics.planning.lagging_base import LaggingBaseArm
+from ves_twin.mechanics.planning.pped import strain_energy_integral
 from ves_twin.plant.plant import Plant
+from ves_twin.plant.puma_chain import puma_chain
 from ves_twin.procedures.number_table import write_table
 from ves_twin.procedures.pped_release import PpedRelease
-from ves_twin.procedures.procedure import Account, Conduct
+from ves_twin.procedures.procedure import Account, RunContext
 from ves_twin.procedures.rig_energy import RigEnergy, RigOptions
 from ves_twin.simulator.outcome import Outcome
-from ves_twin.types import FloatArray
 
 
 @dataclass(frozen=True)
@@ -75,7 +80,7 @@ class PpedReleaseEmulated(PpedRelease):
             behind.energy_integral(start, self.duration),
         )
 
-    def carry_out(self, conduct: Conduct) -> Account:
+    def carry_out(self, conduct: RunContext) -> Account:
         """Search, release on the rig, write `release_emulated.csv` with energies over time.
 
         Raises:

@@ -26,7 +26,7 @@ def part_of(progress: Progress, number: int, parts: int) -> Progress:
 
 
 @dataclass(frozen=True)
-class Conduct:
+class RunContext:
     """How a procedure is carried out: where its files go, in which world, with which seed.
 
     `plant` and `seed` are None where the procedure's own stand. `progress` may raise
@@ -60,7 +60,7 @@ class Procedure(Part, ABC):
     plant: str = "ves2"
 
     @abstractmethod
-    def carry_out(self, conduct: Conduct) -> Account:
+    def carry_out(self, conduct: RunContext) -> Account:
         """Run the experiment; write its files into the folder.
 
         Raises:

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 
 from pydantic import ValidationError
 
-from ves_twin.errors import UnknownNameError
+from ves_twin.core.errors import UnknownNameError
 from ves_twin.procedures.calibrate_plant import CalibratePlant
 from ves_twin.procedures.calibrate_poses import CalibratePoses
 from ves_twin.procedures.coupling_map_paths import CouplingMapPaths

@@ -8,15 +8,15 @@ from typing import Annotated, Any
 import numpy as np
 from pydantic import Field
 
-from ves_twin.control.emulated import EmulatedSystem
-from ves_twin.planning.flexible_base import strain_energy
+from ves_twin.core.types import FloatArray
+from ves_twin.mechanics.emulated import EmulatedSystem
+from ves_twin.mechanics.planning.flexible_base import strain_energy
 from ves_twin.plant.plant import Plant
 from ves_twin.scenario.fields import ZERO_POSE, Hertz, Part, PerSecond
 from ves_twin.scenario.schema import Scenario
 from ves_twin.simulator.outcome import Outcome
 from ves_twin.simulator.recorder import IDEAL, LEG_LAG
 from ves_twin.simulator.simulate import simulate
-from ves_twin.types import FloatArray
 
 
 @dataclass(frozen=True)

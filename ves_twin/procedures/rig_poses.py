@@ -8,11 +8,11 @@ import numpy as np
 from pydantic import Field
 
 from ves_twin.control.belief import Belief
-from ves_twin.errors import UnreachableError
-from ves_twin.gravity_model.poses import Choice, PoseRange, choose_poses
+from ves_twin.core.errors import UnreachableError
+from ves_twin.core.types import FloatArray
+from ves_twin.mechanics.gravity.poses import Choice, PoseRange, choose_poses
 from ves_twin.plant.statics import check_reach
 from ves_twin.scenario.fields import Joints, Metres, Part, named, si
-from ves_twin.types import FloatArray
 
 Radians = Annotated[float, si("rad"), Field(ge=0, le=0.6)]
 

@@ -7,15 +7,15 @@ from typing import Annotated
 import numpy as np
 from pydantic import Field, JsonValue
 
-from ves_twin.gravity_model.sensitivity import AXES
-from ves_twin.kinematics.wrenches import top_to_sensor
+from ves_twin.core.types import FloatArray
+from ves_twin.mechanics.gravity.sensitivity import AXES
+from ves_twin.mechanics.kinematics.wrenches import top_to_sensor
 from ves_twin.plant.plant import Plant
-from ves_twin.procedures.procedure import Account, Conduct, Procedure
+from ves_twin.procedures.procedure import Account, Procedure, RunContext
 from ves_twin.report.picture import save_picture
 from ves_twin.scenario.fields import Seconds
 from ves_twin.simulator.outcome import Outcome
 from ves_twin.simulator.sensor_run import sensor_run
-from ves_twin.types import FloatArray
 
 
 class SensorDrift(Procedure):
@@ -31,7 +31,7 @@ class SensorDrift(Procedure):
     average: Annotated[Seconds, Field(ge=1, le=600)] = 10.0
     seed: Annotated[int, Field(ge=0, lt=2**63)] = 0
 
-    def carry_out(self, conduct: Conduct) -> Account:
+    def carry_out(self, conduct: RunContext) -> Account:
         """Run the sensor; write `drift.png`."""
         plant = conduct.plant or Plant.load(self.plant)
         seed = self.seed if conduct.seed is None else conduct.seed
@@ -78,7 +78,7 @@ def _rms(values: FloatArray) -> FloatArray:
     return np.asarray(np.sqrt(np.mean(values**2, axis=0)))
 
 
-def _picture(once: FloatArray, often: FloatArray, every: float, conduct: Conduct) -> None:
+def _picture(once: FloatArray, often: FloatArray, every: float, conduct: RunContext) -> None:
     from matplotlib.backends.backend_agg import FigureCanvasAgg  # slow to import
     from matplotlib.figure import Figure
 

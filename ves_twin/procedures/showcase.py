@@ -10,29 +10,29 @@ from typing import Annotated, Any
 import numpy as np
 from pydantic import Field, JsonValue
 
-from ves_twin.benches.diagnose_rig import diagnose_rig
-from ves_twin.benches.pendulum import Pendulum
-from ves_twin.blind.bench import BlindBench, BlindRig
-from ves_twin.blind.judge import judge
-from ves_twin.blind.pendulum import BlindPendulum
-from ves_twin.blind.rig import BlindVes2
-from ves_twin.blind.save_bare import save_bare
-from ves_twin.blind.suite import HELD_OUT, RECORDING, STANDSTILL
-from ves_twin.compiled import cache_folder
 from ves_twin.control.leg_loop import FilterPlace
+from ves_twin.core.compiled import cache_folder
+from ves_twin.core.errors import InvalidInputError, UnknownNameError
+from ves_twin.core.recording.files import load_recording
 from ves_twin.diagnosis.diagnose import diagnose
-from ves_twin.diagnosis.report.page import diagnosis_page
-from ves_twin.diagnosis.report.words import headline
 from ves_twin.diagnosis.settings import Settings
 from ves_twin.diagnosis.verdict import Verdict
-from ves_twin.errors import InvalidInputError, UnknownNameError
+from ves_twin.machines.pendulum.forward import Pendulum
+from ves_twin.machines.ves2.diagnose_rig import diagnose_rig
 from ves_twin.plant.plant import Plant
 from ves_twin.plant.write_plant import write_plant
-from ves_twin.procedures.procedure import Account, Conduct, Procedure
-from ves_twin.recording.files import load_recording
+from ves_twin.procedures.procedure import Account, Procedure, RunContext
+from ves_twin.report.diagnosis.page import diagnosis_page
+from ves_twin.report.diagnosis.words import headline
 from ves_twin.report.page import write_page
 from ves_twin.scenario.fields import Part, named
 from ves_twin.simulator.outcome import Outcome
+from ves_twin.suites.bench import BlindBench, BlindRig
+from ves_twin.suites.judge import judge
+from ves_twin.suites.pendulum import BlindPendulum
+from ves_twin.suites.rig import BlindVes2
+from ves_twin.suites.save_bare import save_bare
+from ves_twin.suites.suite import HELD_OUT, RECORDING, STANDSTILL
 
 BENCHES = ("pendulum", "ves2")
 
@@ -79,7 +79,7 @@ class Showcase(Procedure):
     nulls: Annotated[int, Field(ge=12, le=10000)] = 60
     seed: Annotated[int, Field(ge=0, lt=2**63)] = 0
 
-    def carry_out(self, conduct: Conduct) -> Account:
+    def carry_out(self, conduct: RunContext) -> Account:
         """Record, diagnose, write `verdict.json` and `report.html`, hold against the truth.
 
         Raises:
@@ -129,7 +129,7 @@ class Showcase(Procedure):
         deployed = {} if place is None else {"legs.filter": place.value}
         return BlindRig(values, kind, size, deployed)
 
-    def _diagnosed(self, conduct: Conduct) -> tuple[Verdict, str]:
+    def _diagnosed(self, conduct: RunContext) -> tuple[Verdict, str]:
         """The verdict on the files, and what became of the extended plant."""
         folder = conduct.folder
         settings = Settings(

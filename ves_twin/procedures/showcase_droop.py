@@ -8,27 +8,27 @@ from typing import Annotated
 import numpy as np
 from pydantic import Field, JsonValue
 
-from ves_twin.benches.held_poses import HeldPoses, tilt_name
+from ves_twin.core.recording.files import load_recording, save_recording
+from ves_twin.core.recording.recording import POSES, Recording, RecordingInfo
+from ves_twin.core.types import FloatArray
+from ves_twin.core.whole_file import write_whole
 from ves_twin.diagnosis.diagnose import diagnose
-from ves_twin.diagnosis.report.page import diagnosis_page
-from ves_twin.diagnosis.report.words import headline
 from ves_twin.diagnosis.settings import Settings
 from ves_twin.diagnosis.verdict import Verdict
-from ves_twin.gravity_model.alternate import alternate
-from ves_twin.gravity_model.observations import Observations
-from ves_twin.gravity_model.sensitivity import AXES
+from ves_twin.machines.static_poses import StaticPoses, tilt_name
+from ves_twin.mechanics.gravity.interleaved_split import alternate
+from ves_twin.mechanics.gravity.observations import Observations
+from ves_twin.mechanics.gravity.sensitivity import AXES
 from ves_twin.plant.droop import frozen_droop
 from ves_twin.plant.plant import Plant
 from ves_twin.procedures.held_poses import HeldPosesProcedure
-from ves_twin.procedures.procedure import Account, Conduct
-from ves_twin.recording.files import load_recording, save_recording
-from ves_twin.recording.recording import POSES, Recording, RecordingInfo
+from ves_twin.procedures.procedure import Account, RunContext
+from ves_twin.report.diagnosis.page import diagnosis_page
+from ves_twin.report.diagnosis.words import headline
 from ves_twin.report.page import write_page
 from ves_twin.scenario.fields import Seconds
 from ves_twin.simulator.build import belief_of
 from ves_twin.simulator.outcome import Outcome
-from ves_twin.types import FloatArray
-from ves_twin.whole_file import write_whole
 
 TABLE_3_1 = (0.46, 0.24, 0.46, 0.62, 1.01, 0.06)
 """Printed rms of the gravity error [N, N m]. Source: thesis Table 3-1."""
@@ -49,7 +49,7 @@ class DroopShowcase(HeldPosesProcedure):
     passes: Annotated[int, Field(ge=1, le=50)] = 5
     nulls: Annotated[int, Field(ge=12, le=10000)] = 60
 
-    def carry_out(self, conduct: Conduct) -> Account:
+    def carry_out(self, conduct: RunContext) -> Account:
         """Read, diagnose, calibrate with the angles as taken and as found; write the files."""
         plant, seed = self.world(conduct)
         belief = belief_of(self.scenario)
@@ -57,7 +57,7 @@ class DroopShowcase(HeldPosesProcedure):
         true = self._drooped(plant, poses, q, seed)
         seen = self.read(plant, true, q, seed, conduct.progress)
         _save(seen, poses, conduct)
-        rig = HeldPoses(Plant.load(self.belief), len(poses), self.average)
+        rig = StaticPoses(Plant.load(self.belief), len(poses), self.average)
         verdict = diagnose(
             rig,
             [load_recording(conduct.folder / FILE)],
@@ -115,14 +115,14 @@ def tilts_of(verdict: Verdict, count: int) -> FloatArray:
     return np.asarray(np.array(rows) + base)
 
 
-def _save(seen: Observations, poses: FloatArray, conduct: Conduct) -> None:
+def _save(seen: Observations, poses: FloatArray, conduct: RunContext) -> None:
     signals = {"platform.pose": poses, "arm.q": seen.q, "sensor.wrench": seen.signal}
     info = RecordingInfo("measured", scenario="held poses", log=POSES)
     recording = Recording(np.arange(len(poses), dtype=float), signals, info)
     save_recording(recording, conduct.folder / FILE)
 
 
-def _write_tilts(found: FloatArray, droop: FloatArray, conduct: Conduct) -> None:
+def _write_tilts(found: FloatArray, droop: FloatArray, conduct: RunContext) -> None:
     lines = ["pose,found_x,found_y,true_x,true_y"]
     for k, (here, there) in enumerate(zip(found, droop[:, 3:], strict=True), 1):
         values = (here[0], here[1], there[0], there[1])

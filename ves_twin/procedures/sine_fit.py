@@ -7,8 +7,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ves_twin.linear.response import FrequencyResponse
-from ves_twin.types import ComplexArray, FloatArray
+from ves_twin.core.types import ComplexArray, FloatArray
+from ves_twin.simulator.linear.response import FrequencyResponse
 
 PARTS = 3
 """Stretches of a record that are fitted on their own; their scatter is the uncertainty."""

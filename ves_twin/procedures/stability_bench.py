@@ -8,8 +8,8 @@ from itertools import pairwise
 import numpy as np
 
 from ves_twin.control.admittance import AdmittanceController
-from ves_twin.control.emulated import EmulatedSystem
-from ves_twin.errors import InvalidInputError
+from ves_twin.core.errors import InvalidInputError
+from ves_twin.mechanics.emulated import EmulatedSystem
 from ves_twin.plant.plant import Plant
 from ves_twin.scenario.schema import Scenario
 from ves_twin.simulator.build import emulated_of

@@ -4,15 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
+from ves_twin.procedures.map_point import MapPoint
 from ves_twin.report.picture import save_picture
-
-if TYPE_CHECKING:
-    from ves_twin.procedures.stability_map import MapPoint
 
 _COLOURS = {"none": "#4c566a", "error": "#c2462e", "feedback": "#2f6fb0"}
 

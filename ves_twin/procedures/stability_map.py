@@ -2,64 +2,31 @@
 
 from __future__ import annotations
 
-from dataclasses import asdict, dataclass
+from dataclasses import asdict
 from typing import Annotated
 
 import numpy as np
 from pydantic import Field, JsonValue
 
 from ves_twin.control.leg_loop import EDGE, FilterPlace
-from ves_twin.errors import InvalidInputError
-from ves_twin.json_text import json_text
+from ves_twin.core.errors import InvalidInputError
+from ves_twin.core.json_text import json_text
+from ves_twin.core.whole_file import write_whole
+from ves_twin.core.workers import Workers
 from ves_twin.plant.plant import Plant
 from ves_twin.procedures.confirm import Confirmation, confirm_by_run
+from ves_twin.procedures.map_point import MapPoint
 from ves_twin.procedures.one_axis import OneAxis
-from ves_twin.procedures.procedure import Account, Conduct, Procedure
+from ves_twin.procedures.procedure import Account, Procedure, RunContext
 from ves_twin.procedures.stability_bench import StabilityBench
-from ves_twin.procedures.workers import carry_out_jobs
 from ves_twin.scenario.fields import Hertz, PerSecond, Seconds
 from ves_twin.scenario.schema import Scenario
 from ves_twin.simulator.outcome import Outcome
-from ves_twin.whole_file import write_whole
 
 MAP_NAME, FIGURE_NAME = "stability_map.json", "stability_map.png"
 
 ASIDE = 0.1
 """Runs confirm a limit from this share of it below and above."""
-
-
-@dataclass(frozen=True)
-class MapPoint:
-    """Stability at one gain and filter place.
-
-    Attributes:
-        gain: of the leg loops [1/s].
-        place: what the leg filter filters.
-        payload: mass above the force sensor [kg].
-        limit: lowest stable mass [kg]: the range's end if all of it is stable or none is.
-        bounded: whether the limit lies within the range.
-        frequency: of the oscillation at the limit [Hz].
-        one_axis: limit of the one-axis model [kg].
-        base_growth: growth rate with the scenario's own base [1/s].
-        base_frequency: frequency of that oscillation [Hz].
-        runs: growth measured in runs beside the limit.
-    """
-
-    gain: float
-    place: str
-    payload: float
-    limit: float
-    bounded: bool
-    frequency: float
-    one_axis: float
-    base_growth: float
-    base_frequency: float
-    runs: tuple[Confirmation, ...] = ()
-
-    @property
-    def share(self) -> float:
-        """Limit over payload."""
-        return self.limit / self.payload
 
 
 class StabilityMap(Procedure):
@@ -81,7 +48,7 @@ class StabilityMap(Procedure):
     duration: Annotated[Seconds, Field(ge=5.0, le=600.0)] = 20.0
     workers: Annotated[int, Field(ge=1, le=64)] = 2
 
-    def carry_out(self, conduct: Conduct) -> Account:
+    def carry_out(self, conduct: RunContext) -> Account:
         """Find the limits, confirm some by runs, write the map and its picture."""
         if self.lightest >= self.heaviest:
             raise InvalidInputError(
@@ -92,9 +59,10 @@ class StabilityMap(Procedure):
 
         plant = conduct.plant or Plant.load(self.plant)
         jobs = [(self, plant, gain, place) for place in self.filters for gain in self.gains]
-        points = carry_out_jobs(
-            map_point, jobs, self.workers, lambda share: conduct.progress(share, "limits")
-        )
+        with Workers(self.workers) as workers:
+            points = workers.collect(
+                map_point, jobs, lambda share: conduct.progress(share, "limits")
+            )
         content: dict[str, JsonValue] = {
             "plant": plant.name,
             "plant_hash": plant.hash,

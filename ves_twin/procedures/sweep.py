@@ -8,16 +8,16 @@ from dataclasses import dataclass
 import numpy as np
 
 from ves_twin.control.leg_loop import FilterPlace
-from ves_twin.errors import InvalidInputError
-from ves_twin.linear.leg_loop import leg_period
+from ves_twin.core.errors import InvalidInputError
+from ves_twin.core.recording.recording import Recording
+from ves_twin.core.types import FloatArray
 from ves_twin.plant.plant import Plant
 from ves_twin.procedures.sine_fit import PARTS, MeasuredResponse, measure_response
-from ves_twin.recording.recording import Recording
 from ves_twin.scenario.schema import Legs, Scenario
 from ves_twin.simulator.build import belief_of
+from ves_twin.simulator.linear.leg_loop import leg_period
 from ves_twin.simulator.outcome import Outcome
 from ves_twin.simulator.simulate import simulate
-from ves_twin.types import FloatArray
 
 HEAVE = 2
 SETTLING = 6.0

@@ -8,16 +8,16 @@ from typing import Annotated
 import numpy as np
 from pydantic import Field, JsonValue
 
-from ves_twin.kinematics.wrenches import sensor_to_top
+from ves_twin.core.recording.recording import Recording
+from ves_twin.core.types import FloatArray
+from ves_twin.mechanics.kinematics.wrenches import sensor_to_top
 from ves_twin.plant.plant import Plant
-from ves_twin.procedures.procedure import Account, Conduct, Procedure, part_of
-from ves_twin.recording.recording import Recording
+from ves_twin.procedures.procedure import Account, Procedure, RunContext, part_of
 from ves_twin.report.picture import save_picture
 from ves_twin.scenario.fields import PerSecond, Seconds, si
 from ves_twin.scenario.schema import Scenario
 from ves_twin.simulator.outcome import Outcome
 from ves_twin.simulator.simulate import simulate
-from ves_twin.types import FloatArray
 
 PRINTED_RMS = (0.46, 0.24, 0.46, 0.62, 1.01, 0.06)
 PRINTED_MAX = (0.95, 0.53, 1.4, 1.14, 1.67, 0.13)
@@ -74,7 +74,7 @@ class VerifyGravity(Procedure):
     budget: bool = True
     seed: Annotated[int, Field(ge=0, lt=2**63)] = 0
 
-    def carry_out(self, conduct: Conduct) -> Account:
+    def carry_out(self, conduct: RunContext) -> Account:
         """Run with everything on, then each part alone; write `verification.png`.
 
         Raises:
@@ -174,7 +174,7 @@ def _row(name: str, values: FloatArray | tuple[float, ...]) -> str:
     return f"  {name:<22}" + "".join(f"{v:10.3f}" for v in values)
 
 
-def _picture(run: Recording, plant: Plant, conduct: Conduct) -> None:
+def _picture(run: Recording, plant: Plant, conduct: RunContext) -> None:
     from matplotlib.backends.backend_agg import FigureCanvasAgg  # slow to import
     from matplotlib.figure import Figure
 

@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterable
 from pathlib import Path
 
+from ves_twin.core.whole_file import write_whole
 from ves_twin.report.html import Html, joined, markup
-from ves_twin.whole_file import write_whole
 
 STYLE = """
 :root { color-scheme: light; --ink: #1d2329; --soft: #5b6670; --line: #d8dde2; --wash: #f5f7f9;

@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from ves_twin.whole_file import whole_file
+from ves_twin.core.whole_file import whole_file
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ves_twin.core.types import FloatArray
 from ves_twin.report.figure import new_figure
-from ves_twin.types import FloatArray
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

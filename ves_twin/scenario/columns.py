@@ -10,8 +10,8 @@ import pyarrow as pa
 import pyarrow.csv
 import pyarrow.parquet
 
-from ves_twin.errors import FileAccessError, InvalidInputError, one_line
-from ves_twin.types import FloatArray
+from ves_twin.core.errors import FileAccessError, InvalidInputError, one_line
+from ves_twin.core.types import FloatArray
 
 
 def read_columns(

@@ -10,8 +10,8 @@ from pydantic import BaseModel, BeforeValidator, ConfigDict, GetJsonSchemaHandle
 from pydantic.json_schema import JsonSchemaValue
 from pydantic_core import CoreSchema
 
-from ves_twin.errors import InvalidInputError, UnknownNameError, shown
-from ves_twin.units import to_si
+from ves_twin.core.errors import InvalidInputError, UnknownNameError, shown
+from ves_twin.core.units import to_si
 
 TURNS = 4.0 * math.pi
 """Largest joint angle that makes sense [rad]."""

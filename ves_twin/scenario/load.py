@@ -5,16 +5,15 @@ from __future__ import annotations
 import copy
 import difflib
 import re
-import tomllib
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any, get_args
 
 from pydantic import BaseModel, ValidationError
 
-from ves_twin.errors import InvalidInputError, UnknownNameError, VesTwinError
-from ves_twin.resources import beside, find_resource, resource_folder
-from ves_twin.toml_file import read_toml
+from ves_twin.core.errors import InvalidInputError, UnknownNameError, VesTwinError
+from ves_twin.core.resources import beside, find_resource, resource_folder
+from ves_twin.core.toml_file import parse_toml, read_toml
 
 FILE_KEYS = (
     ("plant",),
@@ -83,7 +82,7 @@ def parse_setting(text: str) -> tuple[str, object]:
     if not equals or not key.strip():
         raise InvalidInputError("--set", text, "KEY=VALUE, for instance legs.gain=16")
     try:
-        return key.strip(), tomllib.loads(f"value = {value}")["value"]
+        return key.strip(), parse_toml(f"value = {value}")["value"]
     except (ValueError, RecursionError):  # not TOML, or a number or nesting beyond reason
         return key.strip(), value.strip()
 

@@ -7,11 +7,11 @@ from typing import Annotated, Literal, Self
 import numpy as np
 from pydantic import Field, model_validator
 
-from ves_twin.control.motion import PlatformMotion, Sine
 from ves_twin.control.multisine import Multisine, multisine
 from ves_twin.control.waypoints import Waypoint, Waypoints
+from ves_twin.core.types import FloatArray
+from ves_twin.mechanics.joint_motion import PlatformMotion, Sine
 from ves_twin.scenario.fields import ZERO_POSE, Hertz, Part, Pose, Seconds, si
-from ves_twin.types import FloatArray
 
 
 class SineMotion(Part):

@@ -6,7 +6,7 @@ from typing import Annotated, Self
 
 from pydantic import Field, model_validator
 
-from ves_twin.operation.state import Action, State
+from ves_twin.control.operation.state import Action, State
 from ves_twin.scenario.fields import Part, Seconds, named
 
 BEGINNINGS = tuple(state.value for state in State if state is not State.START)

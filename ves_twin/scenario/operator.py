@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import numpy as np
 
-from ves_twin.control.motion import RecordedJoints
-from ves_twin.errors import InvalidInputError
-from ves_twin.resources import find_resource
+from ves_twin.core.errors import InvalidInputError
+from ves_twin.core.resources import find_resource
+from ves_twin.core.types import FloatArray
+from ves_twin.mechanics.joint_motion import RecordedJoints
 from ves_twin.scenario.columns import read_columns
 from ves_twin.scenario.fields import TURNS
-from ves_twin.types import FloatArray
 
 COLUMNS = ("t", "q1", "q2", "q3")
 """Time [s] and joint angles [rad]."""

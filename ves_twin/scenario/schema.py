@@ -8,8 +8,8 @@ from typing import Annotated, Any, Literal, Self
 from pydantic import Field, ValidationError, model_validator
 
 from ves_twin.control.leg_loop import EDGE, FilterPlace
+from ves_twin.control.operation.state import State
 from ves_twin.control.registry import GRAVITY_COMPENSATIONS, PLATFORM_CONTROLLERS
-from ves_twin.operation.state import State
 from ves_twin.scenario.fields import (
     ZERO_JOINTS,
     ZERO_POSE,

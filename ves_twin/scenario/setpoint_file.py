@@ -6,12 +6,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ves_twin.errors import InvalidInputError
-from ves_twin.resources import find_resource
+from ves_twin.core.errors import InvalidInputError
+from ves_twin.core.resources import find_resource
+from ves_twin.core.signals import SIGNALS
+from ves_twin.core.types import FloatArray
 from ves_twin.scenario.columns import read_columns
 from ves_twin.scenario.fields import TURNS
-from ves_twin.signals import SIGNALS
-from ves_twin.types import FloatArray
 
 EVEN = 1e-3
 """Share of a period that rows may lie off an even clock."""

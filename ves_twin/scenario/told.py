@@ -9,10 +9,10 @@ from typing import Any, Self
 
 from pydantic import Field, ValidationError
 
-from ves_twin.errors import UnknownNameError
+from ves_twin.core.errors import UnknownNameError
+from ves_twin.core.toml_file import read_toml
 from ves_twin.scenario.fields import Part
 from ves_twin.scenario.load import refusal
-from ves_twin.toml_file import read_toml
 
 
 class Told(Part, ABC):

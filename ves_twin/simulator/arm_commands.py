@@ -4,15 +4,15 @@ from __future__ import annotations
 
 import numpy as np
 
-from ves_twin.control.motion import ArmMotion, JointMotion, Move
-from ves_twin.control.path_motion import PathMotion
 from ves_twin.control.timed import TimedJoints
-from ves_twin.errors import InvalidInputError
+from ves_twin.core.errors import InvalidInputError
+from ves_twin.core.types import FloatArray
+from ves_twin.mechanics.joint_motion import ArmMotion, JointMotion, Move
+from ves_twin.mechanics.path_motion import PathMotion
 from ves_twin.scenario.motions import SetpointMotion
 from ves_twin.scenario.operator import operator_motion
 from ves_twin.scenario.schema import Arm, Scenario
 from ves_twin.scenario.setpoint_file import read_setpoints
-from ves_twin.types import FloatArray
 
 NEAR = 1e-3
 """How far the first command may lie from the arm's start [rad]: ten counts of the encoders."""

@@ -6,7 +6,8 @@ import numpy as np
 
 from ves_twin.control import arm_servo, leg_loop
 from ves_twin.control.belief import Belief
-from ves_twin.errors import InvalidInputError
+from ves_twin.core.errors import InvalidInputError
+from ves_twin.core.types import Block
 from ves_twin.plant.hydraulics import fill_chambers, refuse_idle
 from ves_twin.plant.layout import Layout
 from ves_twin.plant.parameters import ParameterTable
@@ -23,7 +24,6 @@ from ves_twin.plant.plant import Plant
 from ves_twin.scenario.schema import Legs
 from ves_twin.simulator.clock import Clock
 from ves_twin.simulator.codes import SLOW
-from ves_twin.types import Block
 
 CLOCKS = np.dtype(
     [

@@ -8,19 +8,20 @@ import numpy as np
 
 from ves_twin.control.belief import Belief
 from ves_twin.control.controller import ControlTask, PlatformController
-from ves_twin.control.emulated import EmulatedSystem
 from ves_twin.control.gravity import GravityCompensation, GravityTask
 from ves_twin.control.gravity_feedforward import GravityFeedforward
-from ves_twin.control.motion import JointMotion, PlatformMotion
+from ves_twin.control.operation.state import State
 from ves_twin.control.played import Script
 from ves_twin.control.registry import GRAVITY_COMPENSATIONS, PLATFORM_CONTROLLERS
 from ves_twin.control.scaled import ScaledCompensation
-from ves_twin.gravity_model.calibration import GravityCalibration
-from ves_twin.gravity_model.learned import LearnedGravity
-from ves_twin.operation.state import State
+from ves_twin.core.recording.recording import Event
+from ves_twin.core.types import Block, FloatArray
+from ves_twin.mechanics.emulated import EmulatedSystem
+from ves_twin.mechanics.gravity.calibration import GravityCalibration
+from ves_twin.mechanics.gravity.learned import LearnedGravity
+from ves_twin.mechanics.joint_motion import JointMotion, PlatformMotion
 from ves_twin.plant.plant import Plant
 from ves_twin.plant.statics import check_reach
-from ves_twin.recording.recording import Event
 from ves_twin.scenario.motions import SetpointMotion
 from ves_twin.scenario.schema import Platform, Scenario
 from ves_twin.simulator.arm_commands import arm_motion
@@ -32,7 +33,6 @@ from ves_twin.simulator.reference import ZeroGravityReference
 from ves_twin.simulator.rig import Rig
 from ves_twin.simulator.setpoint_motion import setpoint_motion
 from ves_twin.simulator.truth_port import GravityTruth
-from ves_twin.types import Block, FloatArray
 
 
 def build_operator(

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from ves_twin.control.emulated import Coupling, EmulatedSystem
-from ves_twin.errors import InvalidInputError
+from ves_twin.core.errors import InvalidInputError
+from ves_twin.mechanics.emulated import Coupling, EmulatedSystem
 from ves_twin.plant.parameters import ParameterTable
 from ves_twin.scenario.schema import Scenario
 

@@ -1,6 +1,6 @@
 """codes: numbers that the compiled loop shares with Python.
 
-They live apart so that a change enters the hash of `ves_twin.compiled` and is compiled afresh.
+They live apart so that a change enters the hash of `ves_twin.core.compiled` and is compiled afresh.
 """
 
 from __future__ import annotations

@@ -11,13 +11,13 @@ from ves_twin.control.belief import Belief
 from ves_twin.control.controller import PlatformController
 from ves_twin.control.gravity import GravityCompensation
 from ves_twin.control.gravity_feedforward import GravityFeedforward
-from ves_twin.control.motion import JointMotion
 from ves_twin.control.readings import Readings
 from ves_twin.control.safety import NOT_A_POSE
-from ves_twin.errors import ControllerError, VesTwinError, one_line
-from ves_twin.simulator.board import Board
+from ves_twin.core.errors import ControllerError, VesTwinError, one_line
+from ves_twin.core.types import Block, FloatArray
+from ves_twin.mechanics.joint_motion import JointMotion
 from ves_twin.simulator.setpoints import send_setpoints
-from ves_twin.types import Block, FloatArray
+from ves_twin.simulator.signal_bus import SignalBus
 
 
 @dataclass(frozen=True)
@@ -52,7 +52,7 @@ class Computers:
         arm: JointMotion,
         feedforward: GravityFeedforward | None,
         period: float,
-        board: Board,
+        board: SignalBus,
         state: Block,
     ) -> None:
         self.controller = controller

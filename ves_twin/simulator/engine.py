@@ -12,7 +12,7 @@ from llvmlite import ir
 from numba import types
 from numba.extending import intrinsic
 
-from ves_twin.compiled import compiled
+from ves_twin.core.compiled import compiled
 
 # The address is an argument, not a global: a function with a ctypes global is never cached.
 

@@ -9,10 +9,10 @@ from math import gcd, lcm
 
 import numpy as np
 
+from ves_twin.core.types import FloatArray, IntArray
 from ves_twin.plant.plant import Plant
 from ves_twin.simulator.loop_state import STEP, LoopState
 from ves_twin.simulator.simulator import Simulator
-from ves_twin.types import FloatArray, IntArray
 
 LOWEST_FREQUENCY = 2.0
 """Oscillations from here up are vibrations [Hz]; the emulated beams swing below it."""

@@ -8,11 +8,11 @@ from typing import Any
 import mujoco
 import numpy as np
 
-from ves_twin.errors import InvalidInputError
+from ves_twin.core.errors import InvalidInputError
+from ves_twin.core.types import FloatArray
 from ves_twin.plant.physics.delay import PASTS
 from ves_twin.simulator.computers import ComputersSnapshot
 from ves_twin.simulator.simulator import Simulator
-from ves_twin.types import FloatArray
 
 STEP = 1e-6
 """Relative step of the differences: far above round-off, far below any nonlinearity."""

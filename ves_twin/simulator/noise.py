@@ -11,8 +11,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ves_twin.core.types import SingleArray
 from ves_twin.simulator.codes import FAST_CHANNELS, SLOW, SLOW_CHANNELS
-from ves_twin.types import SingleArray
 
 BLOCK = 4096
 """Ticks drawn at once; a block is a function of seed, channel and block number alone."""

@@ -7,17 +7,17 @@ from dataclasses import dataclass
 import numpy as np
 
 from ves_twin.control.belief import Belief
-from ves_twin.kinematics.rotations import matrix_from_quaternion
-from ves_twin.operation.laboratory import Laboratory
-from ves_twin.operation.machine import Machine, Note, Sight
-from ves_twin.operation.ramp import Ramp
-from ves_twin.operation.state import State, Task
-from ves_twin.recording.recording import Event
+from ves_twin.control.operation.machine import Machine, Note, Sight
+from ves_twin.control.operation.ramp import Ramp
+from ves_twin.control.operation.state import State, Task
+from ves_twin.core.recording.recording import Event
+from ves_twin.core.types import FloatArray
+from ves_twin.mechanics.kinematics.rotations import matrix_from_quaternion
+from ves_twin.plant.laboratory import Laboratory
 from ves_twin.scenario.operation_part import Operation
 from ves_twin.simulator.computers import Computers
 from ves_twin.simulator.rig import Rig
 from ves_twin.simulator.switches import Switches, SwitchesSnapshot
-from ves_twin.types import FloatArray
 
 AT_SLEEP = 0.01
 """How far a leg may be from its length in sleep and the platform still count as low [m]."""

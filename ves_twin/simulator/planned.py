@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from ves_twin.control.emulated import EmulatedSystem
-from ves_twin.errors import InvalidInputError
-from ves_twin.gravity_model.learned import PlannedExperiment
+from ves_twin.core.errors import InvalidInputError
+from ves_twin.mechanics.emulated import EmulatedSystem
+from ves_twin.mechanics.gravity.learned import PlannedExperiment
 from ves_twin.plant.plant import Plant
 from ves_twin.scenario.schema import Scenario
 from ves_twin.simulator.arm_commands import arm_motion

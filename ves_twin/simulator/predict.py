@@ -7,12 +7,12 @@ from dataclasses import replace
 
 import numpy as np
 
+from ves_twin.core.recording.recording import Recording
+from ves_twin.core.types import FloatArray
 from ves_twin.plant.plant import Plant
-from ves_twin.recording.recording import Recording
 from ves_twin.scenario.schema import Scenario
 from ves_twin.simulator.clock import Clock
 from ves_twin.simulator.replay import replay
-from ves_twin.types import FloatArray
 
 SAME = 1e-3
 """Rows of a recording count as those of a clock if no one lies further off [periods]."""

@@ -9,12 +9,12 @@ from typing import Protocol
 
 import numpy as np
 
-from ves_twin.kinematics.stewart import StewartGeometry, pose_jacobian, track_poses
-from ves_twin.signals import SIGNALS
-from ves_twin.simulator.board import SLICES, WIDTH
+from ves_twin.core.signals import SIGNALS
+from ves_twin.core.types import FloatArray, IntArray
+from ves_twin.mechanics.kinematics.stewart import StewartGeometry, pose_jacobian, track_poses
 from ves_twin.simulator.clock import Clock
 from ves_twin.simulator.reference import ZeroGravityReference
-from ves_twin.types import FloatArray, IntArray
+from ves_twin.simulator.signal_bus import SLICES, WIDTH
 
 BUFFER_SECONDS = 4.0
 """Simulated time that the buffer holds."""

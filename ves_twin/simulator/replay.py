@@ -10,18 +10,18 @@ from typing import Any
 import numpy as np
 
 from ves_twin.control.played import PlayedJoints, PlayedPoses, PlayedWrench, Script, spline_points
-from ves_twin.errors import EndedEarlyError, InvalidInputError, UnknownNameError
-from ves_twin.kinematics.stewart import StewartGeometry
+from ves_twin.core.errors import EndedEarlyError, InvalidInputError, UnknownNameError
+from ves_twin.core.recording.recording import Recording
+from ves_twin.core.signals import SIGNALS, Role
+from ves_twin.core.types import FloatArray
+from ves_twin.mechanics.kinematics.stewart import StewartGeometry
 from ves_twin.plant.plant import Plant
-from ves_twin.recording.recording import Recording
 from ves_twin.scenario.schema import Scenario
-from ves_twin.signals import SIGNALS, Role
 from ves_twin.simulator.build import belief_of
 from ves_twin.simulator.recorder import MemorySink
 from ves_twin.simulator.setpoint_motion import poses_of
 from ves_twin.simulator.simulate import recording_info
 from ves_twin.simulator.simulator import Simulator
-from ves_twin.types import FloatArray
 
 DRIVABLE = ("leg.command", "platform.command", "arm.command", "gravity.estimate")
 """What can be fed in: set-points, and the estimate that the sensor is zeroed against."""

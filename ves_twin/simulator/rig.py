@@ -9,17 +9,17 @@ import mujoco
 import numpy as np
 
 from ves_twin.control.belief import Belief
+from ves_twin.core.types import Block, FloatArray
 from ves_twin.plant.assembly import assemble, compile_model
 from ves_twin.plant.layout import Layout
 from ves_twin.plant.plant import Plant
 from ves_twin.scenario.schema import Legs
 from ves_twin.simulator.blocks import STATE, parameter_block
-from ves_twin.simulator.board import Board
 from ves_twin.simulator.clock import Clock
 from ves_twin.simulator.engine import NO_CALL, address_of, handles
-from ves_twin.simulator.loop import run_ticks
+from ves_twin.simulator.loop import Memory, Stepper, Views, run_ticks
 from ves_twin.simulator.noise import NoiseStreams
-from ves_twin.types import Block, FloatArray
+from ves_twin.simulator.signal_bus import SignalBus
 
 
 @dataclass(frozen=True)
@@ -65,17 +65,13 @@ class Rig:
         self.layout = Layout.of(self.model)
         self.parameters = parameter_block(plant, self.layout, clock, legs, belief)
         self.state: Block = np.zeros(1, STATE)
-        self.board = Board()
+        self.board = SignalBus()
         self.noise = noise
         self.tick = 0
-        self._engine = (*_step_of(self.layout), *handles(self.model, self.data))
-        self._arrays = (
-            self.data.qpos,
-            self.data.qvel,
-            *self.layout.slide_arrays(self.data),
-            self.data.ctrl,
-            self.data.sensordata,
-        )
+        self._stepper = Stepper(*_step_of(self.layout), *handles(self.model, self.data))
+        data, slides = self.data, self.layout.slide_arrays(self.data)
+        self._views = Views(data.qpos, data.qvel, *slides, data.ctrl, data.sensordata)
+        self._memory = Memory(self.parameters, self.state, self.board.block, self.board.row)
 
     @property
     def time(self) -> float:
@@ -96,12 +92,9 @@ class Rig:
         code, done, logged = run_ticks(
             self.tick,
             count,
-            *self._engine,
-            *self._arrays,
-            self.parameters,
-            self.state,
-            self.board.block,
-            self.board.row,
+            self._stepper,
+            self._views,
+            self._memory,
             *self.noise.window(self.tick, count),
             log,
             logged,

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import numpy as np
 
-from ves_twin.compiled import compiled
+from ves_twin.core.compiled import compiled
+from ves_twin.core.types import Block, FloatArray, SingleArray
 from ves_twin.plant.parameters import ParameterTable
 from ves_twin.plant.physics import force_sensor
 from ves_twin.plant.physics.force_sensor import sample_wrench, start_at, wander_on
 from ves_twin.simulator.blocks import fill_sensor
 from ves_twin.simulator.codes import SLOW
-from ves_twin.types import Block, FloatArray, SingleArray
 
 RATE = 100.0
 """Samples a second [Hz]: enough for the 20 Hz low-pass, a thirtieth of the rig's rate."""

@@ -5,10 +5,10 @@ from __future__ import annotations
 import numpy as np
 
 from ves_twin.control.timed import TimedPoses
-from ves_twin.errors import InvalidInputError
-from ves_twin.kinematics.stewart import StewartGeometry, pose_jacobian, track_poses
+from ves_twin.core.errors import InvalidInputError
+from ves_twin.core.types import FloatArray
+from ves_twin.mechanics.kinematics.stewart import StewartGeometry, pose_jacobian, track_poses
 from ves_twin.scenario.setpoint_file import read_setpoints
-from ves_twin.types import FloatArray
 
 NEAR = 1e-3
 """How far the first pose may lie from the scenario's start [m, rad]: motion of one cycle."""

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from ves_twin.compiled import compiled
 from ves_twin.control.safety import SAFE, checked_lengths
-from ves_twin.types import Block, FloatArray
+from ves_twin.core.compiled import compiled
+from ves_twin.core.types import Block, FloatArray
 
 
 @compiled

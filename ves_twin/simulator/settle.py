@@ -8,16 +8,16 @@ from dataclasses import dataclass
 import numpy as np
 
 from ves_twin.control.leg_loop import start_legs
+from ves_twin.core.recording.recording import Event
+from ves_twin.core.types import Block, FloatArray
 from ves_twin.plant.hydraulics import loaded_pressures, resting_supply
 from ves_twin.plant.physics.force_sensor import start_at
 from ves_twin.plant.statics import joints_on_platform, place_rig, static_leg_forces
-from ves_twin.recording.recording import Event
 from ves_twin.scenario.schema import Scenario
 from ves_twin.simulator.codes import RUNNING, SLOW, WANDER
 from ves_twin.simulator.computers import Computers
 from ves_twin.simulator.rig import Rig
 from ves_twin.simulator.truth_port import GravityTruth
-from ves_twin.types import Block, FloatArray
 
 ZEROING_SECONDS = 1.0
 """The sensor is averaged this long before the run, while the rig stands."""

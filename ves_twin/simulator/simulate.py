@@ -14,21 +14,21 @@ import numpy as np
 import pyarrow.parquet as pq
 
 from ves_twin.control.controller import PlatformController
+from ves_twin.core.errors import FileAccessError
+from ves_twin.core.json_text import json_text
+from ves_twin.core.recording.recording import Recording, RecordingInfo
+from ves_twin.core.recording.stream import RecordingStream
+from ves_twin.core.signals import SIGNALS
+from ves_twin.core.types import FloatArray
+from ves_twin.core.whole_file import write_whole
 from ves_twin.effects.registry import effects_table
-from ves_twin.errors import FileAccessError
-from ves_twin.json_text import json_text
 from ves_twin.plant.plant import Plant
-from ves_twin.recording.recording import Recording, RecordingInfo
-from ves_twin.recording.stream import RecordingStream
 from ves_twin.scenario.schema import Scenario
-from ves_twin.signals import SIGNALS
 from ves_twin.simulator.emulation_error import AxisError, emulation_error
 from ves_twin.simulator.outcome import Outcome
 from ves_twin.simulator.recorder import IDEAL, LEG_LAG, NoSink
 from ves_twin.simulator.simulator import Simulator
 from ves_twin.simulator.tracking_error import TrackingError, tells_tracking, tracking_error
-from ves_twin.types import FloatArray
-from ves_twin.whole_file import write_whole
 
 SUMMARY_NAME = "summary.json"
 SLICE = 0.25

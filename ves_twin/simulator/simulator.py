@@ -8,11 +8,11 @@ import mujoco
 import numpy as np
 
 from ves_twin.control.controller import PlatformController
-from ves_twin.control.motion import JointMotion
 from ves_twin.control.played import Script
+from ves_twin.core.recording.recording import Event
 from ves_twin.effects.registry import parse_effects
+from ves_twin.mechanics.joint_motion import JointMotion
 from ves_twin.plant.plant import Plant
-from ves_twin.recording.recording import Event
 from ves_twin.scenario.schema import Scenario
 from ves_twin.simulator.build import (
     agenda_of,

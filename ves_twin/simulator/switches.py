@@ -6,11 +6,11 @@ import math
 from dataclasses import dataclass
 
 from ves_twin.control.leg_loop import start_legs
-from ves_twin.operation.laboratory import Laboratory
-from ves_twin.operation.machine import Machine
+from ves_twin.control.operation.machine import Machine
+from ves_twin.core.types import FloatArray
 from ves_twin.plant.hydraulics import PRESSURE_FORM
+from ves_twin.plant.laboratory import Laboratory
 from ves_twin.simulator.rig import Rig
-from ves_twin.types import FloatArray
 
 BRAKE_TIME, BRAKE_IMPEDANCE = 0.002, 0.99
 """Softness of a brake's dry friction [s, 1]. As stiff as the joints' own friction, the engine's

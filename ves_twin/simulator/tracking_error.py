@@ -7,9 +7,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ves_twin.core.signals import SIGNALS
+from ves_twin.core.types import FloatArray
 from ves_twin.scenario.schema import Scenario
-from ves_twin.signals import SIGNALS
-from ves_twin.types import FloatArray
 
 
 @dataclass(frozen=True)

@@ -5,9 +5,9 @@ from __future__ import annotations
 import mujoco
 import numpy as np
 
-from ves_twin.compiled import compiled
+from ves_twin.core.compiled import compiled
+from ves_twin.core.types import FloatArray
 from ves_twin.plant.layout import Layout
-from ves_twin.types import FloatArray
 
 
 class GravityTruth:

@@ -7,11 +7,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from ves_twin.control import arm_servo
-from ves_twin.control.emulated import EmulatedSystem
-from ves_twin.errors import InvalidInputError
+from ves_twin.core.errors import InvalidInputError
+from ves_twin.core.types import FloatArray
+from ves_twin.mechanics.emulated import EmulatedSystem
 from ves_twin.plant.plant import Plant
 from ves_twin.simulator.reference import ZeroGravityReference
-from ves_twin.types import FloatArray
 
 
 @dataclass(frozen=True)

@@ -9,7 +9,7 @@ from itertools import islice
 from queue import Empty, SimpleQueue
 from typing import TYPE_CHECKING, Any
 
-from ves_twin.errors import VesTwinError, one_line
+from ves_twin.core.errors import VesTwinError, one_line
 from ves_twin.sweeps.engine import BEAT, TRIES, Beat
 from ves_twin.sweeps.point import Point
 from ves_twin.sweeps.result import PointResult

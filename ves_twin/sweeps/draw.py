@@ -8,7 +8,7 @@ from math import prod
 
 import numpy as np
 
-from ves_twin.errors import InvalidInputError
+from ves_twin.core.errors import InvalidInputError
 from ves_twin.sweeps.key_value import Value
 from ves_twin.sweeps.variation import MOST_VALUES, Span, Variation
 

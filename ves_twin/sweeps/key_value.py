@@ -6,8 +6,8 @@ from typing import get_args
 
 from pydantic import BaseModel
 
+from ves_twin.core.errors import InvalidInputError
 from ves_twin.effects.registry import parse_effects
-from ves_twin.errors import InvalidInputError
 from ves_twin.plant.plant import Plant
 from ves_twin.scenario.fields import InUnit
 from ves_twin.scenario.schema import Scenario

@@ -16,10 +16,10 @@ from types import TracebackType
 
 from pydantic import ValidationError
 
-from ves_twin.errors import FileAccessError, InvalidInputError, VesTwinError
+from ves_twin.core.errors import FileAccessError, InvalidInputError, VesTwinError
+from ves_twin.core.whole_file import write_whole
 from ves_twin.sweeps.plan import SweepPlan
 from ves_twin.sweeps.result import LOST, PointResult
-from ves_twin.whole_file import write_whole
 
 IDENTITY_NAME = "sweep.json"
 ROWS_NAME = "rows.jsonl"

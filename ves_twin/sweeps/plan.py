@@ -8,11 +8,11 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from ves_twin.control.emulated import EmulatedSystem
+from ves_twin.core.errors import FileAccessError, InvalidInputError
+from ves_twin.core.resources import find_resource
 from ves_twin.effects.registry import parse_effects
-from ves_twin.errors import FileAccessError, InvalidInputError
+from ves_twin.mechanics.emulated import EmulatedSystem
 from ves_twin.plant.plant import Plant
-from ves_twin.resources import find_resource
 from ves_twin.scenario.motions import SetpointMotion
 from ves_twin.scenario.schema import Scenario
 from ves_twin.simulator.simulate import versions

@@ -14,12 +14,12 @@ from multiprocessing import get_context
 from multiprocessing.connection import Connection, wait
 from multiprocessing.context import SpawnProcess
 
-from ves_twin.errors import VesTwinError
+from ves_twin.core.errors import VesTwinError
+from ves_twin.core.workers import single_threads
 from ves_twin.sweeps.engine import BEAT, TRIES, Beat
 from ves_twin.sweeps.point import Point
 from ves_twin.sweeps.result import PointResult
 from ves_twin.sweeps.run_point import lost_point, run_point
-from ves_twin.workers import single_threads
 
 
 @dataclass

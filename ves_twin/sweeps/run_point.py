@@ -10,9 +10,9 @@ from time import perf_counter
 
 import numpy as np
 
+from ves_twin.core.errors import VesTwinError, one_line
+from ves_twin.core.recording.recording import Recording
 from ves_twin.effects.registry import parse_effects
-from ves_twin.errors import VesTwinError, one_line
-from ves_twin.recording.recording import Recording
 from ves_twin.simulator.emulation_error import emulation_error
 from ves_twin.simulator.outcome import Outcome
 from ves_twin.simulator.recorder import IDEAL, LEG_LAG

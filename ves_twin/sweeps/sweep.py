@@ -8,7 +8,7 @@ from contextlib import closing
 from dataclasses import dataclass
 from pathlib import Path
 
-from ves_twin.errors import FileAccessError
+from ves_twin.core.errors import FileAccessError
 from ves_twin.sweeps.engine import Engine
 from ves_twin.sweeps.ledger import Ledger
 from ves_twin.sweeps.plan import SweepPlan

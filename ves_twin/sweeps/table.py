@@ -13,12 +13,12 @@ from pathlib import Path
 import pyarrow as pa
 import pyarrow.parquet as pq
 
+from ves_twin.core.signals import SIGNALS
+from ves_twin.core.whole_file import whole_file
 from ves_twin.scenario.fields import Part
-from ves_twin.signals import SIGNALS
 from ves_twin.sweeps.key_value import Value
 from ves_twin.sweeps.plan import SweepPlan
 from ves_twin.sweeps.result import PointResult
-from ves_twin.whole_file import whole_file
 
 TABLE_NAME = "sweep.parquet"
 TIMING_NAME = "timing.parquet"

@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from dataclasses import dataclass
 
-from ves_twin.errors import InvalidInputError
+from ves_twin.core.errors import InvalidInputError
 from ves_twin.scenario.load import parse_setting
 
 MOST_VALUES = 100_000

@@ -8,10 +8,10 @@ from enum import StrEnum
 from pathlib import Path
 from typing import Any
 
-from ves_twin.errors import InvalidInputError, UnknownNameError
-from ves_twin.resources import find_resource
+from ves_twin.core.errors import InvalidInputError, UnknownNameError
+from ves_twin.core.resources import find_resource
+from ves_twin.core.toml_file import check_schema, read_toml
 from ves_twin.thesis.tolerance import Comparison, Tolerance
-from ves_twin.toml_file import check_schema, read_toml
 
 SCHEMA = 1
 

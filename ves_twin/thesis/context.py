@@ -9,8 +9,8 @@ from enum import StrEnum
 from shlex import quote
 from typing import Any
 
+from ves_twin.core.recording.recording import Recording
 from ves_twin.plant.plant import NOMINAL, Plant
-from ves_twin.recording.recording import Recording
 from ves_twin.scenario.schema import Scenario
 from ves_twin.simulator.simulate import simulate
 

@@ -9,8 +9,8 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
+from ves_twin.core.resources import resource_folder
 from ves_twin.plant.plant import Plant
-from ves_twin.resources import resource_folder
 
 FOLDER = "thesis/left_out"
 

@@ -10,8 +10,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ves_twin.linear.leg_settings import LegSettings
 from ves_twin.procedures.sine_fit import fit_sine
+from ves_twin.simulator.linear.leg_settings import LegSettings
 from ves_twin.thesis.context import Context
 
 AMPLITUDE = 1e-3

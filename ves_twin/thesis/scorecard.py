@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 
 from pydantic import JsonValue
 
-from ves_twin.errors import VesTwinError, one_line
+from ves_twin.core.errors import VesTwinError, one_line
 from ves_twin.thesis.claim import Claim, Kind
 from ves_twin.thesis.context import Context, Models
 from ves_twin.thesis.evaluation import (

@@ -7,12 +7,12 @@ from dataclasses import dataclass
 import mujoco
 import numpy as np
 
+from ves_twin.core.types import FloatArray
 from ves_twin.plant.assembly import assemble, compile_model
 from ves_twin.plant.layout import Layout
 from ves_twin.plant.plant import Plant
 from ves_twin.plant.statics import place_rig
 from ves_twin.simulator.truth_port import GravityTruth
-from ves_twin.types import FloatArray
 
 
 @dataclass(frozen=True)

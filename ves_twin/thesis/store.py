@@ -8,8 +8,8 @@ from dataclasses import asdict, dataclass
 from functools import lru_cache
 from pathlib import Path
 
-from ves_twin.compiled import cache_folder
-from ves_twin.resources import resource_folder
+from ves_twin.core.compiled import cache_folder
+from ves_twin.core.resources import resource_folder
 from ves_twin.simulator.simulate import versions
 from ves_twin.thesis.context import Context
 from ves_twin.thesis.evaluation import Evaluation

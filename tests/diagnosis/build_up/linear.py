@@ -8,10 +8,10 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.signal import lfilter
 
+from ves_twin.core.recording.recording import Recording, RecordingInfo
 from ves_twin.diagnosis.build_up.halves import Halves, halves_at
-from ves_twin.diagnosis.forward import Channel, Hypothesis, Parameter, Programme
-from ves_twin.diagnosis.observe import Observed, observe
-from ves_twin.recording.recording import Recording, RecordingInfo
+from ves_twin.diagnosis.forward import Channel, Excitation, Hypothesis, Parameter
+from ves_twin.diagnosis.preprocess import Dataset, preprocess
 
 PERIOD, ROWS = 0.02, 900
 JOINTS = ("a", "b")
@@ -74,7 +74,7 @@ class Linear:
         )
 
     def simulate(
-        self, programme: Programme, values: Mapping[str, float], refined: bool = False
+        self, programme: Excitation, values: Mapping[str, float], refined: bool = False
     ) -> np.ndarray:
         rows = np.zeros((len(programme.time), 2))
         for c, joint in enumerate(JOINTS):
@@ -89,7 +89,7 @@ class Linear:
         return rows
 
 
-def motion(seed: int) -> Programme:
+def motion(seed: int) -> Excitation:
     rng = np.random.default_rng(seed)
     t = PERIOD * np.arange(ROWS)
     q = np.stack(
@@ -104,7 +104,7 @@ def motion(seed: int) -> Programme:
         ],
         axis=1,
     )
-    return Programme("motion", t, {"q": q}, rate=1.0 / PERIOD)
+    return Excitation("motion", t, {"q": q}, rate=1.0 / PERIOD)
 
 
 def recorded(
@@ -121,8 +121,8 @@ def recorded(
     return Recording(fed.time, {**fed.drive, "torque": rows}, RecordingInfo("measured"))
 
 
-def seen(plant: Linear, record: Recording) -> Observed:
-    return observe(plant, [record], rate=1.0 / PERIOD)
+def seen(plant: Linear, record: Recording) -> Dataset:
+    return preprocess(plant, [record], rate=1.0 / PERIOD)
 
 
 def halves(plant: Linear, hidden: Mapping[str, float], seed: int, error: float = 0.1) -> Halves:

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from ves_twin.errors import InvalidInputError
+from ves_twin.core.errors import InvalidInputError
 from ves_twin.plant.physics import delay
 from ves_twin.plant.physics.delay import LONGEST, take_late
 

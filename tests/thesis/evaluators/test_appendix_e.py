@@ -4,10 +4,10 @@ from dataclasses import replace
 
 import pytest
 
-from ves_twin.operation import machine
-from ves_twin.operation.laboratory import Laboratory
-from ves_twin.operation.machine import Machine
-from ves_twin.operation.state import Action, State
+from ves_twin.control.operation import machine
+from ves_twin.control.operation.machine import Machine
+from ves_twin.control.operation.state import Action, State
+from ves_twin.plant.laboratory import Laboratory
 from ves_twin.plant.plant import Plant
 from ves_twin.simulator.switches import Switches
 from ves_twin.thesis.context import Context

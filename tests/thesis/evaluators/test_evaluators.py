@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 
 from ves_twin.control.leg_loop import chebyshev_section
-from ves_twin.linear.leg_settings import LegSettings
 from ves_twin.plant.plant import Plant
 from ves_twin.procedures.registry import load_procedure
 from ves_twin.scenario.load import parse_setting
 from ves_twin.scenario.schema import Scenario
+from ves_twin.simulator.linear.leg_settings import LegSettings
 from ves_twin.thesis.claim import load_claims
 from ves_twin.thesis.context import Context
 from ves_twin.thesis.evaluation import Evaluation, NotBuilt, NotRun, NotTestable

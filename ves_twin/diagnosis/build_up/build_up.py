@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from scipy.stats import norm
 
+from ves_twin.core.types import FloatArray
 from ves_twin.diagnosis.adequacy import cells, misfit
 from ves_twin.diagnosis.build_up.halves import Halves, carried_point, halves_at
 from ves_twin.diagnosis.build_up.paired import loss
@@ -18,14 +19,13 @@ from ves_twin.diagnosis.build_up.select import Selector
 from ves_twin.diagnosis.build_up.sizes import half_widths
 from ves_twin.diagnosis.build_up.trials import Trial
 from ves_twin.diagnosis.evidence import Evidence
-from ves_twin.diagnosis.explain import Desk, Explanation
+from ves_twin.diagnosis.explain import Explanation, FitContext
 from ves_twin.diagnosis.linearise import linearise
-from ves_twin.diagnosis.observe import Observed
+from ves_twin.diagnosis.preprocess import Dataset
 from ves_twin.diagnosis.refine import Fit, bare_residual, refine
 from ves_twin.diagnosis.runs import Runs
 from ves_twin.diagnosis.search import Search
 from ves_twin.diagnosis.whitening import Whitening
-from ves_twin.types import FloatArray
 
 ROUNDS = 3
 """Times that columns are computed anew where a choice of causes, fitted in full, has moved them."""
@@ -60,9 +60,9 @@ class _Builder:
         fitted, held: its halves.
     """
 
-    desk: Desk
-    fitted: Observed
-    held: Observed
+    desk: FitContext
+    fitted: Dataset
+    held: Dataset
 
     def halves(self, point: FloatArray, present: Sequence[Trial]) -> Halves:
         causes = self.desk.first.screen.bank.hypotheses
@@ -115,7 +115,7 @@ class _Builder:
         return refine(evidence, causes, shift, local, 1, probed=probed)
 
 
-def build_up(desk: Desk, start: Explanation, fitted: Observed, held: Observed) -> Built | None:
+def build_up(desk: FitContext, start: Explanation, fitted: Dataset, held: Dataset) -> Built | None:
     """Choose causes on one half of the data, prove each on the other.
 
     Args:
@@ -215,7 +215,7 @@ def _widened(evidence: Evidence, fit: Fit, confidence: float) -> Fit:
     return replace(fit, covariance=fit.covariance * np.outer(grown, grown))
 
 
-def _explained(desk: Desk, start: Explanation, final: Fit) -> Explanation:
+def _explained(desk: FitContext, start: Explanation, final: Fit) -> Explanation:
     """The fit as an explanation in units of noise."""
     evidence = Evidence(
         desk.first.evidence.runs, desk.first.evidence.measured, start.evidence.whitening

@@ -6,9 +6,9 @@ from dataclasses import replace
 
 import numpy as np
 
+from ves_twin.core.types import FloatArray
 from ves_twin.diagnosis.runs import Runs
 from ves_twin.diagnosis.whitening import ORDER, Whitening, prediction_filters
-from ves_twin.types import FloatArray
 
 SHRINKAGE = 0.1
 """Share of the innovations' covariance that is taken without its correlations between channels:

@@ -7,13 +7,13 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from ves_twin.core.types import FloatArray, SingleArray
 from ves_twin.diagnosis.build_up.regression import Half, Regression
 from ves_twin.diagnosis.build_up.trials import Trial, columns_of, trials_at
 from ves_twin.diagnosis.forward import Hypothesis
 from ves_twin.diagnosis.linearise import Linearisation, linearise
-from ves_twin.diagnosis.observe import Observed
+from ves_twin.diagnosis.preprocess import Dataset
 from ves_twin.diagnosis.runs import Progress, Runs, silent
-from ves_twin.types import FloatArray, SingleArray
 
 STRETCHES = 10
 """Stretches that a record is cut into where nothing else is held out, every second one for proof:
@@ -29,8 +29,8 @@ class Halves:
 
 
 def halves_at(
-    fitted: Observed,
-    held: Observed,
+    fitted: Dataset,
+    held: Dataset,
     point: FloatArray,
     causes: Sequence[Hypothesis],
     present: Sequence[Trial] = (),
@@ -56,7 +56,7 @@ def halves_at(
     return Halves(Regression(mine, trials), yours)
 
 
-def split(seen: Observed) -> tuple[Observed, Observed]:
+def split(seen: Dataset) -> tuple[Dataset, Dataset]:
     """Every second stretch of a record to fit, the others held out: rows of the other are holes."""
     parts: tuple[list[np.ndarray], list[np.ndarray]] = ([], [])
     for k, rows in enumerate(seen.runs.slices):
@@ -84,7 +84,7 @@ def carried_point(runs: Runs, other: Runs, point: FloatArray) -> FloatArray:
 
 
 def _half(
-    seen: Observed,
+    seen: Dataset,
     point: FloatArray,
     trials: Sequence[Trial],
     columns: Sequence[SingleArray],
@@ -107,7 +107,7 @@ def _half(
 
 
 def _sorted(
-    seen: Observed,
+    seen: Dataset,
     local: Linearisation,
     target: FloatArray,
     columns: Sequence[SingleArray],

@@ -7,11 +7,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ves_twin.core.types import FloatArray
 from ves_twin.diagnosis.build_up.discrepancy import apart
 from ves_twin.diagnosis.build_up.paired import paired
 from ves_twin.diagnosis.build_up.proof import FALSE_SHARE, Bench
 from ves_twin.diagnosis.build_up.regression import Half
-from ves_twin.types import FloatArray
 
 KNOTS = 7
 """Knots of a piecewise linear law, at quantiles of its variable."""

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.stats import t as student
 
-from ves_twin.types import FloatArray, IntArray
+from ves_twin.core.types import FloatArray, IntArray
 
 DEGREES = 5.0
 """Of Student's loss 3 ln(1 + (e / s)^2 / 5): a reversal or a spike counts by its logarithm. With

@@ -8,12 +8,12 @@ from functools import cached_property
 
 import numpy as np
 
+from ves_twin.core.types import BoolArray, FloatArray, IntArray
 from ves_twin.diagnosis.build_up.discrepancy import apart, carried
 from ves_twin.diagnosis.build_up.paired import Difference, loss, paired
 from ves_twin.diagnosis.build_up.regression import Half, LinearFit, Regression
 from ves_twin.diagnosis.metric import Metric
 from ves_twin.diagnosis.whitening import Whitening
-from ves_twin.types import BoolArray, FloatArray, IntArray
 
 FALSE_SHARE = 0.05
 """False-discovery rate over everything that was put to proof."""

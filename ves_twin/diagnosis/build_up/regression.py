@@ -8,11 +8,11 @@ from functools import cached_property
 
 import numpy as np
 
+from ves_twin.core.types import BoolArray, FloatArray, IntArray, SingleArray
 from ves_twin.diagnosis.build_up.discrepancy import discrepancy
 from ves_twin.diagnosis.build_up.trials import Trial
 from ves_twin.diagnosis.runs import Runs
 from ves_twin.diagnosis.whitening import Whitening
-from ves_twin.types import BoolArray, FloatArray, IntArray, SingleArray
 
 WIDE = 5.0
 """Prior sd of a cause's contribution, in rms of everything that is to be explained: wide enough to

@@ -7,6 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from ves_twin.core.types import FloatArray
 from ves_twin.diagnosis.build_up.halves import Halves
 from ves_twin.diagnosis.build_up.inseparable import inseparable
 from ves_twin.diagnosis.build_up.leftover_laws import Law, by_channel, laws_left, same_motion
@@ -14,7 +15,6 @@ from ves_twin.diagnosis.build_up.proof import FALSE_SHARE, Bench, Proof
 from ves_twin.diagnosis.build_up.regression import Half
 from ves_twin.diagnosis.build_up.result import BuildUp, Left, Proved
 from ves_twin.diagnosis.build_up.stand_ins import stand_ins
-from ves_twin.types import FloatArray
 
 ALONG = 0.3
 """Correlation from which channels are said to go along with what another one leaves."""

@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 from scipy.stats import t as student
 
+from ves_twin.core.types import FloatArray
 from ves_twin.diagnosis.evidence import Evidence
 from ves_twin.diagnosis.refine import Fit, bare_residual
-from ves_twin.types import FloatArray
 
 BLOCKS = 20
 """Stretches of time whose scores are taken as independent: chosen with the paired test's limits,

@@ -7,9 +7,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ves_twin.core.types import FloatArray, SingleArray
 from ves_twin.diagnosis.forward import Hypothesis
 from ves_twin.diagnosis.runs import Progress, Runs, silent
-from ves_twin.types import FloatArray, SingleArray
 
 STRAIGHT = 0.01
 """Relative change of a column between two sizes up to which a cause counts as linear: a tenth of

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from datetime import datetime, timedelta
 
-from ves_twin.errors import InvalidInputError
+from ves_twin.core.errors import InvalidInputError
 
 
 @dataclass(frozen=True)

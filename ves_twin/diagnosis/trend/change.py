@@ -9,10 +9,10 @@ import numpy as np
 from scipy.optimize import brentq
 from scipy.stats import chi2, norm
 
+from ves_twin.core.types import FloatArray
 from ves_twin.diagnosis.trend.false_alarms import Limits
 from ves_twin.diagnosis.trend.joint import directions
 from ves_twin.diagnosis.trend.shapes import Kind, Shapes
-from ves_twin.types import FloatArray
 
 SHUFFLES = 4000
 """Permutations of the days, where sizes scatter from day to day."""

@@ -7,12 +7,12 @@ from functools import cached_property
 
 import numpy as np
 
+from ves_twin.core.types import FloatArray
 from ves_twin.diagnosis.assess import Assessment
-from ves_twin.diagnosis.bank import Bank
 from ves_twin.diagnosis.forward import Hypothesis
 from ves_twin.diagnosis.metric import Metric
 from ves_twin.diagnosis.null import Thresholds
-from ves_twin.types import FloatArray
+from ves_twin.diagnosis.signature_library import SignatureLibrary
 
 PROBE = 10.0
 """Size of a cause, in sigma of one recording, at which its signature is taken: visible, and still
@@ -38,7 +38,7 @@ class Day:
     off: bool
 
     @property
-    def bank(self) -> Bank:
+    def bank(self) -> SignatureLibrary:
         """Signatures of the library in this recording."""
         return self.look.screen.bank
 

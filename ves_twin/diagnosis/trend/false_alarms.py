@@ -7,10 +7,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ves_twin.core.types import FloatArray
 from ves_twin.diagnosis.forward import Hypothesis
 from ves_twin.diagnosis.trend.joint import LEAST, Joint, directions
 from ves_twin.diagnosis.trend.shapes import Shapes
-from ves_twin.types import FloatArray
 
 BEYOND = 100
 """Draws beyond a limit, which make the stated rate true to a tenth."""

@@ -7,14 +7,14 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from ves_twin.core.types import FloatArray
+from ves_twin.core.workers import Workers
 from ves_twin.diagnosis.adequacy import cells, misfit
 from ves_twin.diagnosis.evidence import Evidence
 from ves_twin.diagnosis.forward import Hypothesis
 from ves_twin.diagnosis.refine import Fit, bare_residual, refine
 from ves_twin.diagnosis.trend.day import Day
 from ves_twin.diagnosis.trend.one_rig import Sharing
-from ves_twin.types import FloatArray
-from ves_twin.workers import Workers
 
 WORTH = 4.0
 """chi^2 from which a recording's screen says where the fit of a cause begins; below, at zero."""

@@ -8,8 +8,8 @@ from functools import cached_property
 
 import numpy as np
 
+from ves_twin.core.types import FloatArray
 from ves_twin.diagnosis.trend.day import Telling
-from ves_twin.types import FloatArray
 
 LEAST = 1e-12
 """Power [sigma^2] of a direction below which it counts as not there, of the largest."""

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ves_twin.types import FloatArray
+from ves_twin.core.types import FloatArray
 
 NAMED = 3
 """Parameters that are told where recordings do not agree."""

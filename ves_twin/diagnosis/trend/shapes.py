@@ -8,7 +8,7 @@ from functools import cached_property
 
 import numpy as np
 
-from ves_twin.types import FloatArray
+from ves_twin.core.types import FloatArray
 
 DATES = 41
 """Dates between the first day and the last but two from which a ramp may begin."""

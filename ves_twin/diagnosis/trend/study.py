@@ -7,19 +7,19 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
+from ves_twin.core.errors import InvalidInputError
+from ves_twin.core.recording.recording import Recording
+from ves_twin.core.workers import Workers
 from ves_twin.diagnosis.assess import assess, pull_limit
-from ves_twin.diagnosis.bank import Bank, bank_key, build_bank, cached_bank
 from ves_twin.diagnosis.forward import Forward, Hypothesis
 from ves_twin.diagnosis.likeness import check_likeness
 from ves_twin.diagnosis.null import Thresholds, cached_thresholds
-from ves_twin.diagnosis.observe import Observed, observe
+from ves_twin.diagnosis.preprocess import Dataset, preprocess
 from ves_twin.diagnosis.runs import Progress, silent
 from ves_twin.diagnosis.settings import Settings
+from ves_twin.diagnosis.signature_library import SignatureLibrary, bank_key, build_bank, cached_bank
 from ves_twin.diagnosis.trend.day import Day
 from ves_twin.diagnosis.whitening import whitening_of
-from ves_twin.errors import InvalidInputError
-from ves_twin.recording.recording import Recording
-from ves_twin.workers import Workers
 
 FITTED = (-1.0, -np.inf, -1.0)
 """Limits that every record passes, so that its commissioning errors are always fitted by the full
@@ -39,7 +39,7 @@ class Study:
     progress: Progress = silent
 
     def __post_init__(self) -> None:
-        self._banks: dict[str, tuple[Bank, Thresholds]] = {}
+        self._banks: dict[str, tuple[SignatureLibrary, Thresholds]] = {}
 
     @property
     def causes(self) -> tuple[Hypothesis, ...]:
@@ -57,7 +57,7 @@ class Study:
 
     def day(self, recording: Recording, time: float, number: int, count: int) -> Day:
         """One recording before any cause is named."""
-        seen = observe(self.forward, [recording], self.workers, self.settings.rate)
+        seen = preprocess(self.forward, [recording], self.workers, self.settings.rate)
         self.progress(number / count, f"recording {number + 1} of {count}")
         whitening = whitening_of(seen.runs, self.standstill)
         each = replace(self.settings, alpha=self.settings.alpha / count)
@@ -69,13 +69,13 @@ class Study:
         return Day(name, time, look, limits, off)
 
     def _known(
-        self, seen: Observed, compute: Callable[[Bank], Thresholds]
-    ) -> tuple[Bank, Thresholds]:
+        self, seen: Dataset, compute: Callable[[SignatureLibrary], Thresholds]
+    ) -> tuple[SignatureLibrary, Thresholds]:
         key = bank_key(seen.runs, b"".join(bad.tobytes() for bad in seen.runs.holes))
         if key in self._banks:
             return self._banks[key]
 
-        def build() -> Bank:
+        def build() -> SignatureLibrary:
             check_likeness(seen, seen.runs.one(seen.runs.origin))
             return build_bank(seen.runs)
 

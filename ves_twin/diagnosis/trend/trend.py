@@ -8,6 +8,10 @@ from dataclasses import replace
 import numpy as np
 from scipy.stats import norm
 
+from ves_twin.core.errors import InvalidInputError, UnknownNameError
+from ves_twin.core.recording.recording import Recording
+from ves_twin.core.types import FloatArray
+from ves_twin.core.workers import Workers
 from ves_twin.diagnosis.forward import Forward
 from ves_twin.diagnosis.runs import Progress, silent
 from ves_twin.diagnosis.settings import Settings
@@ -20,10 +24,6 @@ from ves_twin.diagnosis.trend.result import Answer, DaySize, FollowedCause, Tren
 from ves_twin.diagnosis.trend.series import Series
 from ves_twin.diagnosis.trend.study import Study
 from ves_twin.diagnosis.verdict import Basis
-from ves_twin.errors import InvalidInputError, UnknownNameError
-from ves_twin.recording.recording import Recording
-from ves_twin.types import FloatArray
-from ves_twin.workers import Workers
 
 ALPHA = 0.01
 """Rate of false alarms for a whole series, where nobody states another."""

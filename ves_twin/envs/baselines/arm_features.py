@@ -6,9 +6,9 @@ from typing import final
 
 import numpy as np
 
-from ves_twin.envs.policy import Briefing
-from ves_twin.errors import InvalidInputError
-from ves_twin.types import FloatArray
+from ves_twin.core.errors import InvalidInputError
+from ves_twin.core.types import FloatArray
+from ves_twin.envs.policy import TaskSpec
 
 SIZES = np.array(
     [0.05] * 3 + [0.05] * 3  # pose [m, rad]; a release begins at 0.1 m
@@ -36,7 +36,7 @@ class ArmFeatures:
 
     WIDTH = len(SIZES)
 
-    def __init__(self, briefing: Briefing) -> None:
+    def __init__(self, briefing: TaskSpec) -> None:
         columns = briefing.observations.slices
         if briefing.emulated is None or "goal" in columns:
             raise InvalidInputError("features", "another task", "VesTwin/VibrationDamping-v0")

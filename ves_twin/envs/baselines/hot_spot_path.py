@@ -6,12 +6,12 @@ from typing import final
 
 import numpy as np
 
+from ves_twin.core.errors import InvalidInputError
+from ves_twin.core.types import FloatArray
 from ves_twin.envs.arm_env import HIGH, LOW
 from ves_twin.envs.baselines.path_policy import DURATION, PathPolicy, timed
-from ves_twin.errors import InvalidInputError
-from ves_twin.planning.hot_spot import hot_spot_path
-from ves_twin.planning.puma import puma_chain
-from ves_twin.types import FloatArray
+from ves_twin.mechanics.planning.hot_spot import hot_spot_path
+from ves_twin.plant.puma_chain import puma_chain
 
 CELLS = 16
 """Cells along each joint that moves; all three move here, so the grid is coarser than the map."""

@@ -6,9 +6,9 @@ from typing import final
 
 import numpy as np
 
-from ves_twin.envs.policy import Briefing, Policy
-from ves_twin.errors import InvalidInputError
-from ves_twin.types import FloatArray
+from ves_twin.core.errors import InvalidInputError
+from ves_twin.core.types import FloatArray
+from ves_twin.envs.policy import Policy, TaskSpec
 
 DELAY = 0.005
 """Delay beside the leg loop's own lag [s]: the valve's 4 ms and more; tuned on train-v0."""
@@ -21,7 +21,7 @@ PROPORTIONAL, INTEGRAL = 0.5, 5.0
 class LagFeedforward(Policy):
     """Offset = (1/gain + DELAY) l_ref' + P (l_ref - l) + I int (l_ref - l), leg by leg."""
 
-    def __init__(self, briefing: Briefing) -> None:
+    def __init__(self, briefing: TaskSpec) -> None:
         if "reference.ahead" not in briefing.observations.slices:
             raise InvalidInputError("LagFeedforward", "no reference", "VesTwin/PlatformTracking-v0")
         self._known = briefing
@@ -31,7 +31,7 @@ class LagFeedforward(Policy):
         self._scale = briefing.actions.high
 
     @classmethod
-    def build(cls, briefing: Briefing) -> LagFeedforward:
+    def build(cls, briefing: TaskSpec) -> LagFeedforward:
         """For PlatformTracking."""
         return cls(briefing)
 

@@ -7,9 +7,9 @@ from typing import final
 import numpy as np
 from scipy.linalg import solve_discrete_are
 
-from ves_twin.envs.policy import Briefing, Policy
-from ves_twin.errors import InvalidInputError
-from ves_twin.types import FloatArray
+from ves_twin.core.errors import InvalidInputError
+from ves_twin.core.types import FloatArray
+from ves_twin.envs.policy import Policy, TaskSpec
 
 EFFORT = 0.1
 """Loss of a share of 1 over a second [J]; tuned on train-v0."""
@@ -32,7 +32,7 @@ class Lqg(Policy):
     two cycles of look-ahead, count as one step of delay.
     """
 
-    def __init__(self, briefing: Briefing) -> None:
+    def __init__(self, briefing: TaskSpec) -> None:
         from control import sample_system  # slow to import
 
         if briefing.emulated is None:
@@ -60,7 +60,7 @@ class Lqg(Policy):
         self._a, self._b, self._c = a, b, c
 
     @classmethod
-    def build(cls, briefing: Briefing) -> Lqg:
+    def build(cls, briefing: TaskSpec) -> Lqg:
         """For an environment of the arm on a base."""
         return cls(briefing)
 

@@ -7,11 +7,11 @@ from typing import Self
 
 import numpy as np
 
-from ves_twin.control.motion import quintic
-from ves_twin.control.path_motion import at_lengths, path_lengths
-from ves_twin.envs.policy import Briefing, Policy
-from ves_twin.errors import InvalidInputError
-from ves_twin.types import FloatArray
+from ves_twin.core.errors import InvalidInputError
+from ves_twin.core.types import FloatArray
+from ves_twin.envs.policy import Policy, TaskSpec
+from ves_twin.mechanics.joint_motion import quintic
+from ves_twin.mechanics.path_motion import at_lengths, path_lengths
 
 DURATION = 5.0
 """Time of a move [s]. Source: coupling_map_paths; 4 s and less defeat the coupling map."""
@@ -23,7 +23,7 @@ PULL = 1.0
 class PathPolicy(Policy, abc.ABC):
     """Plans when an episode begins, then follows the plan's rates."""
 
-    def __init__(self, briefing: Briefing) -> None:
+    def __init__(self, briefing: TaskSpec) -> None:
         if "goal" not in briefing.observations.slices or briefing.emulated is None:
             raise InvalidInputError(type(self).__name__, "no goal", "VesTwin/VibrationFreeReach-v0")
         self._briefing = briefing
@@ -31,7 +31,7 @@ class PathPolicy(Policy, abc.ABC):
         self._plan = np.zeros((2, 3))
 
     @classmethod
-    def build(cls, briefing: Briefing) -> Self:
+    def build(cls, briefing: TaskSpec) -> Self:
         """For VibrationFreeReach."""
         return cls(briefing)
 

@@ -8,13 +8,13 @@ import numpy as np
 from scipy.interpolate import BSpline
 from scipy.optimize import minimize
 
+from ves_twin.core.errors import InvalidInputError
+from ves_twin.core.types import FloatArray
 from ves_twin.envs.baselines.path_policy import DURATION, PathPolicy, timed
 from ves_twin.envs.reach import ENERGY
-from ves_twin.errors import InvalidInputError
-from ves_twin.planning.base_motion import base_motion
-from ves_twin.planning.flexible_base import strain_energy
-from ves_twin.planning.puma import puma_chain
-from ves_twin.types import FloatArray
+from ves_twin.mechanics.planning.base_motion import base_motion
+from ves_twin.mechanics.planning.flexible_base import strain_energy
+from ves_twin.plant.puma_chain import puma_chain
 
 KNOTS = 10
 """Free points of each joint's cubic spline."""

@@ -6,11 +6,11 @@ from typing import final
 
 import numpy as np
 
-from ves_twin.envs.policy import Briefing, Policy
-from ves_twin.errors import InvalidInputError
-from ves_twin.planning.flexible_base import PPED_GAINS
-from ves_twin.planning.puma import puma_chain
-from ves_twin.types import FloatArray
+from ves_twin.core.errors import InvalidInputError
+from ves_twin.core.types import FloatArray
+from ves_twin.envs.policy import Policy, TaskSpec
+from ves_twin.mechanics.planning.flexible_base import PPED_GAINS
+from ves_twin.plant.puma_chain import puma_chain
 
 PARTS = 20
 """Euler steps in a step of the environment: B over H_qq is below 40 /s."""
@@ -26,7 +26,7 @@ class Pped(Policy):
     p' = -B q' - K (q - q0),  q' = H_qq^-1 (p - H_bq' P').
     """
 
-    def __init__(self, briefing: Briefing) -> None:
+    def __init__(self, briefing: TaskSpec) -> None:
         q = np.array(briefing.scenario.arm.start)
         mass = puma_chain(briefing.belief).mass_matrix(q)
         self._coupling = mass[:6, 6:].T
@@ -34,7 +34,7 @@ class Pped(Policy):
         self._briefing, self._scale = briefing, briefing.actions.high
 
     @classmethod
-    def build(cls, briefing: Briefing) -> Pped:
+    def build(cls, briefing: TaskSpec) -> Pped:
         """For an environment of the arm on a base."""
         if briefing.emulated is None:
             raise InvalidInputError("Pped", "no emulated base", "VesTwin/VibrationDamping-v0")

@@ -6,8 +6,8 @@ from typing import final
 
 import numpy as np
 
-from ves_twin.envs.policy import Briefing, Policy
-from ves_twin.types import FloatArray
+from ves_twin.core.types import FloatArray
+from ves_twin.envs.policy import Policy, TaskSpec
 
 
 @final
@@ -18,7 +18,7 @@ class Still(Policy):
         self._width = width
 
     @classmethod
-    def build(cls, briefing: Briefing) -> Still:
+    def build(cls, briefing: TaskSpec) -> Still:
         """For any environment."""
         return cls(briefing.actions.width)
 

@@ -6,8 +6,8 @@ from typing import final
 
 import numpy as np
 
+from ves_twin.core.types import FloatArray
 from ves_twin.envs.baselines.path_policy import DURATION, PathPolicy, timed
-from ves_twin.types import FloatArray
 
 
 @final

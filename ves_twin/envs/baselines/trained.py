@@ -6,11 +6,11 @@ from typing import final
 
 import numpy as np
 
+from ves_twin.core.errors import InvalidInputError
+from ves_twin.core.resources import find_resource
+from ves_twin.core.types import FloatArray
 from ves_twin.envs.baselines.arm_features import ArmFeatures
-from ves_twin.envs.policy import Briefing, Policy
-from ves_twin.errors import InvalidInputError
-from ves_twin.resources import find_resource
-from ves_twin.types import FloatArray
+from ves_twin.envs.policy import Policy, TaskSpec
 
 WEIGHTS = "damping_sac"
 """File of models/policies/, written by benchmarks/train_damping.py."""
@@ -30,12 +30,12 @@ class TrainedDamping(Policy):
     Source: Haarnoja et al., Soft Actor-Critic, ICML 2018; weights by benchmarks/train_damping.py.
     """
 
-    def __init__(self, briefing: Briefing, layers: list[tuple[FloatArray, FloatArray]]) -> None:
+    def __init__(self, briefing: TaskSpec, layers: list[tuple[FloatArray, FloatArray]]) -> None:
         self._features = ArmFeatures(briefing)
         self._layers = layers
 
     @classmethod
-    def build(cls, briefing: Briefing) -> TrainedDamping:
+    def build(cls, briefing: TaskSpec) -> TrainedDamping:
         """For VesTwin/VibrationDamping-v0; raises InvalidInputError elsewhere."""
         path = find_resource("policy", "models/policies", WEIGHTS, ".npz")
         with np.load(path, allow_pickle=False) as file:

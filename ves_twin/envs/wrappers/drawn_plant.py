@@ -9,9 +9,9 @@ from typing import Any, ClassVar
 import gymnasium as gym
 import numpy as np
 
+from ves_twin.core.types import FloatArray
 from ves_twin.envs.rig_env import rig_env
 from ves_twin.plant.plant import Plant
-from ves_twin.types import FloatArray
 
 
 class DrawnPlant(gym.Wrapper[FloatArray, FloatArray, FloatArray, FloatArray], abc.ABC):

@@ -8,8 +8,8 @@ from typing import Any, final
 import gymnasium as gym
 from gymnasium.utils import RecordConstructorArgs
 
-from ves_twin.errors import InvalidInputError
-from ves_twin.types import FloatArray
+from ves_twin.core.errors import InvalidInputError
+from ves_twin.core.types import FloatArray
 
 
 @final

@@ -8,10 +8,10 @@ import gymnasium as gym
 import numpy as np
 from gymnasium.utils import RecordConstructorArgs
 
+from ves_twin.core.types import FloatArray
 from ves_twin.envs.rig_set import RigSet
 from ves_twin.envs.wrappers.drawn_plant import DrawnPlant
 from ves_twin.plant.plant import Plant
-from ves_twin.types import FloatArray
 
 
 @final

@@ -8,13 +8,13 @@ from typing import Any, final
 import gymnasium as gym
 from gymnasium.utils import RecordConstructorArgs
 
+from ves_twin.core.errors import InvalidInputError
+from ves_twin.core.recording.files import save_recording
+from ves_twin.core.recording.recording import Recording
+from ves_twin.core.types import FloatArray
 from ves_twin.envs.rig_env import rig_env
-from ves_twin.errors import InvalidInputError
-from ves_twin.recording.files import save_recording
-from ves_twin.recording.recording import Recording
 from ves_twin.simulator.recorder import MemorySink
 from ves_twin.simulator.simulate import make_folder, recording_info
-from ves_twin.types import FloatArray
 
 
 @final
@@ -86,6 +86,6 @@ class RecordEpisodes(
         path = self._folder / f"episode-{self._count:04d}.parquet"
         save_recording(recording, path)
         if self._rrd:
-            from ves_twin.rerun_log.write import write_rrd
+            from ves_twin.report.rerun.write import write_rrd
 
             write_rrd(recording, path.with_suffix(".rrd"))

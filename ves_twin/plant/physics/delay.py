@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from ves_twin.compiled import compiled
-from ves_twin.errors import InvalidInputError
-from ves_twin.types import FloatArray, Record
+from ves_twin.core.compiled import compiled
+from ves_twin.core.errors import InvalidInputError
+from ves_twin.core.types import FloatArray, Record
 
 LONGEST = 64
 """Ticks that a line remembers: 21.8 ms at the transducers' tick."""

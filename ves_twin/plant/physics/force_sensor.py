@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from ves_twin.compiled import compiled
-from ves_twin.types import FloatArray, Record, SingleArray
+from ves_twin.core.compiled import compiled
+from ves_twin.core.types import FloatArray, Record, SingleArray
 
 PARAMETERS = np.dtype(
     [

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from ves_twin.compiled import compiled
+from ves_twin.core.compiled import compiled
+from ves_twin.core.types import Record
 from ves_twin.plant.physics.chambers import growth
-from ves_twin.types import Record
 
 PARAMETERS = np.dtype(
     [

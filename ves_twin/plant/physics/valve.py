@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from ves_twin.compiled import compiled
-from ves_twin.types import FloatArray, Record
+from ves_twin.core.compiled import compiled
+from ves_twin.core.types import FloatArray, Record
 
 PARAMETERS = np.dtype(
     [

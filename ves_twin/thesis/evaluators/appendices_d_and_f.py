@@ -7,7 +7,7 @@ from collections.abc import Mapping
 import numpy as np
 
 from ves_twin.control.leg_loop import FilterPlace
-from ves_twin.kinematics.wrenches import sensor_to_top
+from ves_twin.mechanics.kinematics.wrenches import sensor_to_top
 from ves_twin.plant.layout import Layout
 from ves_twin.plant.physics.force_sensor import STATE, sample_wrench
 from ves_twin.scenario.schema import Legs, Scenario

@@ -6,15 +6,15 @@ from collections.abc import Callable, Mapping
 
 import numpy as np
 
-from ves_twin.beams.beam import DAMPING_RATIO, BeamMatrices, BentBeam, StraightBeam
-from ves_twin.beams.section import ALUMINIUM, Tube
-from ves_twin.resources import find_resource
+from ves_twin.core.resources import find_resource
+from ves_twin.core.toml_file import read_toml
+from ves_twin.core.types import FloatArray
+from ves_twin.core.units import to_si
+from ves_twin.mechanics.beams.beam import DAMPING_RATIO, BeamMatrices, BentBeam, StraightBeam
+from ves_twin.mechanics.beams.section import ALUMINIUM, Tube
 from ves_twin.thesis.claim import Claim
 from ves_twin.thesis.context import Context, Models
 from ves_twin.thesis.evaluation import Answer, Evaluation
-from ves_twin.toml_file import read_toml
-from ves_twin.types import FloatArray
-from ves_twin.units import to_si
 
 
 def _lengths(model: str, keys: tuple[str, ...]) -> tuple[float, ...]:

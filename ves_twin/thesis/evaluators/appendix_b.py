@@ -7,13 +7,13 @@ from collections.abc import Mapping
 import mujoco
 import numpy as np
 
-from ves_twin.planning.puma import puma_chain
-from ves_twin.planning.virtual_manipulator import VirtualManipulator
+from ves_twin.core.types import FloatArray
+from ves_twin.mechanics.planning.virtual_manipulator import VirtualManipulator
 from ves_twin.plant.assembly import JOINTS, assemble_fixed_arm, compile_model
+from ves_twin.plant.puma_chain import puma_chain
 from ves_twin.thesis.claim import Claim
 from ves_twin.thesis.context import Context
 from ves_twin.thesis.evaluation import Answer, Evaluation
-from ves_twin.types import FloatArray
 
 LINKS = ("link0", "link1", "link2", "link3")
 STEP = 1e-5

@@ -6,10 +6,10 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from ves_twin.errors import UnreachableError
-from ves_twin.operation.laboratory import Laboratory
+from ves_twin.core.errors import UnreachableError
+from ves_twin.core.recording.recording import Recording
+from ves_twin.plant.laboratory import Laboratory
 from ves_twin.plant.statics import check_reach
-from ves_twin.recording.recording import Recording
 from ves_twin.scenario.schema import Scenario
 from ves_twin.simulator.outcome import Outcome
 from ves_twin.thesis.claim import Claim

@@ -8,10 +8,10 @@ import numpy as np
 from scipy.signal import cont2discrete
 
 from ves_twin.control.arm_servo import spline
-from ves_twin.control.emulated import EmulatedSystem
-from ves_twin.kinematics.rotations import matrix_from_angles
+from ves_twin.core.signals import SIGNALS
+from ves_twin.mechanics.emulated import EmulatedSystem
+from ves_twin.mechanics.kinematics.rotations import matrix_from_angles
 from ves_twin.scenario.schema import Scenario
-from ves_twin.signals import SIGNALS
 from ves_twin.simulator.clock import Clock
 from ves_twin.simulator.outcome import Outcome
 from ves_twin.thesis.claim import Claim

@@ -7,18 +7,18 @@ from collections.abc import Mapping
 import mujoco
 import numpy as np
 
-from ves_twin.control.emulated import EmulatedSystem
-from ves_twin.errors import UnknownNameError
-from ves_twin.planning.coupling_map import coupling_map
-from ves_twin.planning.flexible_base import (
+from ves_twin.core.errors import UnknownNameError
+from ves_twin.mechanics.emulated import EmulatedSystem
+from ves_twin.mechanics.planning.coupling_map import coupling_map
+from ves_twin.mechanics.planning.flexible_base import (
     HIGH_GAINS,
     PPED_GAINS,
     FlexibleBaseArm,
     JointGains,
 )
-from ves_twin.planning.pped import damping_estimator, strain_energy_integral
-from ves_twin.planning.puma import puma_chain
+from ves_twin.mechanics.planning.pped import damping_estimator, strain_energy_integral
 from ves_twin.plant.assembly import JOINTS, assemble_free_arm, compile_model
+from ves_twin.plant.puma_chain import puma_chain
 from ves_twin.procedures.coupling_map_paths import CouplingMapPaths
 from ves_twin.procedures.paths_on_rig import PathsOnRig
 from ves_twin.procedures.registry import load_procedure

@@ -7,15 +7,16 @@ from collections.abc import Mapping
 import numpy as np
 from scipy.signal import freqs, freqz
 
-from ves_twin.control.emulated import EmulatedSystem
 from ves_twin.control.leg_loop import FilterPlace, chebyshev_section
-from ves_twin.linear.leg_settings import RATE_GAIN_PER_K2, LegSettings
+from ves_twin.core.types import ComplexArray, FloatArray
+from ves_twin.mechanics.emulated import EmulatedSystem
 from ves_twin.plant.modes import structural_modes
 from ves_twin.plant.statics import check_reach
 from ves_twin.procedures.gravity_shift import gravity_shift
 from ves_twin.procedures.stability_bench import MassLimit, StabilityBench
 from ves_twin.scenario.schema import Scenario
 from ves_twin.simulator.clock import Clock
+from ves_twin.simulator.linear.leg_settings import RATE_GAIN_PER_K2, LegSettings
 from ves_twin.simulator.outcome import Outcome
 from ves_twin.thesis.claim import Claim
 from ves_twin.thesis.context import Context
@@ -23,7 +24,6 @@ from ves_twin.thesis.evaluation import Answer, Evaluation, Evaluator, NotTestabl
 from ves_twin.thesis.evaluators.chapter_2 import model_rates
 from ves_twin.thesis.leg_response import bandwidth, leg_response
 from ves_twin.thesis.standing_rig import StandingRig
-from ves_twin.types import ComplexArray, FloatArray
 
 LOW = LegSettings(12.6)
 """K1 = 12000 without filter: about 2 Hz (5.2)."""

@@ -9,9 +9,9 @@ from typing import Any
 
 import numpy as np
 
-from ves_twin.gravity_model.gravity_model import gravity_in_top
+from ves_twin.mechanics.gravity.gravity_model import gravity_in_top
 from ves_twin.plant.plant import Plant
-from ves_twin.procedures.procedure import Account, Conduct
+from ves_twin.procedures.procedure import Account, RunContext
 from ves_twin.procedures.registry import load_procedure
 from ves_twin.simulator.outcome import Outcome
 from ves_twin.thesis.claim import Claim
@@ -34,7 +34,7 @@ def _carried_out(context: Context, name: str, changes: Mapping[str, Any]) -> tup
         assert procedure is not None  # noqa: S101  (the shipped file names one)
         plant = _retuned(context, changes.get("plant", procedure.plant))
         with TemporaryDirectory() as folder:
-            return procedure.carry_out(Conduct(Path(folder), plant=plant))
+            return procedure.carry_out(RunContext(Path(folder), plant=plant))
 
     command = " ".join([f"ves-twin run {name}", *(f"--set {k}={v}" for k, v in changes.items())])
     account: Account = context.once(command, make)
@@ -227,7 +227,7 @@ def _last_change(key: str, scale: float) -> Evaluator:
 
 def _rig_time(context: Context, claim: Claim) -> Evaluation:
     procedure: Any = load_procedure(LEARNING)
-    seconds = procedure.phases(Conduct(Path()), 0).scenario.run.duration
+    seconds = procedure.phases(RunContext(Path()), 0).scenario.run.duration
     minutes = procedure.iterations * (procedure.alpha + 1.0) * seconds / 60.0
     note = f"{procedure.iterations} iterations of {procedure.alpha + 1.0:g} x {seconds:g} s"
     return Evaluation((minutes,), note=note)

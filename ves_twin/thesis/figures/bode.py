@@ -7,9 +7,6 @@ from pathlib import Path
 import numpy as np
 
 from ves_twin.control.leg_loop import FilterPlace
-from ves_twin.linear.leg_loop import leg_loop
-from ves_twin.linear.leg_settings import LegSettings
-from ves_twin.linear.response import FrequencyResponse, bandwidth, frequency_response, resonance
 from ves_twin.plant.hydraulics import Hydraulics
 from ves_twin.plant.plant import Plant
 from ves_twin.procedures.bode_plot import BodePlot
@@ -17,6 +14,14 @@ from ves_twin.procedures.frequency_response import actuator_slope
 from ves_twin.procedures.sine_fit import MeasuredResponse
 from ves_twin.procedures.sweep import SweepOptions, sweep_platform
 from ves_twin.scenario.schema import Legs
+from ves_twin.simulator.linear.leg_loop import leg_loop
+from ves_twin.simulator.linear.leg_settings import LegSettings
+from ves_twin.simulator.linear.response import (
+    FrequencyResponse,
+    bandwidth,
+    frequency_response,
+    resonance,
+)
 from ves_twin.thesis.figures.figure import FigureResult
 
 FREQUENCIES = (0.5, 1.0, 2.0, 3.0, 4.0, 5.0, 7.0, 10.0, 15.0, 20.0)

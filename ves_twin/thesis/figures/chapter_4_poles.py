@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from ves_twin.planning.flexible_base import HIGH_GAINS, PPED_GAINS, JointGains
-from ves_twin.planning.pped import damping_estimator
+from ves_twin.mechanics.planning.flexible_base import HIGH_GAINS, PPED_GAINS, JointGains
+from ves_twin.mechanics.planning.pped import damping_estimator
 from ves_twin.plant.plant import Plant
 from ves_twin.procedures.pped_release import PpedRelease
 from ves_twin.report.figure import new_figure

@@ -7,13 +7,13 @@ from pathlib import Path
 import numpy as np
 
 from ves_twin.control.leg_loop import FilterPlace
-from ves_twin.linear.filter_types import CORNER, basic_filters
-from ves_twin.linear.leg_loop import section
-from ves_twin.linear.leg_settings import LegSettings
-from ves_twin.linear.response import frequency_response
 from ves_twin.plant.plant import Plant
 from ves_twin.procedures.bode_plot import BodePlot
 from ves_twin.procedures.sweep import SweepOptions, sweep_platform
+from ves_twin.simulator.linear.filter_types import CORNER, basic_filters
+from ves_twin.simulator.linear.leg_loop import section
+from ves_twin.simulator.linear.leg_settings import LegSettings
+from ves_twin.simulator.linear.response import frequency_response
 from ves_twin.thesis.figures.bode import HIGH, legs_of
 from ves_twin.thesis.figures.figure import FigureResult
 

@@ -7,16 +7,16 @@ from pathlib import Path
 import numpy as np
 
 from ves_twin.control.leg_loop import FilterPlace
-from ves_twin.linear.admittance_loop import AxisModel, admittance_loop, payload_mass
-from ves_twin.linear.leg_settings import LegSettings
-from ves_twin.linear.stability_limit import stability_limit
+from ves_twin.core.types import ComplexArray
 from ves_twin.plant.plant import Plant
 from ves_twin.procedures.measured_poles import measure_poles
 from ves_twin.report.figure import new_figure
 from ves_twin.report.picture import PICTURE_WIDTH, save_picture
+from ves_twin.simulator.linear.admittance_loop import AxisModel, admittance_loop, payload_mass
+from ves_twin.simulator.linear.leg_settings import LegSettings
+from ves_twin.simulator.linear.stability_limit import stability_limit
 from ves_twin.thesis.figures.bode import HIGH, legs_of, other_form
 from ves_twin.thesis.figures.figure import FigureResult
-from ves_twin.types import ComplexArray
 
 RATE = 80.0
 """Admittance cycles [Hz]; becomes 79.3."""

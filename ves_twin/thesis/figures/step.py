@@ -7,13 +7,13 @@ from pathlib import Path
 import numpy as np
 
 from ves_twin.control.leg_loop import FilterPlace
-from ves_twin.linear.leg_loop import leg_loop
-from ves_twin.linear.leg_settings import LegSettings
-from ves_twin.linear.response import step_response
 from ves_twin.plant.plant import Plant
 from ves_twin.procedures.measured_step import measure_step
 from ves_twin.report.figure import new_figure
 from ves_twin.report.picture import PICTURE_WIDTH, save_picture
+from ves_twin.simulator.linear.leg_loop import leg_loop
+from ves_twin.simulator.linear.leg_settings import LegSettings
+from ves_twin.simulator.linear.response import step_response
 from ves_twin.thesis.figures.bode import GAINS, HIGH, K2, legs_of
 from ves_twin.thesis.figures.figure import FigureResult
 

@@ -1,0 +1,82 @@
+"""Progress: a log tells stage, share and time left; quick work says nothing."""
+
+import os
+import signal
+import time
+
+import pytest
+
+from ves_twin.cli import progress
+from ves_twin.cli.progress import RunProgress
+
+
+@pytest.fixture
+def impatient(monkeypatch):
+    """Lines come at once, so that a test need not wait for them."""
+    monkeypatch.setattr(progress, "FIRST", 0.0)
+    monkeypatch.setattr(progress, "PAUSE", 0.01)
+
+
+def _lines_with(word, capsys):
+    """What was printed, once a line has a word; a slow machine has 30 s for it."""
+    told = ""
+    for _ in range(3000):
+        told += capsys.readouterr().err
+        if word in told:
+            return told
+        time.sleep(0.01)
+    raise AssertionError(told)
+
+
+def test_a_log_names_stage_share_and_time_left(impatient, capsys):
+    with RunProgress("diagnose", 1.0, unit="share") as bar:
+        bar.share(0.25, "signatures")
+        told = _lines_with("diagnose: signatures, 25 %", capsys)
+    assert "so far" in told
+    assert "left in this stage" in told
+
+
+def test_a_stage_without_news_is_told_all_the_same(impatient, capsys):
+    with RunProgress("compare", 1.0, unit="share"):
+        assert "compare, 0 %, 0 s so far" in _lines_with("compare", capsys)
+
+
+def test_quick_work_prints_no_line(capsys, monkeypatch):
+    monkeypatch.setattr(progress, "FIRST", 60.0)
+    with RunProgress("run", 2.0) as bar:
+        bar(2.0)
+    assert capsys.readouterr().err == ""
+
+
+def test_another_stage_begins_its_own_time(monkeypatch):
+    now = [100.0]
+    monkeypatch.setattr(progress.time, "monotonic", lambda: now[0])
+    bar = RunProgress("plan", 1.0, unit="share")
+    bar.share(0.5, "first")
+    now[0] = 160.0
+    bar.share(0.0, "second")
+    now[0] = 170.0
+    bar.share(0.5, "second")
+    assert bar.line() == "plan: second, 50 %, 1 min 10 s so far, about 10 s left in this stage"
+
+
+def _interrupted():
+    with RunProgress("run", 2.0) as bar:
+        bar(0.5)
+        os.kill(os.getpid(), signal.SIGINT)
+        time.sleep(0.05)
+        bar(1.0)
+
+
+def test_ctrl_c_stops_between_two_slices():
+    before = signal.getsignal(signal.SIGINT)
+    with pytest.raises(KeyboardInterrupt):
+        _interrupted()
+    assert signal.getsignal(signal.SIGINT) is before
+
+
+@pytest.mark.parametrize(
+    ("seconds", "text"), [(8.2, "8 s"), (200.0, "3 min 20 s"), (7500.0, "2 h 5 min")]
+)
+def test_times_read_as_people_say_them(seconds, text):
+    assert progress._span(seconds) == text

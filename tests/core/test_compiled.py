@@ -1,0 +1,76 @@
+"""The cache of compiled code knows every compiled source and does not change results."""
+
+import os
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+import ves_twin
+from ves_twin.core.compiled import sources_hash
+
+PACKAGE = Path(ves_twin.__file__).parent
+
+RUN = """
+import hashlib, numpy as np, ves_twin as vt
+changes = {"run.duration": 0.3, "run.settle": 0.3}
+run = vt.simulate(vt.Scenario.load("beam_horizontal_truth", changes), seed=2)
+digest = hashlib.sha256()
+for name in sorted(run.signals):
+    digest.update(np.ascontiguousarray(run[name]).tobytes())
+print(digest.hexdigest())
+"""
+
+
+def copy_of_the_project(target: Path) -> Path:
+    skip = shutil.ignore_patterns("__pycache__")
+    for name in ("ves_twin", "models", "scenarios"):
+        shutil.copytree(PACKAGE.parent / name, target / name, ignore=skip)
+    return target
+
+
+def result(project: Path, cache: Path) -> str:
+    environment = {**os.environ, "PYTHONPATH": str(project), "XDG_CACHE_HOME": str(cache)}
+    done = subprocess.run(
+        [sys.executable, "-c", RUN],
+        cwd=project, env=environment, capture_output=True, text=True, check=True,
+    )  # fmt: skip
+    return done.stdout.strip()
+
+
+@pytest.mark.nightly
+def test_fresh_and_cached_compile_agree_and_an_edited_helper_is_compiled_anew(tmp_path):
+    project = copy_of_the_project(tmp_path / "project")
+    cache = tmp_path / "cache"
+    fresh = result(project, cache)
+    assert result(project, cache) == fresh
+    helper = project / "ves_twin" / "plant" / "physics" / "valve.py"
+    text = helper.read_text()
+    assert "s.decay[i] = np.exp(-step / p.lag[i])" in text
+    helper.write_text(text.replace("np.exp(-step / p.lag[i])", "np.exp(-0.5 * step / p.lag[i])"))
+    assert result(project, cache) != fresh
+    helper.write_text(text)
+    assert result(project, cache) == fresh
+
+
+def test_hash_follows_every_compiled_file_and_the_numbers_they_share(tmp_path):
+    package = copy_of_the_project(tmp_path) / "ves_twin"
+    before = sources_hash(package)
+    marked = [p for p in package.rglob("*.py") if "ves_twin.core.compiled" in p.read_text()]
+    assert package / "simulator" / "codes.py" in marked
+    assert len(marked) > 10
+    for path in marked:
+        text = path.read_text()
+        path.write_text(text + "# edited\n")
+        assert sources_hash(package) != before, path
+        path.write_text(text)
+    assert sources_hash(package) == before
+
+
+def test_every_file_that_compiles_is_in_the_hash():
+    for path in PACKAGE.rglob("*.py"):
+        text = path.read_text()
+        if "@compiled" in text or "njit" in text:
+            assert "ves_twin.core.compiled" in text or path.name == "compiled.py", path

@@ -1,0 +1,135 @@
+"""The quality gate: a healthy run passes, and every kind of damage is named."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import ves_twin as vt
+from ves_twin.data.quality.check import Grade
+from ves_twin.data.quality.gate import quality_gate
+
+WEIGHT = 93.7 * 9.81
+
+
+@pytest.fixture(scope="module")
+def healthy() -> vt.Recording:
+    return vt.simulate(
+        vt.Scenario.load("identify_fast", {"run.duration": 6.0, "gravity.method": "truth"})
+    )
+
+
+def damaged(recording, name, change) -> vt.Recording:
+    values = recording[name].copy()
+    change(values)
+    return replace(recording, signals={**recording.signals, name: values})
+
+
+def found(recording) -> dict[str, str]:
+    return {c.name: c.message for c in quality_gate(recording, WEIGHT).failures}
+
+
+@pytest.mark.parametrize("name", ["identify_fast", "identify_slow", "beam_horizontal_truth"])
+def test_a_healthy_run_fails_no_check(name):
+    run = vt.simulate(vt.Scenario.load(name, {"run.duration": 6.0}))
+    report = quality_gate(run, WEIGHT)
+    assert report.failures == ()
+    assert any(check.grade is Grade.PASSED for check in report.checks)
+
+
+def test_missing_numbers_are_named_with_their_columns(healthy):
+    def lose(values):
+        values[40:60, 2] = np.nan
+
+    words = found(damaged(healthy, "sensor.wrench", lose))
+    assert words["missing"].startswith("sensor.wrench.3: ")
+
+
+def test_a_gap_is_found_with_its_time(healthy):
+    keep = np.r_[0:100, 130 : len(healthy)]
+    cut = {name: values[keep] for name, values in healthy.signals.items()}
+    words = found(vt.Recording(healthy.time[keep], cut, healthy.info))
+    assert "1 gaps, the longest of 0.391 s" in words["gaps"]
+
+
+def test_rows_that_a_logger_held_are_repeats(healthy):
+    at = np.arange(len(healthy)) // 2 * 2
+    held = {name: values[at] for name, values in healthy.signals.items()}
+    assert (
+        "repeat the one before" in found(vt.Recording(healthy.time, held, healthy.info))["repeats"]
+    )
+
+
+def test_another_rate_than_declared_is_found(healthy):
+    words = found(vt.Recording(healthy.time * 1.2, healthy.signals, healthy.info))
+    assert "declares 79.26 Hz" in words["rate"]
+
+
+def test_a_stuck_and_a_saturated_column_are_named(healthy):
+    def stick(values):
+        values[:, 1] = values[0, 1]
+
+    def saturate(values):
+        values[:, 3] = np.clip(values[:, 3], *np.quantile(values[:, 3], [0.1, 0.9]))
+
+    assert found(damaged(healthy, "leg.length", stick))["stuck"].startswith("leg.length.2 ")
+    assert found(damaged(healthy, "sensor.wrench", saturate))["saturation"].startswith(
+        "sensor.wrench.4 "
+    )
+
+
+def test_swapped_legs_are_named(healthy):
+    def swap(values):
+        values[:, [1, 4]] = values[:, [4, 1]]
+
+    words = found(damaged(healthy, "leg.length", swap))["wiring"]
+    assert "leg.length.2 follows command 5" in words
+    assert "leg.length.5 follows command 2" in words
+
+
+def test_a_turned_sign_is_named(healthy):
+    def turn(values):
+        values[:, 0] *= -1.0
+
+    assert found(damaged(healthy, "arm.q", turn))["sign"].startswith("arm.q.1 ")
+
+
+def test_millimetres_and_degrees_are_suspected(healthy):
+    def millimetres(values):
+        values *= 1000.0
+
+    def degrees(values):
+        values *= 180.0 / np.pi
+
+    assert "mm against m is" in found(damaged(healthy, "leg.length", millimetres))["units"]
+    words = found(damaged(healthy, "arm.command", degrees))["units"]
+    assert "degrees against radians, the other way round" in words
+
+
+def test_degrees_are_suspected_where_one_joint_of_three_moves(healthy):
+    """Joints that stand still, with noise on them, say nothing of the unit."""
+    command, measured = healthy["arm.command"].copy(), healthy["arm.q"].copy()
+    command[:, 1:] = 0.3
+    measured[:, 1:] = 0.3 + 1e-5 * np.sin(np.arange(len(healthy)))[:, None]
+    one = {"arm.command": command, "arm.q": np.degrees(measured)}
+    words = found(replace(healthy, signals={**healthy.signals, **one}))
+    assert "degrees against radians is suspected" in words["units"]
+
+
+@pytest.mark.parametrize(
+    ("change", "words"),
+    [
+        (lambda v: v.__setitem__((slice(None), [0, 2]), v[:, [2, 0]]), "axis x, expected z"),
+        (lambda v: v.__imul__(-1.0), "the sign looks turned"),
+        (lambda v: v.__imul__(0.4536 / 9.81 * 10), "units or payload"),
+    ],
+)
+def test_a_foreign_frame_of_the_sensor_is_named(healthy, change, words):
+    messages = " ".join(found(damaged(healthy, "sensor.wrench", change)).values())
+    assert words in messages
+
+
+def test_what_cannot_be_told_is_unknown_not_passed(healthy):
+    still = damaged(healthy, "leg.command", lambda v: v.__setitem__(slice(None), v[0]))
+    names = [c.name for c in quality_gate(still, WEIGHT).doubts]
+    assert "wiring" in names

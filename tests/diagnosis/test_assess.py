@@ -1,0 +1,148 @@
+"""A record before any cause: what the screen, the misfit and the pull say, and when it exceeds."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from scipy.stats import norm
+from toy import SD, Toy, programme
+
+from ves_twin.diagnosis.adequacy import cells, misfit
+from ves_twin.diagnosis.assess import STRANGE, assess, first_look, pull_limit
+from ves_twin.diagnosis.prewhitened import Prewhitened
+from ves_twin.diagnosis.runs import Runs
+from ves_twin.diagnosis.signature_library import build_bank
+from ves_twin.diagnosis.whitening import whitening_declared
+
+FED = programme(1)
+
+
+@pytest.fixture(scope="module")
+def bank():
+    return build_bank(Runs(Toy(), (FED,), (0, 1)))
+
+
+def rows(values, seed=1):
+    clean = Toy().simulate(FED, values)
+    noise = np.random.default_rng(seed).standard_normal(clean.shape) * SD
+    return (clean + noise).astype(np.float32)
+
+
+FAULTY = {"friction.size": 0.02, "plant.gain": 1.05}
+
+
+@pytest.fixture(scope="module")
+def look(bank):
+    return first_look(rows(FAULTY), Prewhitened(bank, whitening_declared(bank.base.runs)))
+
+
+def dense(look):
+    """What the nuisances cannot explain, by the inverse of the whole covariance."""
+    white = look.evidence.whitening.apply(look.screen.bank.base.columns).T
+    return np.linalg.solve(np.eye(len(look.z)) + white @ white.T, look.z)
+
+
+def test_what_is_left_and_the_misfit_are_of_the_marginalised_nuisances(look):
+    left = dense(look)
+    np.testing.assert_allclose(look.left, left, atol=1e-5)
+    assert look.misfit == pytest.approx(misfit(cells(look.evidence.whitening, left)), rel=1e-4)
+
+
+def test_the_best_hypothesis_comes_first_and_scores_what_it_takes_away(look):
+    assert look.screen.bank.hypotheses[look.suspects[0].hypothesis].effect in {"friction", "gain"}
+    assert look.score == look.suspects[0].score == max(s.score for s in look.suspects)
+    assert replace(look, suspects=[]).score == 0.0
+    # nothing takes away more than what is there
+    assert look.score < look.z @ dense(look)
+
+
+def test_the_pull_is_the_largest_commissioning_error_in_its_sd(look):
+    runs = look.evidence.runs
+    white = look.evidence.whitening.apply(look.screen.bank.base.columns).T
+    every = white.T @ np.linalg.solve(np.eye(len(look.z)) + white @ white.T, look.z)
+    assert look.pull == pytest.approx(np.max(np.abs(every[: len(runs.nuisances)])), rel=1e-3)
+    signs = replace(look, z=-look.z)
+    assert signs.pull == pytest.approx(look.pull, rel=1e-12)
+    assert look.pull > 1.0  # a gain of 2.5 sd
+
+
+def test_the_last_column_is_the_step_and_no_commissioning_error(bank, look):
+    step = np.zeros_like(bank.base.columns)
+    step[-1] = 0.5 * bank.base.columns[0]
+    columns = bank.base.columns + step
+    moved = replace(bank, base=replace(bank.base, columns=columns))
+    first = first_look(
+        (bank.base.prediction + 20.0 * columns[-1]).astype(np.float32),
+        Prewhitened(moved, whitening_declared(bank.base.runs)),
+    )
+    every = first.screen.metric.nuisances(first.z)
+    assert first.pull == np.max(np.abs(every[:-1]))
+
+
+@pytest.mark.parametrize("bends", [0.0, 0.1, 0.3])
+def test_a_share_of_what_commissioning_explains_may_stay(look, bends):
+    some = replace(look, bends=bends)
+    explained = look.z @ look.z - look.left @ look.left
+    assert some.allowance == pytest.approx(bends**2 * explained, rel=1e-9)
+    assert replace(some, left=2.0 * some.z).allowance == 0.0
+
+
+def test_each_of_three_levels_is_enough_to_exceed(look):
+    over = 1e9
+    assert not look.exceeds(over, over, over)
+    assert not look.exceeds(look.score, look.misfit, look.pull)
+    assert look.exceeds(0.999 * look.score, over, over)
+    assert look.exceeds(over, 0.999 * look.misfit, over)
+    assert look.exceeds(over, over, 0.999 * look.pull)
+    allowed = replace(look, bends=0.3)
+    assert allowed.allowance > 0.0
+    assert not allowed.exceeds(look.score - 0.999 * allowed.allowance, over, over)
+    assert allowed.exceeds(look.score - 1.001 * allowed.allowance, over, over)
+
+
+def test_a_record_in_order_is_looked_at_once(bank):
+    whitening = whitening_declared(bank.base.runs)
+    found = assess(rows({"plant.gain": 1.01}), bank, whitening, 1e6, 1e6, 1e6, bends=0.2)
+    assert found.commissioning is None
+    assert not found.told
+    assert found.bends == 0.2
+    alone = first_look(rows({"plant.gain": 1.01}), Prewhitened(bank, whitening))
+    assert found.score == pytest.approx(alone.score, rel=1e-12)
+
+
+@pytest.mark.parametrize("level", [(1.0, 1e6, 1e6), (1e6, 0.1, 1e6), (1e6, 1e6, 0.1)])
+def test_a_record_over_any_level_is_fitted(bank, level):
+    whitening = whitening_declared(bank.base.runs)
+    found = assess(rows(FAULTY), bank, whitening, *level, bends=0.001)
+    assert found.commissioning is not None
+    assert found.commissioning.causes == ()
+    assert found.bends == 0.001
+
+
+def test_the_second_look_is_about_the_fit_and_has_its_own_noise(bank):
+    whitening = whitening_declared(bank.base.runs)
+    found = assess(3.0 * rows({}) - 2.0 * Toy().simulate(FED, {}).astype(np.float32), bank,
+                   whitening, 1.0, 1.0, 1.0)  # fmt: skip
+    low, high = found.evidence.whitening.level.min(), found.evidence.whitening.level.max()
+    # noise of three times its declared sd; a level may follow to the root of 2.5
+    assert low == high == pytest.approx(np.sqrt(2.5))
+
+
+def test_a_fit_tells_while_noise_is_most_of_what_the_best_leaves(bank):
+    whitening = whitening_declared(bank.base.runs)
+    found = assess(rows(FAULTY), bank, whitening, 1.0, 1e6, 1e6)
+    fit = found.commissioning
+    assert fit is not None
+    size = len(fit.residual)
+    below = replace(found, commissioning=replace(fit, chi2=found.score + 0.999 * STRANGE * size))
+    above = replace(found, commissioning=replace(fit, chi2=found.score + 1.001 * STRANGE * size))
+    assert below.told
+    assert not above.told
+
+
+@pytest.mark.parametrize("alpha", [0.01, 0.2])
+def test_the_limit_of_the_pull_is_passed_by_any_error_with_alpha(bank, alpha):
+    count = len(bank.base.runs.nuisances)
+    assert 2.0 * count * norm.sf(pull_limit(bank, alpha)) == pytest.approx(alpha, rel=1e-9)

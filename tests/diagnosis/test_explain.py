@@ -1,0 +1,121 @@
+"""Explanations of a record: which fits are made, ranked, called adequate, and given up."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from toy import QUICK, SD, Toy, programme
+
+from ves_twin.diagnosis.assess import assess
+from ves_twin.diagnosis.explain import explain
+from ves_twin.diagnosis.null import Thresholds
+from ves_twin.diagnosis.runs import Runs
+from ves_twin.diagnosis.signature_library import build_bank
+from ves_twin.diagnosis.whitening import whitening_declared
+
+FED = programme(1)
+LEVELS = Thresholds(15.0, 5.0, np.zeros(0), np.zeros(0))
+
+
+@pytest.fixture(scope="module")
+def bank():
+    return build_bank(Runs(Toy(), (FED,), (0, 1)))
+
+
+@pytest.fixture
+def looked(bank):
+    def look(values, added=0.0, library=None):
+        clean = Toy().simulate(FED, values) + added
+        noise = np.random.default_rng(3).standard_normal(clean.shape) * SD
+        runs = (library or bank).base.runs
+        rows = (clean + noise).astype(np.float32)
+        return assess(rows, library or bank, whitening_declared(runs), 15.0, 5.0, 4.0)
+
+    return look
+
+
+def effects(fit):
+    return {cause.effect for cause in fit.causes}
+
+
+ONE = {"friction.size": 0.05, "plant.slope": 0.03}
+TWO = {"friction.size": 0.1, "ripple.size": 0.1}
+
+
+def test_one_cause_explains_a_record_of_one(looked):
+    found = explain(looked(ONE), LEVELS, QUICK)
+    assert effects(found.best) == {"friction"}
+    assert found.best is found.chosen[0] is found.fits[0]
+    assert found.adequate
+    assert found.score < LEVELS.misfit
+    assert found.second < LEVELS.effect
+    # the truth is within four sd of the fit
+    assert abs(found.best.sizes[0] - 0.05) < 4.0 * np.sqrt(found.best.covariance[0, 0])
+    assert found.commissioning.causes == ()
+    assert found.commissioning.chi2 > found.best.chi2 + 15.0
+    assert found.weights[0] == max(found.weights)
+    assert found.weights[0] > 0.9
+    # noise of the declared size: four sd of chi^2
+    n = len(found.best.residual)
+    assert found.best.chi2 < n + 4.0 * np.sqrt(2.0 * n)
+
+
+def test_fits_stand_by_rising_chi2_and_none_is_there_twice(looked):
+    found = explain(looked(ONE), LEVELS, replace(QUICK, candidates=6))
+    assert [fit.chi2 for fit in found.fits] == sorted(fit.chi2 for fit in found.fits)
+    every = [frozenset(effects(fit)) for fit in (*found.fits, *found.hopeless)]
+    assert len(every) == len(set(every)) >= 2  # a rival to show
+    for fit in found.hopeless:
+        assert fit.chi2 > 3.0 * found.best.chi2
+
+
+def test_two_causes_explain_what_one_does_not(looked):
+    record = looked(TWO)
+    single = explain(record, LEVELS, QUICK, pairs=False)
+    assert not single.adequate
+    assert len(single.best.causes) == 1
+    assert single.alone == ()
+    double = explain(record, LEVELS, QUICK)
+    assert double.adequate
+    assert effects(double.best) == {"friction", "ripple"}
+    assert double.best.sizes == pytest.approx([0.1, 0.1], rel=0.1)
+    assert double.best.chi2 < single.best.chi2 - LEVELS.effect
+    alone = {frozenset(effects(fit)) for fit in double.alone}
+    assert {frozenset({"friction"}), frozenset({"ripple"})} <= alone
+    assert all(len(fit.causes) == 1 for fit in double.alone)
+
+
+def test_what_no_cause_of_the_library_explains_is_not_adequate(looked):
+    time = FED.time[:, None]
+    strange = 0.3 * np.sin(2.0 * np.pi * 9.0 * time) * np.where(time > 4.0, [1.0, -2.0], 0.0)
+    found = explain(looked({}, added=strange), LEVELS, QUICK)
+    assert not found.adequate
+    assert found.score > LEVELS.misfit
+
+
+def test_a_cause_that_takes_less_off_than_the_threshold_explains_nothing(looked):
+    record = looked(ONE)
+    fall = explain(record, LEVELS, QUICK)
+    taken = fall.commissioning.chi2 - fall.best.chi2
+    high = replace(LEVELS, effect=2.0 * taken)
+    assert not explain(record, high, QUICK, pairs=False).adequate
+    low = replace(LEVELS, effect=1.2 * taken)  # a cause may take LEAST of it
+    assert explain(record, low, QUICK, pairs=False).adequate
+
+
+def test_an_empty_library_explains_nothing():
+    empty = build_bank(Runs(Toy(causes=(), with_gain=False), (FED,), (0, 1)))
+    clean = Toy().simulate(FED, ONE).astype(np.float32)
+    first = assess(clean, empty, whitening_declared(empty.base.runs), 15.0, 5.0, 4.0)
+    assert explain(first, LEVELS, QUICK) is None
+
+
+def test_progress_is_a_share_of_each_stage(looked):
+    told = []
+    explain(looked(TWO), LEVELS, QUICK, progress=lambda share, what: told.append((share, what)))
+    assert all(0.0 <= share <= 1.0 for share, _ in told)
+    stages = list(dict.fromkeys(what for _, what in told))
+    assert stages[0] == "fitting single causes"
+    assert {"fitting its rivals", "weighing rivals", "fitting pairs of causes"} <= set(stages)

@@ -1,0 +1,198 @@
+"""The gain on held-out recordings against dense matrices of a linear-Gaussian plant."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from toy import NUISANCES, SD, Toy, programme, shape
+
+from ves_twin.diagnosis.evidence import Evidence
+from ves_twin.diagnosis.gain import Gain, held_out_gain
+from ves_twin.diagnosis.linearise import linearise
+from ves_twin.diagnosis.refine import refine
+from ves_twin.diagnosis.runs import Runs
+from ves_twin.diagnosis.whitening import whitening_declared
+
+TRUE = {"plant.gain": 1.03, "plant.slope": 0.04, "friction.size": 0.06}
+SINGLE = 1e-3
+"""Relative: predictions in single precision against signals 100 times the noise."""
+
+
+def noisy(fed, values, seed):
+    rows = Toy().simulate(fed, values)
+    noise = np.random.default_rng(seed).standard_normal(rows.shape) * SD
+    return (rows + noise).astype(np.float32)
+
+
+@pytest.fixture(scope="module")
+def fitted():
+    """Fits of commissioning errors alone and of friction to a first recording."""
+    first = programme(1)
+    runs = Runs(Toy(), (first,), (0, 1))
+    measured = noisy(first, TRUE | {"plant.offset": 0.06}, 1)
+    evidence = Evidence(runs, measured, whitening_declared(runs))
+    local = linearise(runs, runs.origin)
+    friction = next(h for h in Toy().hypotheses if h.effect == "friction")
+    return refine(evidence, (), runs.origin, local), refine(
+        evidence, (friction,), runs.origin, local
+    )
+
+
+@pytest.fixture(scope="module")
+def held_out(fitted):
+    """Another recording of the same rig, its offset another, and the gain there."""
+    fed = programme(2)
+    runs = Runs(Toy(), (fed,), (0, 1))
+    measured = noisy(fed, TRUE | {"plant.offset": -0.03}, 2)
+    whitening = whitening_declared(runs)
+    return fed, runs, measured, whitening, held_out_gain(runs, measured, whitening, *fitted)
+
+
+class Dense:
+    """A fit carried to a recording: mean, columns and covariance, each written out."""
+
+    def __init__(self, fit, fed, runs, without=()):
+        there = fit.local.runs
+        names = [there.coordinates[i].parameter.name for i in fit.active]
+        shared = [k for k, name in enumerate(names) if name != "plant.offset"]
+        u, time = fed.drive["drive.u"][:, 0], fed.time
+        shapes = {
+            "plant.gain": u[:, None] * [0.3, 1.0],
+            "plant.slope": np.gradient(u, time)[:, None] * [0.05, 0.2],
+            "plant.offset": np.ones((len(u), 2)) * [1.0, 0.3],
+            "friction.size": shape("friction", u, time),
+        }
+        shifts = {names[k]: fit.shift[fit.active[k]] for k in shared if names[k] not in without}
+        values = {"plant.gain": 1.0}
+        for name, shift in shifts.items():
+            values[name] = values.get(name, 0.0) + shift
+        self.mean = Toy().simulate(fed, values)
+        self.columns = np.array([*(shapes[names[k]] for k in shared), shapes["plant.offset"]])
+        self.prior = np.zeros((len(shared) + 1, len(shared) + 1))
+        self.prior[:-1, :-1] = fit.posterior[np.ix_(shared, shared)]
+        self.prior[-1, -1] = NUISANCES[2].sd ** 2
+
+    def left(self, measured, whitening):
+        z = whitening.apply((measured - self.mean).astype(np.float32))
+        white = whitening.apply(self.columns.astype(np.float32)).T
+        return z, np.linalg.solve(np.eye(len(z)) + white @ self.prior @ white.T, z)
+
+    def mean_square(self, measured, whitening):
+        z, left = self.left(measured, whitening)
+        return z @ left / len(z)
+
+
+def test_means_are_chi2_with_the_carried_covariance(fitted, held_out):
+    fed, runs, measured, whitening, gain = held_out
+    nominal, extended = fitted
+    after = Dense(extended, fed, runs)
+    own = whitening.adapted(after.left(measured, whitening)[1])
+    before = Dense(nominal, fed, runs)
+    taken_out = Dense(extended, fed, runs, without=("friction.size",))
+    assert gain.after == pytest.approx(after.mean_square(measured, own), rel=SINGLE)
+    assert gain.before == pytest.approx(before.mean_square(measured, own), rel=SINGLE)
+    assert gain.without == pytest.approx(taken_out.mean_square(measured, own), rel=SINGLE)
+    # declared noise is the noise, so the floor is 1
+    assert gain.share == pytest.approx((gain.before - gain.after) / (gain.before - 1.0), rel=SINGLE)
+
+
+def test_errors_are_rms_of_what_the_carried_means_leave(fitted, held_out):
+    fed, runs, measured, _, gain = held_out
+    means = [Dense(fit, fed, runs).mean for fit in fitted]
+    for c, name in enumerate(("out.0", "out.1")):
+        expected = [np.sqrt(np.mean((measured - mean)[:, c] ** 2)) for mean in means]
+        assert gain.errors[name] == pytest.approx(expected, rel=SINGLE)
+
+
+def test_a_gain_by_the_true_cause_passes_and_its_interval_holds_it(held_out):
+    gain = held_out[-1]
+    assert gain.passed
+    assert gain.carries_on
+    assert gain.low < gain.share < gain.high
+    assert gain.low > 0.8
+    assert gain.high < 1.1
+
+
+def test_the_interval_is_of_its_confidence_and_of_its_draws(fitted, held_out):
+    _, runs, measured, whitening, gain = held_out
+    half = held_out_gain(runs, measured, whitening, *fitted, confidence=0.5)
+    assert gain.low < half.low < half.high < gain.high
+    # 5 to 95 % and 25 to 75 % of a normal: 1.645 and 0.674 sd
+    assert (gain.high - gain.low) / (half.high - half.low) == pytest.approx(2.44, rel=0.15)
+    other = held_out_gain(runs, measured, whitening, *fitted, seed=1)
+    assert other.low != gain.low
+    # quantiles of 2000 draws
+    assert other.low == pytest.approx(gain.low, abs=0.1 * (gain.high - gain.low))
+
+
+def test_where_the_effect_does_not_show_there_is_no_share(fitted):
+    still = programme(3, amplitude=0.0)
+    runs = Runs(Toy(), (still,), (0, 1))
+    measured = noisy(still, TRUE | {"plant.offset": 0.02}, 3)
+    gain = held_out_gain(runs, measured, whitening_declared(runs), *fitted)
+    assert (gain.share, gain.low, gain.high) == (None, None, None)
+    assert not gain.passed
+    assert gain.before == pytest.approx(gain.after, abs=0.01)
+    # four sd of a mean of 1600 squares
+    assert gain.before == pytest.approx(1.0, abs=0.15)
+
+
+PASSING = Gain(0.5, 0.4, 0.6, 4.0, 2.0, {"out": (1.0, 0.5)}, 3.0)
+
+
+@pytest.mark.parametrize(
+    ("changed", "passed", "carries_on"),
+    [
+        ({}, True, True),
+        ({"low": 0.0}, False, False),
+        ({"low": None}, False, False),
+        ({"low": 1e-6}, True, True),
+        ({"without": None}, True, True),
+        ({"without": 2.0}, False, False),
+        ({"without": 2.1}, True, True),
+        ({"errors": {"out": (1.0, 1.5)}}, True, True),
+        ({"errors": {"out": (1.0, 1.51)}}, True, False),
+        ({"errors": {"a": (1.0, 2.0), "b": (1.0, 0.1)}}, True, False),
+        ({"errors": {}}, True, True),
+    ],
+)
+def test_what_a_gain_must_show(changed, passed, carries_on):
+    gain = replace(PASSING, **changed)
+    assert (gain.passed, gain.carries_on) == (passed, carries_on)
+
+
+class Turning(Toy):
+    """Its slope turns the response from one channel to the other, by 0.25 rad for one sd."""
+
+    def simulate(self, programme, values, refined=False):
+        turn = 5.0 * values.get("plant.slope", 0.0)
+        u = programme.drive["drive.u"]
+        rows = super().simulate(programme, {**values, "plant.slope": 0.0})
+        return rows + 3.0 * u * [np.sin(turn), np.cos(turn)]
+
+
+def test_columns_that_bend_between_two_fits_are_computed_at_each():
+    known = replace(NUISANCES[0], sd=0.0)
+    plant = Turning(nuisances=(known, *NUISANCES[1:]))
+    first, second = programme(1), programme(2)
+    runs, there = (Runs(plant, (fed,), (0, 1)) for fed in (first, second))
+    rng = np.random.default_rng(5)
+    rows, other = (
+        (plant.simulate(fed, {"plant.slope": slope}) + rng.standard_normal((800, 2)) * SD).astype(
+            np.float32
+        )
+        for fed, slope in ((first, 0.12), (second, 0.12))
+    )
+    local = linearise(runs, runs.origin)
+    evidence = Evidence(runs, rows, whitening_declared(runs))
+    own = refine(evidence, (), runs.origin, local, rounds=3)
+    at_zero = replace(own, shift=np.zeros_like(own.shift))
+    whitening = whitening_declared(there)
+    gain = held_out_gain(there, other, whitening, at_zero, own)
+    swapped = held_out_gain(there, other, whitening, own, at_zero)
+    assert gain.after == pytest.approx(1.0, abs=0.15)
+    # the same two models, whichever is the extended one, but for the noise each is judged by
+    assert swapped.after > 100.0
+    assert gain.before > 100.0

@@ -1,0 +1,203 @@
+"""Inverse and forward simulation of a rig against closed forms and against each other."""
+
+from __future__ import annotations
+
+import copy
+from dataclasses import dataclass, replace
+from typing import ClassVar, final
+
+import numpy as np
+import pytest
+from two_link import TIME, programme, rig, write_files
+
+from ves_twin.core.recording.recording import Recording, RecordingInfo
+from ves_twin.diagnosis.forward import Excitation
+from ves_twin.machines.mjcf import inverse
+from ves_twin.machines.mjcf.description import Mode
+from ves_twin.machines.mjcf.effect import RigEffect, play
+from ves_twin.machines.mjcf.element import Element
+from ves_twin.machines.mjcf.experiment import RigExperiment
+from ves_twin.machines.mjcf.forward import MjcfForward
+from ves_twin.machines.mjcf.inverse import efforts_of_motion
+from ves_twin.machines.mjcf.machine import Rig
+from ves_twin.machines.mjcf.part_effects import ActuatorDelay
+from ves_twin.machines.mjcf.stepping import motion_of_drive
+from ves_twin.machines.mjcf.tell import tell
+from ves_twin.machines.mjcf.work import Work
+
+INNER = slice(200, -200)
+"""Rows that the ends of a zero-phase filter do not reach."""
+
+
+@pytest.fixture(scope="module")
+def machine(tmp_path_factory):
+    return rig(tmp_path_factory.mktemp("rig"))
+
+
+def still_arm(x: np.ndarray) -> Excitation:
+    fed = programme().drive
+    return Excitation(
+        "one axis", TIME, {**fed, "cart.position": x[:, None], "arm.angle": 0 * fed["arm.angle"]}
+    )
+
+
+def test_effort_of_a_sinusoid_is_that_of_the_equation_of_motion(machine):
+    """(m + a) q'' + c q' + f sign q' + k q of both bodies together, the arm held."""
+    w, size = 5.0, 0.1
+    x = size * np.sin(w * TIME)
+    v, a = w * size * np.cos(w * TIME), -w * w * x
+    forward = MjcfForward.of(machine, Mode.MOTION)
+    found = forward.simulate(still_arm(x), {"viscous_asymmetry@rail:slope": 2.0})[:, 0]
+    mass = 3.1 + 1.0 + 0.2
+    expected = mass * a + 4.0 * v + 0.5 * np.sign(v) + 3.0 * x + 2.0 * np.abs(v)
+    moving = np.abs(v) > 0.01  # the sign is smoothed over 0.25 mm/s
+    gap = (found - expected)[INNER][moving[INNER]]
+    # central differences of a 5 rad/s sine at 2 ms: (w h)^2 / 6 = 1.7e-5 of 11 N
+    assert np.max(np.abs(gap)) < 1e-3
+
+
+def test_inverse_dynamics_of_a_simulated_motion_gives_the_force_back(machine):
+    """Two independent ways through MuJoCo: implicit steps forward, mj_inverse back."""
+    fed = programme()
+    effects = {"force_offset@rail:offset": 1.5, "viscous_asymmetry@rail:slope": 3.0}
+    forward = MjcfForward.of(machine, Mode.CONTROL)
+    names = [c.name for c in forward.channels]
+    rows = forward.simulate(fed, effects)
+    moved = {
+        "cart.position": rows[:, [names.index("cart.position")]],
+        "arm.angle": rows[:, [names.index("arm.angle")]],
+    }
+    back = MjcfForward.of(machine, Mode.MOTION)
+    efforts = back.simulate(Excitation("back", TIME, {**fed.drive, **moved}), effects)
+    speed = np.gradient(moved["cart.position"][:, 0], TIME)
+    sliding = np.abs(speed[INNER]) > 0.05
+    # commands are held for a row: what is found is that of half a row before
+    asked = np.interp(TIME - 0.001, TIME, fed.drive["drive.force"][:, 0])
+    gap = (efforts[:, 0] - asked)[INNER][sliding]
+    # friction's solver is soft (5 ms): 2 % of the 15 N that act
+    assert np.sqrt(np.mean(gap**2)) < 0.3
+
+
+def test_a_controller_stands_off_by_the_offset_over_its_gain(machine):
+    """kp e = F at rest: 2 N / 400 N/m, within the 0.5 N of dry friction; the spring is on top."""
+    steady = {**programme().drive, "cart.set": np.full((len(TIME), 1), 0.05)}
+    forward = MjcfForward.of(machine, Mode.REFERENCE)
+    rows = forward.simulate(Excitation("hold", TIME, steady), {"force_offset@rail:offset": 2.0})
+    at = [c.name for c in forward.channels].index("cart.position")
+    end = rows[-1, at]
+    assert 400.0 * (0.05 - end) == pytest.approx(2.0 + 3.0 * end, abs=0.5)
+
+
+def test_halving_the_step_changes_little_and_the_difference_falls_with_it(machine):
+    forward = MjcfForward.of(machine, Mode.CONTROL)
+    coarse = forward.simulate(programme(), {})
+    fine = forward.simulate(programme(), {}, refined=True)
+    at = [c.name for c in forward.channels].index("cart.position")
+    change = np.max(np.abs(coarse - fine)[:, at])
+    # a first-order step of 1 ms on a motion of 0.1 m
+    assert 1e-7 < change < 2e-3
+
+
+@final
+@dataclass(frozen=True)
+class LongerArm(RigEffect):
+    """An effect of another package: the arm hangs lower on its cart."""
+
+    shift: float = 0.0
+
+    kind: ClassVar[str] = "longer_arm"
+    element: ClassVar[Element] = Element.BODY
+
+    def edit_model(self, model):
+        model.jnt_pos[model.joint("swing").id, 2] += self.shift
+
+
+def test_an_effect_that_edits_any_number_of_the_model_changes_the_efforts(machine):
+    """Through what is kept of earlier motions: as with nothing kept."""
+    fed = programme()
+    begun = Work.begin(machine, fed, {})
+    plain = efforts_of_motion(begun)["drive.force"]
+    model = copy.copy(begun.model)
+    LongerArm("arm", shift=0.2).edit_model(model)
+    found = efforts_of_motion(replace(begun, model=model))["drive.force"]
+    inverse._moved.cache_clear()
+    assert np.array_equal(found, efforts_of_motion(replace(begun, model=model))["drive.force"])
+    assert np.max(np.abs(found - plain)) > 0.1
+
+
+@final
+@dataclass(frozen=True)
+class Limit(RigEffect):
+    """An effect of another package: an amplifier gives no more than this."""
+
+    most: float = 0.0
+
+    kind: ClassVar[str] = "limit"
+    element: ClassVar[Element] = Element.ACTUATOR
+
+    def edit_command(self, command, time):
+        return np.clip(command, -self.most, self.most)
+
+
+def test_an_effect_on_an_actuator_is_at_work_in_closed_loop_too(machine):
+    """A limit below the controller's own is that limit; effects follow one another."""
+    fed = replace(programme(), time=TIME[:300])
+    fed = replace(fed, drive={n: v[:300] for n, v in fed.drive.items()})
+    place = machine.entries[0].place
+    limit, late = Limit("drive", most=3.0), ActuatorDelay("drive", delay=0.005)
+    controller = machine.description.controllers["drive"]
+    told = machine.description.model_copy(
+        update={"controllers": {"drive": controller.model_copy(update={"limit": 3.0})}}
+    )
+    limited = replace(machine, description=told)
+
+    def cart(rig, *effects):
+        work = replace(Work.begin(rig, fed, {}), effects=tuple((e, place) for e in effects))
+        return motion_of_drive(work, Mode.REFERENCE)["cart.position"]
+
+    assert not np.array_equal(cart(machine), cart(limited))
+    assert np.array_equal(cart(machine, limit), cart(limited))
+    assert np.array_equal(cart(machine, limit, late), cart(limited, late))
+    # the delay's own short way against what every effect has
+    general = RigEffect.edit_row(late, np.sin(TIME), TIME, 700)
+    assert late.edit_row(np.sin(TIME), TIME, 700) == pytest.approx(general, abs=1e-12)
+
+
+def test_a_start_may_be_a_text_with_a_unit(tmp_path):
+    told = '\n[start.swing]\nposition = "10 deg"\nspeed = "-20 deg/s"\n'
+    forward = MjcfForward.of(rig(tmp_path, more=told))
+    rows = forward.simulate(programme(), {})
+    angle = rows[:, [c.name for c in forward.channels].index("arm.angle")]
+    assert angle[0] == pytest.approx(np.radians(10.0), abs=1e-12)
+    # gravity and the torque change it by up to 10 % in 2 ms
+    assert (angle[1] - angle[0]) / TIME[1] == pytest.approx(np.radians(-20.0), rel=0.2)
+
+
+@pytest.mark.parametrize("state", ["measured", "estimated"])
+def test_a_measured_start_is_the_first_row_also_of_a_signal_that_reads_the_other_way(
+    tmp_path, state
+):
+    """Cart at +0.3 m by a position that counts backwards: -0.3 m of the joint, moving."""
+    path = write_files(tmp_path, more='\n[start.swing]\nposition = "measured"\n')
+    text = path.read_text().replace('joint = "rail"', 'joint = "rail"\nsign = -1', 1)
+    path.write_text(text.replace("[start.rail]", '[start.rail]\nposition = "measured"'))
+    machine = Rig.load(str(path))
+    fed = {**programme().drive, "cart.position": (0.3 + 0.2 * TIME)[:, None]}
+    if state == "estimated":
+        moved = Recording(TIME, fed, RecordingInfo("measured", scenario="a"))
+        machine = tell({"a": moved}, RigExperiment(start={"state": state}), machine).rig
+    forward = MjcfForward.of(machine)
+    rows = forward.simulate(Excitation("backwards", TIME, fed), {})
+    x = rows[:, [c.name for c in forward.channels].index("cart.position")]
+    assert x[0] == pytest.approx(0.3, abs=1e-12)
+    # the ends of a zero-phase filter and 4 ms of motion: per cents of 0.2 m/s
+    assert (x[2] - x[0]) / (TIME[2] - TIME[0]) == pytest.approx(0.2, rel=0.1)
+
+
+def test_a_gap_is_crossed_before_the_driven_side_follows():
+    x = np.concatenate([np.linspace(0.0, 1.0, 101), np.linspace(1.0, 0.0, 101)])
+    y = play(x, 0.2)
+    assert y[100] == pytest.approx(0.9)
+    assert np.all(y[101:121] == y[100])
+    assert y[-1] == pytest.approx(0.1)
+    assert play(x, 0.0) is x

@@ -1,0 +1,296 @@
+"""The page of a verdict: what stands on it, and that it is never surer than its basis."""
+
+import re
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from rerun.chunk import RrdReader
+from toy import Toy, programme, record
+
+from ves_twin.core.errors import InvalidInputError
+from ves_twin.core.quantity import shares
+from ves_twin.diagnosis.diagnose import diagnose
+from ves_twin.diagnosis.evidence import Evidence
+from ves_twin.diagnosis.gain import Gain
+from ves_twin.diagnosis.linearise import linearise
+from ves_twin.diagnosis.next_experiment import separations
+from ves_twin.diagnosis.preprocess import preprocess
+from ves_twin.diagnosis.refine import refine
+from ves_twin.diagnosis.refusal import refusal
+from ves_twin.diagnosis.rivals import Standing
+from ves_twin.diagnosis.settings import Settings
+from ves_twin.diagnosis.verdict import Kind
+from ves_twin.diagnosis.whitening import whitening_declared
+from ves_twin.report.diagnosis.page import diagnosis_page
+from ves_twin.report.diagnosis.words import headline, spoken, tone
+from ves_twin.report.rerun.diagnosis import write_diagnosis_rrd
+
+HELD = programme(9)
+
+
+@pytest.fixture(scope="module")
+def settings(tmp_path_factory):
+    return Settings(nulls=60, cache=tmp_path_factory.mktemp("banks"))
+
+
+def said(settings, sizes, seed=51, spread=0.0, **options):
+    data = record(np.random.default_rng(seed), sizes, spread=spread)
+    return diagnose(Toy(), [data], settings=settings, **options)
+
+
+@pytest.fixture(scope="module")
+def friction(settings):
+    return said(settings, {"friction.size": 0.1})
+
+
+@pytest.fixture(scope="module")
+def proven(settings):
+    held = record(np.random.default_rng(50), {"friction.size": 0.1}, spread=0.0, fed=HELD)
+    return said(settings, {"friction.size": 0.1}, held_out=[held])
+
+
+def first_screen(page):
+    return re.sub(r"<[^>]*>", " ", page[page.index("<h1>") : page.index("<section>")])
+
+
+def test_the_first_screen_has_verdict_cause_size_interval_gain_and_basis(proven):
+    top = first_screen(diagnosis_page(proven, "Diagnosis of <run>", "The plant is plant.toml."))
+    assert "Diagnosis of &lt;run&gt;" in top
+    assert "Found: friction at plant. Held-out recordings confirm it." in top
+    size = proven.causes[0].parameters["friction.size"]
+    ends = re.search(r"([-\d.e]+) to ([-\d.e]+)", top)
+    width = size.high - size.low  # of which the printed digits show a tenth
+    assert [float(end) for end in ends.groups()] == pytest.approx(
+        [size.low, size.high], abs=width / 20
+    )
+    numbers = [float(number) for number in re.findall(r"-?\d+\.\d+", top)]
+    assert any(number == pytest.approx(size.value, abs=width / 20) for number in numbers)
+    assert f"{shares(proven.gain.share, proven.gain.low, proven.gain.high)[0]} of the error" in top
+    assert "declared, not measured" in top
+    assert "plant.toml" in top
+
+
+def test_without_held_out_data_the_first_screen_says_so_and_is_no_surer(friction):
+    top = first_screen(diagnosis_page(friction))
+    assert "Best explained by friction at plant" in top
+    assert "no other recording has tested it" in top
+    assert "Held-out recordings: none" in top
+    assert "Found" not in top
+    assert tone(friction) == "open"
+
+
+def test_a_gain_that_is_not_clear_takes_the_word_found_away(proven):
+    assert tone(proven) == "bad"
+    doubtful = replace(proven, gain=Gain(0.5, -0.1, 1.1, 2.0, 1.5))
+    assert "do not confirm it" in headline(doubtful)
+    assert tone(doubtful) == "open"
+    repaired = replace(proven, gain=Gain(0.6, 0.4, 0.8, 2.0, 1.4, without=1.02))
+    assert "better without it" in headline(repaired)
+    assert "lack it" in refusal(repaired)
+    assert tone(repaired) == "open"
+    blind = replace(proven, gain=Gain(None, None, None, 1.01, 1.0))
+    assert "neither confirm nor refute it" in headline(blind)
+    assert tone(blind) == "open"
+    loose = replace(proven, causes=(replace(proven.causes[0], firm=False, sigmas=4.2),))
+    assert "4.2 declared tolerances off" in headline(loose)
+    assert "Found" not in headline(loose)
+
+
+def test_nothing_is_good_news_only_as_far_as_the_recording_can_show(settings):
+    nothing = said(settings, {}, seed=1)
+    assert nothing.verdict is Kind.NOTHING
+    assert (tone(nothing), "Nothing found" in headline(nothing)) == ("good", True)
+    blind = {k: replace(f, value=None) for k, f in nothing.smallest_findable.items()}
+    assert headline(replace(nothing, smallest_findable=blind)).startswith("Nothing can be said")
+    some = {**nothing.smallest_findable, "friction@plant": blind["friction@plant"]}
+    assert "About 1 of 6 causes" in headline(replace(nothing, smallest_findable=some))
+    assert tone(replace(nothing, smallest_findable=some)) == "open"
+    page = diagnosis_page(replace(nothing, smallest_findable=some))
+    assert "Nothing can be said about: friction at plant." in page
+
+
+def test_every_rival_has_a_reason(friction):
+    standings = [rival.standing for rival in friction.rivals]
+    assert standings[0] is Standing.KEPT
+    assert friction.rivals[0].behind == 0.0
+    assert Standing.LOST in standings
+    assert {name for rival in friction.rivals for name in rival.causes} >= {
+        "friction@plant",
+        "lag@plant",
+    }
+    for rival in friction.rivals[1:]:
+        lost_by_data = rival.place is not None and rival.place.rival > rival.place.best
+        assert rival.standing is not Standing.LOST or lost_by_data or rival.pull > 3.0
+
+
+def test_a_pair_tells_what_each_alone_would_leave(settings):
+    pair = said(settings, {"friction.size": 0.02, "bump.size": -0.15})
+    assert pair.verdict is Kind.SEVERAL
+    alone = [r for r in pair.rivals if r.standing is Standing.ALONE]
+    assert {("friction@plant",), ("bump@plant",)} <= {r.causes for r in alone}
+    assert all(r.behind > 0.0 for r in alone)
+    assert "alone it leaves" in diagnosis_page(pair)
+
+
+def test_an_unknown_shows_the_nearest_and_does_not_accept_it(settings):
+    u = HELD.drive["drive.u"][:, 0]
+    data = record(np.random.default_rng(3), added=(u**3)[:, None] * [0.02, 0.0], fed=HELD)
+    verdict = diagnose(Toy(), [data], settings=settings)
+    assert verdict.verdict is Kind.UNKNOWN
+    top = first_screen(diagnosis_page(verdict))
+    assert "no cause in the library explains" in top
+    assert "Nearest, and not accepted" in top
+    assert "nearest cause" in diagnosis_page(verdict)
+
+
+def test_the_traces_are_the_record_and_fit_it_better_with_the_cause(friction):
+    shown = friction.exhibit.traces[0]
+    data = record(np.random.default_rng(51), {"friction.size": 0.1}, spread=0.0)
+    assert shown.measured == pytest.approx(data["out"], abs=1e-6)  # single precision
+    before = np.std(shown.measured - shown.nominal, axis=0)
+    after = np.std(shown.measured - shown.fitted, axis=0)
+    assert np.all(after < 0.5 * before)
+    assert friction.residuals["out.1"].after == pytest.approx(
+        np.sqrt(np.mean(shown.after[:, 1] ** 2))
+    )
+    assert "exhibit" not in friction.to_dict()
+
+
+def test_the_page_is_one_file_without_a_network_and_under_five_megabytes(friction):
+    page = diagnosis_page(friction)
+    assert not re.search(r'(?:src|href)="(?!#)', page)
+    ids = re.findall(r'\bid="([^"]*)"', page)
+    assert len(ids) == len(set(ids))
+    wide = widened(friction, 24, 3)  # more channels than VES II has
+    assert len(diagnosis_page(wide)) < 5e6
+
+
+def widened(verdict, count, recordings):
+    exhibit = verdict.exhibit
+    noise = np.random.default_rng(0).standard_normal((2000, count))
+    time = 0.01 * np.arange(2000)
+    traces = replace(
+        exhibit.traces[0],
+        time=time,
+        measured=noise,
+        nominal=noise,
+        fitted=noise,
+        sigma_time=time,
+        before=noise,
+        after=noise,
+    )
+    channels = tuple(replace(exhibit.channels[0], name=f"out.{c}") for c in range(count))
+    cells = tuple(
+        replace(cell, channel=c) for c in range(count) for cell in exhibit.after if not cell.channel
+    )
+    errors = {channel.name: verdict.residuals["out.0"] for channel in channels}
+    shown = replace(
+        exhibit, channels=channels, traces=(traces,) * recordings, before=cells, after=cells
+    )
+    return replace(verdict, exhibit=shown, residuals=errors)
+
+
+def test_the_rerun_file_has_every_channel_of_the_three_models(friction, tmp_path):
+    path = write_diagnosis_rrd(friction, tmp_path / "diagnosis.rrd")
+    found = {}
+    for chunk in RrdReader(path).stream():
+        if not chunk.is_static and str(chunk.entity_path).startswith("/r1/"):
+            rows = chunk.to_record_batch().column("Scalars:scalars").to_pylist()
+            found.setdefault(chunk.entity_path, []).extend(rows)
+    assert set(found) == {
+        f"/r1/{kind}/{c.name}" for kind in ("compared", "sigma") for c in friction.exhibit.channels
+    }
+    shown = friction.exhibit.traces[0]
+    rows = np.array(found["/r1/compared/out.1"])
+    expected = [x[:, 1] for x in (shown.measured, shown.nominal, shown.fitted)]
+    assert rows == pytest.approx(np.column_stack(expected))
+    assert np.array(found["/r1/sigma/out.0"])[:, 1] == pytest.approx(shown.after[:, 0])
+    assert not list(tmp_path.glob("*.partial"))
+
+
+def test_measured_nominal_and_extended_lie_over_each_other_in_one_view(friction, tmp_path):
+    reader = RrdReader(write_diagnosis_rrd(friction, tmp_path / "diagnosis.rrd"))
+    names = {}
+    for chunk in reader.stream():
+        if chunk.is_static and "SeriesLines:names" in chunk.to_record_batch().schema.names:
+            (names[chunk.entity_path],) = chunk.to_record_batch()["SeriesLines:names"].to_pylist()
+    (blueprint,) = reader.blueprints()
+    views = [
+        chunk.to_record_batch()["ViewContents:query"].to_pylist()[0]
+        for chunk in reader.stream(store=blueprint)
+        if "ViewContents:query" in chunk.to_record_batch().schema.names
+    ]
+    shown = {contents[0] for contents in views if len(contents) == 1}
+    for channel in friction.exhibit.channels:
+        entity = f"/r1/compared/{channel.name}"
+        assert [n.split(" ")[0] for n in names[entity]] == ["measured", "nominal", "extended"]
+        assert entity in shown  # one entity of three columns: one plot
+
+
+def test_a_verdict_from_a_file_has_no_traces_to_write(friction, tmp_path):
+    bare = replace(friction, exhibit=None)
+    with pytest.raises(InvalidInputError, match="no traces"):
+        write_diagnosis_rrd(bare, tmp_path / "diagnosis.rrd")
+    assert "friction at plant" in diagnosis_page(bare)
+
+
+@pytest.fixture(scope="module")
+def twins(settings):
+    plant = Toy(causes=("lag", "late", "friction"))
+    data = record(np.random.default_rng(2), {"lag.size": 0.2}, plant=plant)
+    return diagnose(plant, [data], next_programmes=lambda: [programme(8)], settings=settings)
+
+
+def test_an_ambiguous_group_is_told_as_one_of_several_with_what_to_record_next(twins):
+    assert twins.verdict is Kind.AMBIGUOUS
+    page = diagnosis_page(twins)
+    top = first_screen(page)
+    assert "One of these 2, and the recording cannot tell which" in top
+    assert top.count("one of 2, firm") == 2
+    assert "look alike in these recordings" in page
+    # the same shape twice: even odds, and no size at which they part
+    either = ("lag at plant from late at plant", "late at plant from lag at plant")
+    assert any(f"Cannot tell {pair}: odds 1" in top for pair in either)  # a tie has no order
+    assert "100 to 1 would settle it" in top
+    told = "Recordings like these cannot tell {} at any size up to 1."
+    assert any(told.format(pair) in page for pair in either)
+    pairs = {(pair.cause, pair.other, pair.beyond) for pair in twins.lookalikes}
+    assert pairs == {("lag@plant", "late@plant", None), ("late@plant", "lag@plant", None)}
+    assert any(f"To tell {pair}: toy." in page for pair in either)
+
+
+def test_the_menu_is_ranked_by_few_commissioning_errors_where_there_are_many(monkeypatch, settings):
+    """One of two errors of the plant is kept: the ranking of a loud and a quiet programme holds."""
+    monkeypatch.setattr("ves_twin.diagnosis.next_experiment.NUISANCES", 1)
+    plant = Toy(causes=("lag", "friction", "ripple"))
+    data = record(np.random.default_rng(4), {"lag.size": 0.05}, spread=0.0, plant=plant)
+    seen = preprocess(plant, [data])
+    base = linearise(seen.runs, seen.runs.origin)
+    evidence = Evidence(seen.runs, seen.measured, whitening_declared(seen.runs))
+    fits = [
+        refine(
+            evidence, (h,), seen.runs.depart(seen.runs.origin, seen.runs.indices(h), [0.02]), base
+        )
+        for h in plant.hypotheses
+        if h.effect in {"lag", "friction"}
+    ]
+    quiet, loud = programme(8, amplitude=0.1), programme(8, amplitude=2.0)
+    few = separations(seen.runs, fits, [quiet, loud])
+    monkeypatch.setattr("ves_twin.diagnosis.next_experiment.NUISANCES", 16)
+    every = separations(seen.runs, fits, [quiet, loud])
+    assert few[0].programme is every[0].programme is loud
+    for one, other in zip(few, every, strict=True):
+        assert one.chi2 >= 0.999 * other.chi2  # what is not marginalised cannot stand for a rival
+
+
+@pytest.mark.parametrize(
+    ("label", "said"),
+    [
+        ("sensor_cross_talk@sensor.my.fy", "sensor cross talk at sensor my from fy"),
+        ("anchor_position@leg.1.x", "anchor position at leg 1 x"),
+        ("coulomb_friction@joint", "Coulomb friction at joint"),
+    ],
+)
+def test_a_cause_is_said_so_that_its_place_can_be_found(label, said):
+    assert spoken(label) == said

@@ -1,1 +1,0 @@
-"""Benches: small plants beside VES II that the diagnosis is tried on."""

@@ -1,0 +1,1 @@
+"""What every room stands on: errors, units, signals, recordings, whole files, plugins."""

@@ -1,0 +1,160 @@
+"""RecordingStream: rows go to an Arrow IPC stream while a run lasts, then into Parquet.
+
+A stream that was cut by a kill is readable up to its last whole batch.
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterator, Mapping
+from contextlib import suppress
+from pathlib import Path
+from types import TracebackType
+
+import pyarrow as pa
+import pyarrow.ipc as ipc
+import pyarrow.parquet as pq
+
+from ves_twin.core.errors import FileAccessError
+from ves_twin.core.recording.recording import RecordingInfo
+from ves_twin.core.recording.table import batch_of, schema_of, with_info
+from ves_twin.core.types import FloatArray
+
+STREAM_NAME = "recording.arrows"
+FILE_NAME = "recording.parquet"
+
+
+class RecordingStream:
+    """Writes batches of rows to `recording.arrows` in a folder; memory stays bounded."""
+
+    def __init__(self, folder: Path, names: tuple[str, ...], info: RecordingInfo) -> None:
+        self._folder = folder
+        self._info = info
+        self._schema = schema_of(names, info)
+        self._path = folder / STREAM_NAME
+        try:
+            if self._path.exists():  # rows of a run that was killed are not ours to drop
+                self._path.rename(_free(folder, f"previous-{STREAM_NAME}"))
+            self._file = self._path.open("wb")
+        except OSError as error:
+            raise FileAccessError(f"cannot write {self._path}: {error.strerror}") from None
+        try:
+            self._writer = ipc.new_stream(self._file, self._schema)
+            self._file.flush()
+        except OSError as error:
+            with suppress(OSError):
+                self._file.close()
+            self._path.unlink()
+            raise FileAccessError(f"cannot write {self._path}: {error.strerror}") from None
+
+    def write(self, time: FloatArray, signals: Mapping[str, FloatArray]) -> None:
+        """Append rows and hand them to the operating system."""
+        try:
+            self._writer.write_batch(batch_of(self._schema, time, signals))
+            self._file.flush()
+        except OSError as error:
+            raise FileAccessError(
+                f"cannot write {self._path}: {error.strerror}; the rows before are kept"
+            ) from None
+
+    def finish(self, info: RecordingInfo) -> Path:
+        """Close the stream, write `recording.parquet` batch by batch, remove the stream.
+
+        Args:
+            info: the final account of the run, with outcome and events.
+
+        Returns:
+            Path of the Parquet file.
+        """
+        self.close()
+        target = self._folder / FILE_NAME
+        partial = target.with_suffix(".parquet.partial")
+        schema = with_info(self._schema, info)
+        try:
+            with pq.ParquetWriter(partial, schema, compression="zstd") as writer:
+                for table in _grouped(stream_batches(self._path), schema):
+                    writer.write_table(table)
+            os.replace(partial, target)
+        except OSError as error:
+            raise FileAccessError(
+                f"cannot write {target}: {error}; rows kept in {self._path}"
+            ) from None
+        finally:
+            partial.unlink(missing_ok=True)
+        self._path.unlink()
+        return target
+
+    def close(self) -> None:
+        """Close the stream file; what was written stays."""
+        if self._file.closed:
+            return
+        try:
+            self._writer.close()
+            self._file.close()
+        except OSError as error:
+            raise FileAccessError(
+                f"cannot write {self._path}: {error.strerror or error}; the rows before are kept"
+            ) from None
+        finally:
+            with suppress(OSError):
+                self._file.close()
+
+    def __enter__(self) -> RecordingStream:
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        trace: TracebackType | None,
+    ) -> None:
+        self.close()
+
+
+def _free(folder: Path, name: str) -> Path:
+    """The name, or the first of name-2, name-3, ... that is free."""
+    path, number = folder / name, 1
+    while path.exists():
+        number += 1
+        path = folder / f"{Path(name).stem}-{number}{Path(name).suffix}"
+    return path
+
+
+def stream_batches(path: Path) -> Iterator[pa.RecordBatch]:
+    """The whole batches of a stream file; a batch that was cut ends the iteration.
+
+    Raises:
+        FileAccessError: missing file, or cut before its first batch.
+    """
+    try:
+        with path.open("rb") as file:
+            reader = ipc.open_stream(file)
+            while True:
+                try:
+                    yield reader.read_next_batch()
+                except (StopIteration, pa.ArrowInvalid, OSError):
+                    return
+    except OSError as error:
+        raise FileAccessError(f"recording {path}: {error.strerror}") from None
+    except pa.ArrowInvalid:
+        raise FileAccessError(f"recording {path} was cut before its first row") from None
+
+
+ROW_GROUP = 20_000
+"""Rows of one Parquet row group: a few megabytes at the width of a recording."""
+
+
+def _grouped(batches: Iterator[pa.RecordBatch], schema: pa.Schema) -> Iterator[pa.Table]:
+    """Tables of exactly ROW_GROUP rows, whatever batches the rows came in."""
+    held: list[pa.RecordBatch] = []
+    rows = 0
+    for batch in batches:
+        held.append(batch)
+        rows += batch.num_rows
+        while rows >= ROW_GROUP:
+            table = pa.Table.from_batches(held).replace_schema_metadata(schema.metadata)
+            yield table.slice(0, ROW_GROUP)
+            held = table.slice(ROW_GROUP).to_batches()
+            rows -= ROW_GROUP
+    if rows:
+        yield pa.Table.from_batches(held).replace_schema_metadata(schema.metadata)

@@ -1,0 +1,91 @@
+"""Workers: processes that share out independent jobs, started once and kept."""
+
+from __future__ import annotations
+
+import multiprocessing
+import os
+from collections.abc import Callable, Iterator, Sequence
+from concurrent.futures import ProcessPoolExecutor
+from contextlib import contextmanager
+from types import TracebackType
+from typing import TypeVar
+
+Job = TypeVar("Job")
+Result = TypeVar("Result")
+
+_THREADS = ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS")
+
+
+class Workers:
+    """A number of processes; they start with the first job and end with the `with` block.
+
+    Args:
+        count: of processes; 1 computes here.
+    """
+
+    def __init__(self, count: int = 1) -> None:
+        self.count = count
+        self._pool: ProcessPoolExecutor | None = None
+
+    def __reduce__(self) -> tuple[type[Workers], tuple[int]]:
+        return Workers, (1,)  # what was given to another process computes there
+
+    def __enter__(self) -> Workers:
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        trace: TracebackType | None,
+    ) -> None:
+        if self._pool is not None:
+            self._pool.shutdown(cancel_futures=True)
+            self._pool = None
+
+    def map(
+        self, function: Callable[[Job], Result], jobs: Sequence[Job], chunk: int = 1
+    ) -> Iterator[Result]:
+        """Results in the order of the jobs.
+
+        Args:
+            function: travels to the processes with each chunk.
+            jobs: its arguments.
+            chunk: jobs that travel together.
+        """
+        if self.count == 1 or len(jobs) < 2:
+            yield from map(function, jobs)
+            return
+        if self._pool is None:
+            context = multiprocessing.get_context("spawn")
+            self._pool = ProcessPoolExecutor(self.count, mp_context=context)
+        with single_threads():
+            yield from self._pool.map(function, jobs, chunksize=chunk)
+
+    def collect(
+        self,
+        function: Callable[[Job], Result],
+        jobs: Sequence[Job],
+        progress: Callable[[float], None] = lambda share: None,
+    ) -> list[Result]:
+        """All results in the order of the jobs; `progress` is called with the share done."""
+        results: list[Result] = []
+        for result in self.map(function, jobs):
+            results.append(result)
+            progress(len(results) / len(jobs))
+        return results
+
+
+@contextmanager
+def single_threads() -> Iterator[None]:
+    """Environment of processes that start meanwhile: one thread of linear algebra."""
+    before = {name: os.environ.get(name) for name in _THREADS}
+    os.environ.update(dict.fromkeys(_THREADS, "1"))
+    try:
+        yield
+    finally:
+        for name, value in before.items():
+            if value is None:
+                del os.environ[name]
+            else:
+                os.environ[name] = value

@@ -1,0 +1,156 @@
+"""ClockReport: rate, gaps, repeats and steps back of a time column, counted piece by piece."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from ves_twin.core.types import FloatArray
+
+GAP = 1.5
+"""A step longer than so many periods is a gap."""
+
+LISTED = 5
+"""Gaps that are told one by one: the longest."""
+
+
+@dataclass(frozen=True)
+class Gap:
+    """A hole in a clock: where it begins and how long it is [s]."""
+
+    start: float
+    length: float
+
+
+@dataclass(frozen=True)
+class ClockReport:
+    """What a time column is like.
+
+    Attributes:
+        column: its name.
+        unit: of the file's numbers.
+        guessed: the unit is a guess, the file does not say it.
+        start, stop: first and last time [s].
+        rows: that hold a time.
+        period: usual step of its begin [s].
+        jitter: largest deviation of a step that is no gap, in periods.
+        gaps: number of steps longer than 1.5 periods.
+        longest: the longest of them.
+        repeats: rows with the time of the row before.
+        back: rows with an earlier time than the row before.
+        missing: rows without a time.
+    """
+
+    column: str
+    unit: str
+    guessed: bool
+    start: float
+    stop: float
+    rows: int
+    period: float
+    jitter: float
+    gaps: int
+    longest: tuple[Gap, ...]
+    repeats: int
+    back: int
+    missing: int
+
+    @property
+    def rate(self) -> float:
+        """Rows a second by the median step [Hz]; 0 where there is none."""
+        return 1.0 / self.period if self.period > 0.0 else 0.0
+
+
+_COUNTS = ("gaps", "repeats", "back")
+
+
+@dataclass
+class ClockCounter:
+    """Takes a time column piece by piece.
+
+    Attributes:
+        column: its name.
+        unit: of its numbers.
+        guessed: the unit is a guess.
+        scale: of the unit [s].
+    """
+
+    column: str
+    unit: str
+    guessed: bool
+    scale: float
+    _last: float = np.nan
+    _first: float = np.nan
+    _rows: int = 0
+    _missing: int = 0
+    _period: float = 0.0
+    _jitter: float = 0.0
+    _gaps: list[Gap] = field(default_factory=list)
+    _counts: dict[str, int] = field(default_factory=lambda: dict.fromkeys(_COUNTS, 0))
+
+    def take(self, raw: FloatArray) -> None:
+        """The next rows (n,), in the file's unit."""
+        time = raw * self.scale
+        good = np.isfinite(time)
+        if not good.all():
+            self._missing += int(np.count_nonzero(~good))
+            time = time[good]
+        if not len(time):
+            return
+        if self._rows == 0:
+            self._first = float(time[0])
+            self._period = usual_step(time)
+        steps = np.diff(time, prepend=self._last if self._rows else time[0])
+        if self._rows == 0:
+            steps = steps[1:]
+        self._count(steps, time)
+        self._rows += len(time)
+        self._last = float(time[-1])
+
+    def _count(self, steps: FloatArray, time: FloatArray) -> None:
+        self._counts["repeats"] += int(np.count_nonzero(steps == 0.0))
+        self._counts["back"] += int(np.count_nonzero(steps < 0.0))
+        if self._period <= 0.0 or not len(steps):
+            return
+        wide = np.flatnonzero(steps > GAP * self._period)
+        self._counts["gaps"] += len(wide)
+        before = time[len(time) - len(steps) :][wide] - steps[wide]
+        self._gaps += [
+            Gap(float(a), float(b)) for a, b in zip(before[:1000], steps[wide][:1000], strict=True)
+        ]
+        self._gaps = sorted(self._gaps, key=lambda gap: -gap.length)[:LISTED]
+        even = steps[(steps > 0.0) & (steps <= GAP * self._period)]
+        if len(even):
+            off = float(np.max(np.abs(even - self._period))) / self._period
+            self._jitter = max(self._jitter, off)
+
+    def report(self) -> ClockReport:
+        """What was counted."""
+        return ClockReport(
+            column=self.column,
+            unit=self.unit,
+            guessed=self.guessed,
+            start=self._first,
+            stop=self._last,
+            rows=self._rows,
+            period=self._period,
+            jitter=self._jitter,
+            longest=tuple(self._gaps),
+            missing=self._missing,
+            **self._counts,
+        )
+
+
+def usual_step(time: FloatArray) -> float:
+    """Mean of the steps near the median one [s]; 0 where no step goes forward.
+
+    Stamps that count whole milliseconds have a median step that is off by up to half of one.
+    """
+    steps = np.diff(time)
+    steps = steps[steps > 0.0]
+    if not len(steps):
+        return 0.0
+    median = float(np.median(steps))
+    near = steps[np.abs(steps - median) < (GAP - 1.0) * median]
+    return float(np.mean(near)) if len(near) else median

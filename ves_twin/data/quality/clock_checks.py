@@ -1,0 +1,69 @@
+"""check_clock: rate, gaps and repeated rows of a recording."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ves_twin.core.recording.recording import Recording
+from ves_twin.data.quality.check import Check, failed, passed, unknown
+
+JITTER = 0.05
+"""Rows that lie off the even clock by more than this share of a period are jitter."""
+
+GAP = 1.5
+"""A step longer than so many periods is a gap."""
+
+
+def check_clock(recording: Recording) -> list[Check]:
+    """Rate, gaps and repeats.
+
+    A gap is a step of more than 1.5 median periods. Rows are repeats where every measured
+    column equals the row before in a recording that otherwise moves: a logger that held them.
+    """
+    if len(recording) < 3:
+        return [unknown("rate", f"{len(recording)} rows are too few to tell a rate")]
+    steps = np.diff(recording.time)
+    period = float(np.median(steps))
+    return [_rate(recording, steps, period), _gaps(recording, steps, period), _repeats(recording)]
+
+
+def _rate(recording: Recording, steps: np.ndarray, period: float) -> Check:
+    even = steps[steps < GAP * period]
+    jitter = float(np.max(np.abs(even - period))) / period
+    declared = recording.info.period
+    said = f"{1.0 / period:.2f} Hz"
+    if declared > 0.0 and abs(period / declared - 1.0) > JITTER:
+        return failed(
+            "rate", f"rows come at {said}, the recording declares {1.0 / declared:.2f} Hz"
+        )
+    if jitter > JITTER:
+        return failed("rate", f"rows come at {said} with {jitter:.0%} jitter, expected under 5 %")
+    return passed("rate", f"{said}, jitter {jitter:.1%}")
+
+
+def _gaps(recording: Recording, steps: np.ndarray, period: float) -> Check:
+    holes = np.flatnonzero(steps >= GAP * period)
+    if not len(holes):
+        return passed("gaps", "none")
+    longest = holes[np.argmax(steps[holes])]
+    return failed(
+        "gaps",
+        f"{len(holes)} gaps, the longest of {steps[longest]:.3f} s at"
+        f" {recording.time[longest]:.3f} s; expected a row every {period:.4f} s",
+    )
+
+
+def _repeats(recording: Recording) -> Check:
+    changes = np.zeros(len(recording) - 1, dtype=bool)
+    for values in recording.signals.values():
+        with np.errstate(invalid="ignore"):
+            changes |= np.any(np.diff(values, axis=0) != 0.0, axis=1)
+    share = float(np.mean(~changes))
+    if share == 1.0:
+        return unknown("repeats", "no signal changes at all")
+    if share > 0.0:
+        first = recording.time[np.flatnonzero(~changes)[0] + 1]
+        return failed(
+            "repeats", f"{share:.1%} of the rows repeat the one before, first at {first:.3f} s"
+        )
+    return passed("repeats", "none")

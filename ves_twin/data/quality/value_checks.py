@@ -1,0 +1,94 @@
+"""check_values: missing numbers, stuck and saturated columns of a recording."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ves_twin.core.recording.recording import Recording
+from ves_twin.core.signals import SIGNALS, Role
+from ves_twin.core.types import FloatArray
+from ves_twin.data.quality.check import Check, failed, passed, unknown
+
+PILE = 0.02
+"""Share of rows at the very largest or smallest value that counts as saturation."""
+
+COMMANDS = {"leg.length": "leg.command", "arm.q": "arm.command"}
+"""A measurement -> the command that it follows, column by column."""
+
+RUN = 5
+"""Rows in a row at an end value that count as saturation."""
+
+
+def check_values(recording: Recording) -> list[Check]:
+    """Numbers that are missing, stuck or saturated, for each measured signal."""
+    measured = [n for n in recording.signals if _is_measured(n)]
+    return [check for name in measured for check in _signal(recording, name)]
+
+
+def columns(name: str, width: int) -> tuple[str, ...]:
+    """Column names of a signal: those of the table, else numbered from 1."""
+    if name in SIGNALS and SIGNALS[name].width == width:
+        return SIGNALS[name].columns
+    return tuple(f"{name}.{i + 1}" for i in range(width)) if width > 1 else (name,)
+
+
+def _is_measured(name: str) -> bool:
+    return name not in SIGNALS or SIGNALS[name].role is Role.MEASUREMENT
+
+
+def _signal(recording: Recording, name: str) -> list[Check]:
+    values = recording[name]
+    labels = columns(name, values.shape[1])
+    missing = ~np.isfinite(values)
+    if missing.any():
+        bad = [labels[i] for i in np.flatnonzero(missing.any(axis=0))]
+        share, first = missing.any(axis=1).mean(), recording.time[missing.any(axis=1)][0]
+        text = f"{share:.1%} of the rows hold no number, first at {first:.3f} s"
+        return [failed("missing", f"{', '.join(bad)}: {text}", *bad)]
+    checks = [passed("missing", f"{name}: every row holds numbers", name)]
+    still = np.ptp(values, axis=0) == 0.0
+    stuck = [labels[i] for i in np.flatnonzero(still & _asked_to_move(recording, name))]
+    if stuck and len(stuck) < values.shape[1]:
+        text = f"{', '.join(stuck)} never change while the rest of {name} does"
+        checks.append(failed("stuck", text, *stuck))
+    elif still.any():
+        resting = ", ".join(labels[i] for i in np.flatnonzero(still))
+        checks.append(unknown("stuck", f"{resting} never change, nor were they asked to", name))
+    else:
+        checks.append(passed("stuck", f"{name}: every column changes", name))
+    full = [labels[i] for i in range(values.shape[1]) if _saturated(values[:, i])]
+    if full:
+        text = f"{', '.join(full)} stay at their end value as a range that is too small would"
+        checks.append(failed("saturation", text, *full))
+    else:
+        checks.append(passed("saturation", f"{name}: no column stays at an end value", name))
+    return checks
+
+
+def _asked_to_move(recording: Recording, name: str) -> NDArray[np.bool_]:
+    """Columns whose command moves; all of them where there is no command, as for a sensor."""
+    width = recording[name].shape[1]
+    command = COMMANDS.get(name, "")
+    if command not in recording.signals or recording[command].shape[1] != width:
+        return np.ones(width, dtype=bool)
+    return np.asarray(np.ptp(recording[command], axis=0) > 0.0)
+
+
+def _saturated(values: FloatArray) -> bool:
+    """Whether a column runs into its end value at full speed and stays there, often enough.
+
+    A joint that comes to rest arrives slowly; a range that is too small stops it in motion.
+    """
+    steps = np.abs(np.diff(values))
+    if not steps.any():
+        return False
+    usual = float(np.median(steps[steps > 0.0]))
+    for end in (values.max(), values.min()):
+        at = values == end
+        edges = np.flatnonzero(np.diff(np.concatenate([[0], at.astype(int), [0]])))
+        starts, lengths = edges[::2], edges[1::2] - edges[::2]
+        entered = starts[(lengths >= RUN) & (starts > 0)]
+        if len(entered) and at.mean() > PILE and np.median(steps[entered - 1]) > 0.3 * usual:
+            return True
+    return False

@@ -1,0 +1,258 @@
+"""assemble_verdict: the verdict's fields from what was computed."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from scipy.stats import norm
+
+from ves_twin.core.types import FloatArray, SingleArray
+from ves_twin.diagnosis.adequacy import cells
+from ves_twin.diagnosis.aliases import Lookalike, lookalikes
+from ves_twin.diagnosis.assess import Assessment
+from ves_twin.diagnosis.build_up.result import BuildUp, Proved, Size
+from ves_twin.diagnosis.disagreement import Alone
+from ves_twin.diagnosis.explain import Explanation
+from ves_twin.diagnosis.findable import findable_sizes, twins
+from ves_twin.diagnosis.forward import Hypothesis
+from ves_twin.diagnosis.gain import Gain
+from ves_twin.diagnosis.null import Thresholds
+from ves_twin.diagnosis.preprocess import Dataset
+from ves_twin.diagnosis.refine import Fit
+from ves_twin.diagnosis.report_traces import ReportTraces, exhibit_of
+from ves_twin.diagnosis.residual_structure import ResidualStructure, describe
+from ves_twin.diagnosis.rivals import rivals_of
+from ves_twin.diagnosis.settings import Settings
+from ves_twin.diagnosis.verdict import (
+    Basis,
+    Cause,
+    ChannelError,
+    Estimate,
+    Findable,
+    Kind,
+    Proposal,
+    Statistics,
+    Verdict,
+)
+
+
+@dataclass(frozen=True)
+class Findings:
+    """Everything a verdict is made from.
+
+    Attributes:
+        seen: the record and its runs.
+        first: the record before any cause.
+        limits: what noise and commissioning errors do.
+        settings: how sure.
+        kappa: declared sd beyond which a departure is a fault.
+        scale: of the tolerances, None if not measured.
+        found: the explanation; None if nothing is wrong or nothing fits.
+        gain: on held-out recordings.
+        forecast: ahead in time, of causes that belong to a stretch of it.
+        proposals: next programmes.
+        apart: what each recording says alone.
+        widened: factor on the declared commissioning sd in this view.
+        built: what building up proved.
+    """
+
+    seen: Dataset
+    first: Assessment
+    limits: Thresholds
+    settings: Settings
+    kappa: float
+    scale: float | None
+    found: Explanation | None = None
+    gain: Gain | None = None
+    forecast: Gain | None = None
+    proposals: tuple[Proposal, ...] = ()
+    apart: tuple[Alone, ...] = ()
+    widened: float = 1.0
+    built: BuildUp | None = None
+
+
+def assemble_verdict(
+    findings: Findings, kind: Kind, basis: Basis, excluded: tuple[str, ...] = ()
+) -> Verdict:
+    """The verdict; causes only where the kind names some."""
+    first, found, limits = findings.first, findings.found, findings.limits
+    named = found is not None and kind.names_causes
+    causes, alternatives = _causes(findings, found) if named and found else ((), ())
+    built = findings.built
+    proved = _sized(built, causes) if built and named else ()
+    firm = {one.label: one.firm for one in proved}
+    causes = tuple(replace(c, firm=firm.get(f"{c.effect}@{c.target}", c.firm)) for c in causes)
+    nearest = _causes(findings, found)[0] if found and not named else ()
+    exhibit = exhibit_of(findings.seen, first, found)
+    sizes = findable_sizes(first.screen, limits.effect)
+    units = {h.label: _unit(findings, h) for h in first.screen.bank.hypotheses}
+    suspect = "" if found is None or named else _label(found.best)
+    statistics = Statistics(
+        effect=first.score,
+        effect_threshold=limits.effect,
+        misfit=first.misfit,
+        misfit_threshold=limits.misfit,
+        misfit_after=found.score if found else None,
+        second_effect=found.second if found else None,
+        naming_limit=findings.kappa,
+        tolerance_scale=findings.scale,
+        naming_odds=findings.settings.odds,
+        widened=findings.widened,
+    )
+    return Verdict(
+        verdict=kind,
+        basis=basis,
+        statistics=statistics,
+        causes=causes,
+        alternatives=alternatives,
+        residuals=_residuals(exhibit),
+        gain=findings.gain,
+        forecast=findings.forecast,
+        tuned=_tuned(findings),
+        leftover=None if kind is Kind.NOTHING else _leftover(findings),
+        suspect=suspect,
+        rivals=rivals_of(first, found),
+        smallest_findable={label: Findable(v, units[label]) for label, v in sizes.items()},
+        twins=tuple(twins(first.screen)),
+        lookalikes=_lookalikes(findings, causes, sizes),
+        next_experiment=findings.proposals,
+        unseen=findings.seen.unseen,
+        holes=findings.seen.holes,
+        excluded=excluded,
+        alone=findings.apart,
+        exhibit=exhibit,
+        proved=proved,
+        put_to_proof=built.tested if built else None,
+        false_discovery_rate=built.false_discovery_rate if built else None,
+        left=built.left if built else {},
+        inseparable=built.inseparable if built else (),
+        nearest=nearest,
+    )
+
+
+def _sized(built: BuildUp, causes: Sequence[Cause]) -> tuple[Proved, ...]:
+    """What is proved with its sizes; firm only where no commissioning error explains it either."""
+    named = {f"{cause.effect}@{cause.target}": cause for cause in causes}
+    found = []
+    for one in built.proved:
+        cause = named[one.label]
+        sizes = {
+            name: Size(e.value, e.low, e.high, e.unit, e.nominal)
+            for name, e in cause.shortened.parameters.items()
+        }
+        found.append(replace(one, parameters=sizes, firm=one.firm and cause.firm))
+    return tuple(found)
+
+
+def _lookalikes(
+    findings: Findings, causes: Sequence[Cause], sizes: dict[str, float | None]
+) -> tuple[Lookalike, ...]:
+    """What a named cause could be taken for in these recordings, and up to which size."""
+    if not causes:
+        return ()
+    settings, names = findings.settings, {f"{cause.effect}@{cause.target}" for cause in causes}
+    screen = findings.first.screen
+    return tuple(lookalikes(screen, sizes, settings.odds, settings.model_error, names))
+
+
+def _label(fit: Fit) -> str:
+    return " with ".join(h.label for h in fit.causes)
+
+
+def _unit(findings: Findings, hypothesis: Hypothesis) -> str:
+    runs = findings.seen.runs
+    return runs.coordinates[int(runs.indices(hypothesis)[0])].parameter.unit
+
+
+def _causes(
+    findings: Findings, found: Explanation
+) -> tuple[tuple[Cause, ...], tuple[tuple[int, ...], ...]]:
+    causes: list[Cause] = []
+    alternatives = []
+    for fit, weight in zip(found.chosen, found.weights, strict=True):
+        numbers, start = [], 0
+        for hypothesis in fit.causes:
+            numbers.append(len(causes))
+            causes.append(_cause(findings, fit, hypothesis, start, weight))
+            start += len(hypothesis.parameters)
+        alternatives.append(tuple(numbers))
+    return tuple(causes), tuple(alternatives)
+
+
+def _cause(
+    findings: Findings, fit: Fit, hypothesis: Hypothesis, start: int, weight: float
+) -> Cause:
+    """Firm if it is no commissioning parameter, or further off than commissioning errors go."""
+    runs = findings.seen.runs
+    z = float(norm.isf(0.5 * (1.0 - findings.settings.confidence)))
+    estimates, sigmas = {}, []
+    for n, i in enumerate(runs.indices(hypothesis), start):
+        parameter = runs.coordinates[int(i)].parameter
+        size, sd = float(fit.sizes[n]), float(np.sqrt(fit.covariance[n, n]))
+        value = parameter.nominal + size
+        low, high = max(value - z * sd, parameter.low), min(value + z * sd, parameter.high)
+        estimates[parameter.name] = Estimate(value, low, high, parameter.unit, parameter.nominal)
+        if parameter.sd > 0.0:
+            sigmas.append(findings.widened * abs(size) / parameter.sd)
+    absent = len(sigmas) < len(hypothesis.parameters)
+    return Cause(
+        effect=hypothesis.effect,
+        target=hypothesis.target,
+        parameters=estimates,
+        probability=weight,
+        firm=absent or max(sigmas) >= findings.kappa,
+        sigmas=max(sigmas, default=None),
+    )
+
+
+def _tuned(findings: Findings) -> dict[str, Estimate]:
+    """Commissioning numbers of the plant at the best fit, with what is known of them then."""
+    fit = findings.found.best if findings.found else findings.first.commissioning
+    if fit is None:
+        return {}
+    runs, z = findings.seen.runs, float(norm.isf(0.5 * (1.0 - findings.settings.confidence)))
+    free, estimates = set(fit.active[: len(fit.sizes)]), {}
+    for n, i in enumerate(fit.active):
+        parameter = runs.coordinates[int(i)].parameter
+        if i in free or runs.coordinates[int(i)].recording != -1:
+            continue
+        value, reach = (
+            parameter.nominal + float(fit.shift[i]),
+            z * float(np.sqrt(fit.posterior[n, n])),
+        )
+        estimates[parameter.name] = Estimate(
+            value, value - reach, value + reach, parameter.unit, parameter.nominal
+        )
+    return estimates
+
+
+def _residuals(exhibit: ReportTraces) -> dict[str, ChannelError]:
+    """Before: the model as it is. After: with commissioning errors, and the causes, fitted."""
+    found = {}
+    for c, channel in enumerate(exhibit.channels):
+        traces = exhibit.traces
+        found[channel.name] = ChannelError(
+            before=_rms([t.before[:, c] for t in traces]),
+            after=_rms([t.after[:, c] for t in traces]),
+            before_si=_rms([t.measured[:, c] - t.nominal[:, c] for t in traces]),
+            after_si=_rms([t.measured[:, c] - t.fitted[:, c] for t in traces]),
+            unit=channel.unit,
+            spread=_rms([t.measured[:, c] - np.nanmean(t.measured[:, c]) for t in traces]),
+        )
+    return found
+
+
+def _rms(pieces: Sequence[FloatArray | SingleArray]) -> float:
+    return float(np.sqrt(np.nanmean(np.square(np.concatenate(pieces), dtype=float))))
+
+
+def _leftover(findings: Findings) -> ResidualStructure:
+    found, first = findings.found, findings.first
+    limit = findings.limits.misfit
+    if found:
+        return describe(found.evidence, found.best.residual, found.after, limit)
+    fit = first.commissioning
+    residual = first.left if fit is None else fit.residual
+    return describe(first.evidence, residual, cells(first.evidence.whitening, residual), limit)

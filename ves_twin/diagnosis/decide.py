@@ -1,0 +1,213 @@
+"""decide: from an explanation and held-out recordings to the kind of verdict."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from ves_twin.core.recording.recording import Recording
+from ves_twin.core.workers import Workers
+from ves_twin.diagnosis.assess import pull_limit
+from ves_twin.diagnosis.build_up import build_up
+from ves_twin.diagnosis.build_up.build_up import Built, build_up
+from ves_twin.diagnosis.build_up.halves import split
+from ves_twin.diagnosis.build_up.result import BuildUp
+from ves_twin.diagnosis.explain import Explanation, FitContext, explain
+from ves_twin.diagnosis.forecast import forecast
+from ves_twin.diagnosis.forward import Forward
+from ves_twin.diagnosis.gain import Gain, held_out_gain
+from ves_twin.diagnosis.preprocess import Dataset, preprocess
+from ves_twin.diagnosis.refine import Fit, refine
+from ves_twin.diagnosis.settings import Settings
+from ves_twin.diagnosis.verdict import Kind
+from ves_twin.diagnosis.whitening import Whitening, whitening_of
+
+ALMOST = 0.95
+"""The same of a single cause that leaves more than noise: a wrong one that moves the same channels
+takes up to nine tenths (viscous damping of a drag with the square of speed, of blind pendulums)."""
+
+MANY_FROM = 2
+"""Causes beyond which more may be at work than a search of single ones and pairs can see."""
+
+ROUGH = 0.01
+"""Fall of chi^2, of all of it, that ends the search for the model before, where commissioning
+errors are held: it moves a gain by no more than that."""
+
+
+@dataclass(frozen=True)
+class Conclusion:
+    """What a record that is not in order comes to.
+
+    Attributes:
+        found: the best explanation; None if nothing fits.
+        kind: of the verdict.
+        gain: on held-out recordings.
+        forecast: gain ahead in time, of causes whose sizes belong to a stretch of it.
+        built: what building up proved; None where a few causes explain the record.
+        cut: whether stretches of the record itself were held out.
+    """
+
+    found: Explanation | None
+    kind: Kind
+    gain: Gain | None = None
+    forecast: Gain | None = None
+    built: BuildUp | None = None
+    cut: bool = False
+
+
+@dataclass(frozen=True)
+class HeldOut:
+    """Held-out recordings on the grid, and what a fit is worth there."""
+
+    seen: Dataset
+    whitening: Whitening
+    settings: Settings
+
+    @staticmethod
+    def of(
+        forward: Forward,
+        recordings: Sequence[Recording],
+        standstill: Recording | None,
+        settings: Settings,
+        workers: Workers,
+    ) -> HeldOut:
+        """Put them on the grid."""
+        seen = preprocess(forward, recordings, workers, settings.rate)
+        return HeldOut(seen, whitening_of(seen.runs, standstill), settings)
+
+    def gain(self, before: Fit, after: Fit) -> Gain:
+        """Of one fit over another."""
+        return held_out_gain(
+            self.seen.runs,
+            self.seen.measured,
+            self.whitening,
+            before,
+            after,
+            self.settings.confidence,
+            self.settings.seed,
+        )
+
+    def gains(self, found: Explanation, limit: float, least: float) -> list[Gain]:
+        """Of the best explanation; of its rivals too, where that could be part of the truth.
+
+        Args:
+            found: the explanation.
+            limit: commissioning sd that a rig in order does not pass. The model before is tuned
+                within it: a cause that commissioning knows too would else be in that model,
+                tens of sd of it, and naming it be worth nothing.
+            least: share of the excess from which something unexplained leaves a part of the truth.
+        """
+        before = found.commissioning
+        if before.pull > limit:
+            best = found.best  # held within the limit it is a better start than what was strained
+            start = np.where(best.local.runs.sd > 0.0, best.shift, 0.0)
+            at = (start, best.local, 0, best.step_share)
+            before = refine(found.evidence, (), *at, farthest=limit, enough=ROUGH)
+        first = self.gain(before, found.best)
+        if found.adequate or first.low is None or first.low <= least:
+            return [first]
+        rivals = [fit for fit in found.fits if fit is not found.best]
+        return [first, *(self.gain(before, fit) for fit in rivals)]
+
+
+def decide(
+    desk: FitContext,
+    forward: Forward,
+    recordings: Sequence[Recording],
+    held: HeldOut | None,
+    standstill: Recording | None = None,
+) -> Conclusion:
+    """Explain a record, and see what the explanation is worth elsewhere.
+
+    Args:
+        desk: the record before any cause, over a threshold.
+        forward: the plant, tuned to its rig where there is a baseline.
+        recordings: all, fitted and held out.
+        held: those held out.
+        standstill: tells the noise; the declared one is taken without it.
+    """
+    found = explain(desk.first, desk.thresholds, desk.settings, desk.progress)
+    if found is None:
+        return Conclusion(None, Kind.UNKNOWN)
+    built, cut = None, False
+    if not found.adequate and desk.settings.causes > MANY_FROM:
+        evidence = desk.first.evidence
+        fitted = Dataset(evidence.runs, evidence.measured, ())
+        if held is None:
+            cut = True
+            fitted, rest = split(fitted)
+            held = HeldOut(rest, whitening_of(rest.runs, standstill), desk.settings)
+        built = build_up(desk, found, fitted, held.seen)
+    if built is not None and built.report.proved:
+        return _proved(desk, forward, recordings, held, standstill, built, cut)
+    if cut:  # nothing is proved there, and nothing else was held out
+        held = None
+    found = _probed(found)
+    limit = pull_limit(desk.first.screen.bank, desk.settings.alpha)
+    gains = held.gains(found, limit, ALMOST) if held else []
+    kind = _kind(found, gains)
+    ahead = _ahead(desk, forward, recordings, found, standstill) if kind.names_causes else None
+    report = built.report if built else None
+    return Conclusion(found, kind, gains[0] if gains else None, ahead, report, cut)
+
+
+def _proved(
+    desk: FitContext,
+    forward: Forward,
+    recordings: Sequence[Recording],
+    held: HeldOut | None,
+    standstill: Recording | None,
+    built: Built,
+    cut: bool,
+) -> Conclusion:
+    """Causes that were proved one by one: all of it, or a part."""
+    found = built.found
+    kind = Kind.PARTIAL
+    if found.adequate:
+        kind = Kind.NAMED if len(found.best.causes) == 1 else Kind.SEVERAL
+    gain = held.gain(built.before, found.best) if held else None
+    ahead = _ahead(desk, forward, recordings, found, standstill)
+    return Conclusion(found, kind, gain, ahead, built.report, cut)
+
+
+def _ahead(
+    desk: FitContext,
+    forward: Forward,
+    recordings: Sequence[Recording],
+    found: Explanation,
+    standstill: Recording | None,
+) -> Gain | None:
+    """Gain ahead in time, where a cause's sizes belong to a stretch of it."""
+    if not any(cause.transient for cause in found.best.causes):
+        return None
+    workers = desk.first.screen.bank.base.runs.workers
+    return forecast(forward, recordings, found.best, desk.settings, standstill, workers)
+
+
+def _probed(found: Explanation) -> Explanation:
+    """The chosen fits once more, with runs along what they know least of their causes."""
+    evidence = found.evidence
+    chosen = tuple(
+        refine(evidence, fit.causes, fit.shift, fit.local, 0, fit.step_share, probed=True)
+        for fit in found.chosen
+    )
+    better = {fit.causes: fit for fit in chosen}
+    fits = tuple(better.get(fit.causes, fit) for fit in found.fits)
+    return replace(found, chosen=chosen, fits=fits)
+
+
+def _kind(found: Explanation, gains: Sequence[Gain]) -> Kind:
+    if not found.adequate:
+        return Kind.PARTIAL if _beats(found, gains) else Kind.UNKNOWN
+    if len(found.chosen) > 1:
+        return Kind.AMBIGUOUS
+    return Kind.NAMED if len(found.best.causes) == 1 else Kind.SEVERAL
+
+
+def _beats(found: Explanation, gains: Sequence[Gain]) -> bool:
+    """Whether the causes take most of the held-out excess away, and no rival nearly as much."""
+    if len(found.chosen) > 1 or not gains or gains[0].low is None:
+        return False
+    return gains[0].low > max([ALMOST, *(gain.share or 0.0 for gain in gains[1:])])

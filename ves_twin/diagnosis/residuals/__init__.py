@@ -1,0 +1,1 @@
+"""Residuals of one channel: noise, cells, spectrum, lag and coherence."""

@@ -1,0 +1,80 @@
+"""Companions: how much of a residual goes along with each column of the drive."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ves_twin.core.types import ComplexArray, FloatArray
+
+CLEAR = 1.5
+"""A coherence so many times what chance gave is one."""
+
+PIECES = 15
+"""Overlapping pieces of a record: half of each with the next."""
+
+
+@dataclass(frozen=True)
+class Coherence:
+    """Share of a residual's power that one column of the drive explains linearly.
+
+    Attributes:
+        value: largest over the columns of the drive, weighted by the residual's power.
+        chance: largest that the same figure reaches with pieces paired wrongly.
+        column: the column of the drive.
+    """
+
+    value: float
+    chance: float
+    column: str
+
+    @property
+    def told(self) -> bool:
+        """Whether it is clearly more than chance."""
+        return self.value > CLEAR * self.chance
+
+
+class Companions:
+    """Spectra of the pieces of every drive column that moves.
+
+    Args:
+        names: columns of the drive.
+        drive: their values (n, columns).
+    """
+
+    def __init__(self, names: tuple[str, ...], drive: FloatArray) -> None:
+        moving = np.ptp(drive, axis=0) > 0.0
+        self._names = tuple(np.array(names)[moving])
+        self._length = 2 * (len(drive) // (PIECES + 1))
+        self._pieces = self._spectra(drive[:, moving])
+
+    def of(self, residual: FloatArray) -> Coherence | None:
+        """The drive column that a residual (n,) goes along with most; None if nothing moves."""
+        if not self._names or self._length < 16:
+            return None
+        pieces = self._spectra(residual[:, None])
+        values = self._shares(pieces, 0)
+        best = int(np.argmax(values))
+        chance = max(float(self._shares(pieces, k).max()) for k in range(3, PIECES - 3))
+        return Coherence(float(values[best]), chance, str(self._names[best]))
+
+    def _spectra(self, rows: FloatArray) -> ComplexArray:
+        """Of each piece, its line removed (pieces, f, columns)."""
+        half = self._length // 2
+        window = np.hanning(self._length)[:, None]
+        line = np.vander(np.linspace(-1.0, 1.0, self._length), 2)
+        parts = []
+        for k in range(PIECES):
+            piece = rows[k * half : k * half + self._length]
+            piece = piece - line @ np.linalg.lstsq(line, piece, rcond=None)[0]
+            parts.append(np.fft.rfft(piece * window, axis=0)[1:])
+        return np.asarray(parts)
+
+    def _shares(self, residual: ComplexArray, turn: int) -> FloatArray:
+        drive = np.roll(self._pieces, turn, axis=0)
+        cross = np.abs(np.mean(residual * drive.conj(), axis=0)) ** 2
+        power = np.mean(np.abs(residual) ** 2, axis=0)
+        fed = np.mean(np.abs(drive) ** 2, axis=0)
+        explained = cross / np.maximum(fed, 1e-9 * fed.max(axis=0))
+        return np.asarray(explained.sum(axis=0) / max(float(power.sum()), 1e-300))

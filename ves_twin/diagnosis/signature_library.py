@@ -1,0 +1,266 @@
+"""SignatureLibrary: the change each hypothesis makes at finite sizes, for a plant and inputs."""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from ves_twin.core.errors import FileAccessError, InvalidInputError
+from ves_twin.core.types import FloatArray, IntArray, SingleArray
+from ves_twin.core.whole_file import whole_file
+from ves_twin.diagnosis.forward import Hypothesis
+from ves_twin.diagnosis.linearise import Linearisation, linearise, with_bends
+from ves_twin.diagnosis.runs import Progress, Runs, silent
+
+STRAIGHT = 4.0
+"""Size of a linear signature in commissioning sd; scaled, it reaches from 1.4 to 11."""
+
+LADDER = 6.0
+"""Step between the sizes of a cause that is linear throughout; scaling bridges a factor of 8."""
+
+SAME = 1e-2
+"""Sd of one sample by which a kept prediction may be off: rounding of another processor."""
+
+SCHEMA = 5
+"""Version of the cached file; another one is built anew."""
+
+
+@dataclass(frozen=True)
+class SignatureLibrary:
+    """Signatures s_k = f(e_k) - f(0) at finite sizes, and the linearisation at nominal.
+
+    Derivatives at nominal would miss friction, deadband and everything one-sided.
+
+    Each entry is a shape times a factor: a column of the base where the cause is a commissioning
+    parameter too and proportional to it, else a shape of its own.
+
+    Attributes:
+        base: prediction and nuisance columns where nothing departs.
+        hypotheses: the library.
+        owner: hypothesis of each entry (entries,).
+        sizes: departure of the hypothesis's parameters of each entry.
+        shape: which shape each entry is: columns of the base first, then `bent` (entries,).
+        factor: of that shape (entries,).
+        bent: change of the channels of those that are no multiple of a column (b, rows, c).
+    """
+
+    base: Linearisation
+    hypotheses: tuple[Hypothesis, ...]
+    owner: IntArray
+    sizes: tuple[FloatArray, ...]
+    shape: IntArray
+    factor: FloatArray
+    bent: SingleArray
+
+    def entries(self, hypothesis: int) -> IntArray:
+        """Entries of one hypothesis."""
+        return np.flatnonzero(self.owner == hypothesis)
+
+    def signature(self, entry: int) -> SingleArray:
+        """Change of the channels of one entry (rows, c)."""
+        own = int(self.shape[entry]) - len(self.base.columns)
+        shape = self.base.columns[own] if own < 0 else self.bent[own]
+        return np.asarray(np.float32(self.factor[entry]) * shape)
+
+    def without(self, labels: tuple[str, ...]) -> SignatureLibrary:
+        """The bank with some causes left out, by effect or by effect@target."""
+        kept = [
+            i
+            for i, h in enumerate(self.hypotheses)
+            if h.effect not in labels and h.label not in labels
+        ]
+        rows = np.flatnonzero(np.isin(self.owner, kept))
+        return replace(
+            self,
+            hypotheses=tuple(self.hypotheses[i] for i in kept),
+            owner=np.searchsorted(np.array(kept, int), self.owner[rows]),
+            sizes=tuple(self.sizes[i] for i in rows),
+            shape=self.shape[rows],
+            factor=self.factor[rows],
+        )
+
+
+def build_bank(
+    runs: Runs,
+    point: FloatArray | None = None,
+    hypotheses: tuple[Hypothesis, ...] | None = None,
+    progress: Progress = silent,
+    base: Linearisation | None = None,
+) -> SignatureLibrary:
+    """Simulate every hypothesis at its finite sizes.
+
+    Args:
+        runs: of which plant and programmes.
+        point: departures to start from; nominal if None. At a fitted first cause this is the
+            bank that looks for a second one.
+        hypotheses: the library; that of the forward if None.
+        progress: told how far it is.
+        base: linearisation there, if it is known.
+
+    Returns:
+        The bank, without entries that bounds leave near the starting point or that diverge.
+
+    Raises:
+        InvalidInputError: the plant fails at the starting point itself.
+    """
+    start = runs.origin if point is None else point
+    library = runs.forward.hypotheses if hypotheses is None else hypotheses
+    if base is None:
+        base = with_bends(linearise(runs, start, progress), progress)
+    if not np.all(np.isfinite(base.prediction)):
+        came = "set-points at which the plant leaves its limits"
+        raise InvalidInputError("programme", came, "one that the nominal plant carries out")
+    shifts, owner, sizes = [], [], []
+    for h, hypothesis in enumerate(library):
+        if hypothesis.linear and _column(runs, hypothesis) is not None:
+            continue
+        where = runs.indices(hypothesis)
+        for departure in hypothesis.departures():
+            shift = runs.depart(start, where, start[where] + departure)
+            moved = shift[where] - start[where]
+            if np.any(np.abs(moved) > 0.5 * np.abs(departure)):
+                shifts.append(shift)
+                owner.append(h)
+                sizes.append(moved)
+    stacks = runs.many(shifts, progress, "signatures") - base.prediction
+    kept = np.flatnonzero(np.all(np.isfinite(stacks), axis=(1, 2)))
+    straight = _straight(base, library)
+    count = len(base.columns)
+    return SignatureLibrary(
+        base,
+        library,
+        np.array([*(owner[i] for i in kept), *straight.owner], int),
+        (*(sizes[i] for i in kept), *straight.sizes),
+        np.array([*range(count, count + len(kept)), *straight.column], int),
+        np.array([*np.ones(len(kept)), *straight.factor]),
+        stacks[kept],
+    )
+
+
+@dataclass(frozen=True)
+class _Straight:
+    """Entries that are multiples of a nuisance column."""
+
+    owner: list[int]
+    sizes: list[FloatArray]
+    column: list[int]
+    factor: list[float]
+
+
+def _straight(base: Linearisation, library: tuple[Hypothesis, ...]) -> _Straight:
+    """Linear signatures of causes that are commissioning parameters too.
+
+    Where a tolerance bends the prediction by more than noise, the finite signature holds what its
+    own nuisance column cannot explain, though a strong commissioning error would bend as well. A
+    record corrected for that is linear, and only the column itself fits it.
+    """
+    runs, found = base.runs, _Straight([], [], [], [])
+    for h, hypothesis in enumerate(library):
+        rows = _column(runs, hypothesis)
+        if rows is None:
+            continue
+        sd = runs.sd[runs.nuisances[rows]]
+        for spreads in _ladder(hypothesis, float(sd[0])):
+            for sign in hypothesis.signs:
+                found.owner.append(h)
+                found.sizes.append(sign * spreads * sd)
+                found.column.append(int(rows[0]))
+                found.factor.append(sign * spreads)
+    return found
+
+
+def _column(runs: Runs, hypothesis: Hypothesis) -> IntArray | None:
+    """Where among the nuisances a cause of one parameter has a column of its own."""
+    rows = np.flatnonzero(np.isin(runs.nuisances, runs.indices(hypothesis)))
+    return rows if len(hypothesis.parameters) == 1 and len(rows) == 1 else None
+
+
+def _ladder(hypothesis: Hypothesis, sd: float) -> list[float]:
+    """Sizes in commissioning sd: one, or of a cause linear throughout as many as reach its largest.
+
+    The last rung tells whether the recording would show even the largest size.
+    """
+    sizes, largest = [STRAIGHT], hypothesis.largest[0] / sd
+    while hypothesis.linear and sizes[-1] < largest:
+        sizes.append(min(LADDER * sizes[-1], largest))
+    return sizes
+
+
+def cached_bank(
+    runs: Runs, folder: Path | None, build: Callable[[], SignatureLibrary]
+) -> SignatureLibrary:
+    """The bank of a plant and its programmes from a file, built and written where none holds.
+
+    Raises:
+        FileAccessError: the folder cannot be written.
+    """
+    if folder is None:
+        return build()
+    path = folder / f"bank-{bank_key(runs)}.npz"
+    kept = _read(path, runs) if path.is_file() else None
+    if kept is not None and still_predicts(runs, kept.base.prediction):
+        return kept
+    bank = build()
+    write_arrays(
+        path,
+        prediction=bank.base.prediction,
+        columns=bank.base.columns,
+        bends=bank.base.bends,
+        owner=bank.owner,
+        sizes=np.concatenate([*bank.sizes, np.zeros(0)]),
+        shape=bank.shape,
+        factor=bank.factor,
+        bent=bank.bent,
+    )
+    return bank
+
+
+def still_predicts(runs: Runs, prediction: SingleArray) -> bool:
+    """Whether the forward still predicts what it did when a file was written.
+
+    No key can know that a line of code has changed; one run of the nominal plant does.
+
+    Args:
+        runs: whose nominal prediction is made.
+        prediction: channels at no departure, as stored (rows, c).
+    """
+    sds = np.array([runs.forward.channels[c].sd for c in runs.columns])
+    off = np.abs(runs.one(runs.origin) - prediction) / sds
+    return bool(np.all(off < SAME))
+
+
+def bank_key(runs: Runs, more: bytes = b"") -> str:
+    """Hash of the forward's identity, the programmes, the channels and whatever else counts."""
+    parts = [str(SCHEMA), runs.forward.identity, *(p.identity for p in runs.programmes)]
+    parts += [str(column) for column in runs.columns]
+    return hashlib.sha256("/".join(parts).encode() + more).hexdigest()[:16]
+
+
+def write_arrays(path: Path, **arrays: np.ndarray[Any, Any]) -> None:
+    """Write a file whole or not at all, also when two programs write it at once.
+
+    Raises:
+        FileAccessError: the folder cannot be written.
+    """
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise FileAccessError(f"cannot write {path}: {error.strerror}") from None
+    with whole_file(path) as partial, partial.open("wb") as file:
+        np.savez(file, **arrays)  # type: ignore[arg-type]
+
+
+def _read(path: Path, runs: Runs) -> SignatureLibrary:
+    with np.load(path) as content:
+        owner = content["owner"]
+        widths = [len(runs.forward.hypotheses[i].parameters) for i in owner]
+        sizes = tuple(np.split(content["sizes"], np.cumsum(widths)[:-1])) if widths else ()
+        parts = (content[name] for name in ("prediction", "columns", "bends"))
+        base = Linearisation(runs, runs.origin, *parts)
+        shape, factor, bent = (content[name] for name in ("shape", "factor", "bent"))
+        return SignatureLibrary(base, runs.forward.hypotheses, owner, sizes, shape, factor, bent)

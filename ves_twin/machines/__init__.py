@@ -1,0 +1,1 @@
+"""Machines as the diagnosis sees them: VES II, any MJCF machine, static poses, a pendulum."""

@@ -1,0 +1,111 @@
+"""check_description: whether a rig's file names what is there, and as wide as the model has it."""
+
+from __future__ import annotations
+
+import mujoco
+
+from ves_twin.core.errors import InvalidInputError, UnknownNameError
+from ves_twin.core.units import to_si
+from ves_twin.machines.mjcf.description import Compared, Mode, RigDescription
+from ves_twin.machines.mjcf.joint_units import joint_units
+from ves_twin.machines.mjcf.places import typical_speed
+
+FREE = int(mujoco.mjtJoint.mjJNT_FREE)
+
+
+def check_description(told: RigDescription, model: mujoco.MjModel) -> None:
+    """Hold a rig's file against its model.
+
+    Raises:
+        UnknownNameError: a signal, joint, actuator or sensor that is not there.
+        InvalidInputError: no controller to follow set-points, a start that nothing measures,
+            columns or noise of a signal that are not as many as the model has of it, a start in
+            other units, or no typical speed of a joint with dry friction whose motion is given.
+    """
+    _signals(told)
+    _parts(told, model)
+    _widths(told, model)
+    _starts(told, model)
+    _friction(told, model)
+
+
+def _signals(told: RigDescription) -> None:
+    for where, name in (
+        *(("drive.joints", s) for s in told.drive.joints.values()),
+        *(("drive.actuators", s) for s in told.drive.actuators.values()),
+        *(("compare", s) for s in told.compare),
+        *((f"controllers.{k}", c.reference) for k, c in told.controllers.items()),
+    ):
+        if name not in told.signals:
+            raise UnknownNameError(f"signal in {where}", name, told.signals)
+    if told.drive.mode is Mode.REFERENCE and not told.controllers:
+        raise InvalidInputError("controllers", "none", "one where drive.mode is 'reference'")
+
+
+def _parts(told: RigDescription, model: mujoco.MjModel) -> None:
+    compared = told.compare.values()
+    joints = [*told.drive.joints, *told.start, *(c.joint for c in compared)]
+    joints += [c.joint for c in told.controllers.values()]
+    actuators = [*told.drive.actuators, *told.controllers, *(c.actuator for c in compared)]
+    sensors = {model.sensor(i).name for i in range(model.nsensor)}
+    for names, what, there in (
+        (joints, "joint", {model.joint(i).name for i in range(model.njnt)}),
+        (actuators, "actuator", {model.actuator(i).name for i in range(model.nu)}),
+        ([c.sensor for c in compared], "sensor", sensors),
+    ):
+        for name in filter(None, names):
+            if name not in there:
+                raise UnknownNameError(f"{what} in {told.model}", name, there)
+
+
+def _widths(told: RigDescription, model: mujoco.MjModel) -> None:
+    """Columns and noise of each signal: what the model does not have would shift all behind it."""
+    wanted = {}
+    for joint, signal in told.drive.joints.items():
+        free = int(model.jnt_type[model.joint(joint).id]) == FREE
+        wanted[signal] = (7, f"free joint {joint}") if free else (1, f"joint {joint}")
+    for actuator, signal in told.drive.actuators.items():
+        wanted[signal] = 1, f"actuator {actuator}"
+    for actuator, controller in told.controllers.items():
+        wanted[controller.reference] = 1, f"controllers.{actuator}"
+    for signal, compared in told.compare.items():
+        wanted[signal] = _width(compared, model)
+    for signal, column in told.signals.items():
+        width = len(column.columns)
+        count, what = wanted.get(signal, (width, ""))
+        if width != count:
+            expected = f"{count}, as {what} has it"
+            raise InvalidInputError(f"signals.{signal}.columns", list(column.columns), expected)
+        if isinstance(column.noise, tuple) and len(column.noise) not in (1, width):
+            expected = f"one number, or {width} as it has columns"
+            raise InvalidInputError(f"signals.{signal}.noise", column.noise, expected)
+
+
+def _width(compared: Compared, model: mujoco.MjModel) -> tuple[int, str]:
+    if compared.sensor:
+        return int(model.sensor(compared.sensor).dim[0]), f"sensor {compared.sensor}"
+    if compared.actuator:
+        return 1, f"actuator {compared.actuator}"
+    return 1, f"joint {compared.joint}"
+
+
+def _friction(told: RigDescription, model: mujoco.MjModel) -> None:
+    """Dry friction of a given motion turns its sign round over a share of the typical speed."""
+    if told.drive.mode is not Mode.MOTION:
+        return
+    for compared in told.compare.values():
+        if compared.actuator:
+            joint = model.joint(int(model.actuator(compared.actuator).trnid[0]))
+            if model.dof_frictionloss[joint.dofadr[0]] > 0.0:
+                typical_speed(joint.name, told, model)
+
+
+def _starts(told: RigDescription, model: mujoco.MjModel) -> None:
+    positions = {c.joint for c in told.compare.values() if c.of == "position"}
+    for joint, start in told.start.items():
+        if start.position == "measured" and joint not in {*positions, *told.drive.joints}:
+            raise InvalidInputError(f"start.{joint}", "measured", "a signal of its position")
+        place, speed = joint_units(model, joint)
+        if start.position != "measured":
+            to_si(start.position, place, f"start.{joint}.position")
+        to_si(start.speed, speed, f"start.{joint}.speed")

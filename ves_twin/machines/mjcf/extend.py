@@ -1,0 +1,76 @@
+"""extended and write_rig: a rig with what a verdict named, as an object and as a file."""
+
+from __future__ import annotations
+
+import json
+import os
+from pathlib import Path
+
+from ves_twin.core.whole_file import write_whole
+from ves_twin.diagnosis.verdict import Verdict
+from ves_twin.machines.mjcf.description import KIND, SCHEMA, Setting, load_description, shipped_rigs
+from ves_twin.machines.mjcf.machine import Entry, Rig
+
+
+def extended(rig: Rig, verdict: Verdict) -> Rig:
+    """The rig with a verdict's causes, and its commissioning numbers as they were tuned beside.
+
+    The held-out gain was measured with both, so that one without the other would not have it.
+    """
+    values = {name: e.value for name, e in verdict.tuned.items()}
+    for cause in verdict.causes:
+        values |= {name: e.value for name, e in cause.parameters.items()}
+    settings = {_place(s): s for s in rig.description.parameters}
+    present = {kind: dict(t) for kind, t in rig.description.present.items()}
+    for entry in rig.entries:
+        moved = {m.name: values[entry.name(m)] for m in entry.magnitudes if entry.name(m) in values}
+        if not moved:
+            continue
+        if entry.effect.attribute:
+            (value,) = moved.values()
+            new = _setting(entry, value, settings)
+            settings[_place(new)] = new
+        else:
+            present.setdefault(entry.effect.kind, {})[entry.effect.target] = moved
+    told = rig.description.model_copy(
+        update={"parameters": tuple(settings.values()), "present": present}
+    )
+    return Rig(told, rig.folder, rig.file)
+
+
+def _place(setting: Setting) -> tuple[str, ...]:
+    return setting.body, setting.joint, setting.actuator, setting.tendon, setting.attribute
+
+
+def _setting(entry: Entry, value: float, there: dict[tuple[str, ...], Setting]) -> Setting:
+    """An attribute of the model at a new value; how well it is known stays as it was."""
+    name, attribute = entry.effect.setting
+    new = Setting.model_validate({"attribute": attribute, str(entry.effect.element): name})
+    old = there.get(_place(new), new)
+    return old.model_copy(update={"value": value, "source": "ves-twin diagnose"})
+
+
+def write_rig(rig: Rig, path: Path, note: str = "") -> None:
+    """Write what a rig has over the file it was loaded from, as a file that loads again.
+
+    Raises:
+        FileAccessError: not writable.
+    """
+    before = load_description(rig.file)[0]
+    shipped = rig.file in shipped_rigs()
+    base = rig.file if shipped else os.path.relpath(Path(rig.file), path.parent)
+    lines = [f"# {line}" for line in note.splitlines()]
+    lines += [f"schema = {SCHEMA}", f'kind = "{KIND}"', f"base = {json.dumps(base)}"]
+    for setting in rig.description.parameters:
+        if setting not in before.parameters:
+            content = setting.model_dump(exclude_defaults=True)
+            lines += ["", "[[parameters]]", *(f"{k} = {_toml(v)}" for k, v in content.items())]
+    for kind, targets in rig.description.present.items():
+        for target, sizes in targets.items():
+            lines += ["", f"[present.{kind}.{json.dumps(target)}]"]
+            lines += [f"{name} = {value!r}" for name, value in sizes.items()]
+    write_whole(path, "\n".join(lines) + "\n")
+
+
+def _toml(value: object) -> str:
+    return json.dumps(value, ensure_ascii=False) if isinstance(value, str) else repr(value)

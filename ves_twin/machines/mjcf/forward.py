@@ -1,0 +1,130 @@
+"""MjcfForward: any rig of two files as the diagnosis sees it."""
+
+from __future__ import annotations
+
+from collections.abc import Container, Mapping
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from ves_twin.core.errors import InvalidInputError
+from ves_twin.core.types import FloatArray
+from ves_twin.core.units import to_si
+from ves_twin.diagnosis.forward import Channel, Excitation, Hypothesis, Parameter
+from ves_twin.machines.mjcf.description import Compared, Mode
+from ves_twin.machines.mjcf.inverse import efforts_of_motion
+from ves_twin.machines.mjcf.joint_units import joint_units
+from ves_twin.machines.mjcf.machine import Rig
+from ves_twin.machines.mjcf.stepping import motion_of_drive
+from ves_twin.machines.mjcf.work import Work
+
+
+@dataclass(frozen=True)
+class MjcfForward:
+    """Parameters in, recorded columns out.
+
+    Attributes:
+        rig: the two files.
+        mode: what is fed in; that of the file unless another one is asked for.
+    """
+
+    rig: Rig
+    mode: Mode
+
+    @staticmethod
+    def of(rig: Rig, mode: Mode | None = None) -> MjcfForward:
+        """As the file says, or in another mode that the file has the signals for."""
+        return MjcfForward(rig, mode or rig.description.drive.mode)
+
+    @cached_property
+    def identity(self) -> str:
+        """Changes with files, mode, library and versions."""
+        return f"{self.rig.identity}-{self.mode}"
+
+    @cached_property
+    def drive(self) -> tuple[str, ...]:
+        """Signals that are fed in, and those that the start is read from."""
+        told = self.rig.description
+        if self.mode is Mode.MOTION:
+            return tuple(dict.fromkeys(told.drive.joints.values()))
+        fed = list(told.drive.actuators.values())
+        if self.mode is Mode.REFERENCE:
+            fed = [c.reference for c in told.controllers.values()]
+        measured = [j for j, start in told.start.items() if start.position == "measured"]
+        positions = [
+            next(
+                (n for n, c in told.compare.items() if c.joint == j and c.of == "position"),
+                told.drive.joints.get(j, ""),
+            )
+            for j in measured
+        ]
+        return tuple(dict.fromkeys([*fed, *filter(None, positions)]))
+
+    @cached_property
+    def compared(self) -> dict[str, Compared]:
+        """Signals that this mode predicts."""
+        told = self.rig.description.compare
+        if self.mode is Mode.MOTION:
+            return {n: c for n, c in told.items() if c.actuator or c.sensor}
+        if self.mode is Mode.CONTROL:
+            return {n: c for n, c in told.items() if not c.actuator}
+        return dict(told)
+
+    @cached_property
+    def channels(self) -> tuple[Channel, ...]:
+        """Measured columns with the noise that the file declares."""
+        found = []
+        for name in self.compared:
+            signal = self.rig.description.signals[name]
+            noises = signal.noise if isinstance(signal.noise, tuple) else (signal.noise,)
+            width = len(signal.columns)
+            noises = noises * width if len(noises) == 1 else noises
+            for i, noise in enumerate(noises[:width]):
+                label = name if width == 1 else f"{name}.{i + 1}"
+                sd = to_si(noise, signal.unit, f"noise of {name}")
+                found.append(Channel(label, name, i, signal.unit, sd))
+        return tuple(found)
+
+    @cached_property
+    def parameters(self) -> tuple[Parameter, ...]:
+        """Sizes of effects, and the start of each recording."""
+        return (*self.rig.parameters, *(() if self.mode is Mode.MOTION else self._starts()))
+
+    @property
+    def hypotheses(self) -> tuple[Hypothesis, ...]:
+        """The library of causes that the file allows."""
+        return self.rig.hypotheses
+
+    def check_noise(self, recorded: Container[str]) -> None:
+        """Raise InvalidInputError where a signal that is to be diagnosed has no noise.
+
+        A comparison does without; a diagnosis weighs each row by it.
+        """
+        for channel in self.channels:
+            if channel.signal in recorded and not channel.sd > 0.0:
+                expected = f"the sd of one row in {channel.unit}, above zero"
+                raise InvalidInputError(f"signals.{channel.signal}.noise", channel.sd, expected)
+
+    def simulate(
+        self, programme: Excitation, values: Mapping[str, float], refined: bool = False
+    ) -> FloatArray:
+        """Channels (n, channels) that a rig with these values records, without noise."""
+        work = Work.begin(self.rig, programme, values)
+        if self.mode is Mode.MOTION:
+            found = efforts_of_motion(work)
+        else:
+            found = motion_of_drive(work, self.mode, refined)
+        return np.concatenate([work.reading(n, found[n]) for n in self.compared], axis=1)
+
+    def _starts(self) -> tuple[Parameter, ...]:
+        found = []
+        for joint, start in self.rig.description.start.items():
+            units = joint_units(self.rig.model, joint)
+            sds = (start.sd, start.speed_sd)
+            for what, unit, told in zip(("position", "speed"), units, sds, strict=True):
+                sd = to_si(told, unit, f"start.{joint}")
+                reach = 100.0 * sd or 1.0
+                name = f"start@{joint}:{what}"
+                found.append(Parameter(name, unit, 0.0, -reach, reach, sd, per_recording=True))
+        return tuple(found)

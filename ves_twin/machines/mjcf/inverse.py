@@ -1,0 +1,157 @@
+"""efforts_of_motion: what actuators and sensors must show where the joints move as recorded."""
+
+from __future__ import annotations
+
+import copy
+import hashlib
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from functools import lru_cache
+
+import mujoco
+import numpy as np
+from scipy.signal import butter, filtfilt
+
+from ves_twin.core.types import FloatArray
+from ves_twin.machines.mjcf.description import Compared
+from ves_twin.machines.mjcf.effect import shifted
+from ves_twin.machines.mjcf.work import Work, sensor_rows
+
+ORDER = 4
+"""Of the Butterworth low-pass before differentiation, run forth and back: no phase."""
+
+
+KEPT = 24
+"""Motions whose rigid-body efforts are kept: most causes change none of them."""
+
+
+def efforts_of_motion(work: Work) -> dict[str, FloatArray]:
+    """Signals (n, w) that the rig's description compares and that motion determines.
+
+    Positions are low-passed without phase and differentiated by central differences; MuJoCo's
+    inverse dynamics gives the effort at each joint, with springs and gravity. Damping is added,
+    and dry friction with a smoothed sign. Rows that are poses at rest have no speed.
+    """
+    told, model = work.rig.description, work.model
+    positions = {j: work.position(j, work.programme.drive[s][:, 0]) for j, s in _single(work)}
+    digest = hashlib.sha256(f"{work.rig.identity}{work.programme.identity}".encode())
+    rigid = _rigid(work.model)
+    digest.update(_content(rigid))
+    for part in positions.values():
+        digest.update(np.ascontiguousarray(part).tobytes())
+    moved = _moved(_Motion(digest.hexdigest(), work, rigid, positions))
+    found = {}
+    for name, compared in told.compare.items():
+        if compared.actuator:
+            found[name] = compared.sign * _command(work, compared, moved)[:, None]
+        elif compared.sensor:
+            found[name] = compared.sign * sensor_rows(model, moved.sensed, compared)
+    return found
+
+
+def _rigid(model: mujoco.MjModel) -> mujoco.MjModel:
+    """The model without what is added to its rigid-body efforts, or acts through a command."""
+    rigid = copy.copy(model)
+    rigid.dof_frictionloss[:] = 0.0
+    rigid.dof_damping[:] = 0.0
+    rigid.tendon_frictionloss[:] = 0.0
+    rigid.tendon_damping[:] = 0.0
+    rigid.actuator_gainprm[:] = 0.0
+    return rigid
+
+
+def _content(model: mujoco.MjModel) -> bytes:
+    """Every number of a model: an effect of another package may have edited any."""
+    content = np.empty(mujoco.mj_sizeModel(model), np.uint8)
+    mujoco.mj_saveModel(model, None, content)
+    return content.tobytes()
+
+
+@dataclass(frozen=True)
+class _Motion:
+    """A motion of a rig; equal to another one if its hash is."""
+
+    key: str
+    work: Work = field(compare=False)
+    model: mujoco.MjModel = field(compare=False)
+    positions: Mapping[str, FloatArray] = field(compare=False)
+
+
+@dataclass(frozen=True)
+class _Moved:
+    """Positions (n, nq), speeds and rigid-body efforts (n, nv), sensors (n, all) of a motion."""
+
+    position: FloatArray
+    speed: FloatArray
+    effort: FloatArray
+    sensed: FloatArray
+
+
+@lru_cache(maxsize=KEPT)
+def _moved(motion: _Motion) -> _Moved:
+    """MuJoCo's inverse dynamics row by row, without damping and dry friction."""
+    model = motion.model
+    q, v, a = _states(motion)
+    data = mujoco.MjData(model)
+    efforts, sensed = np.zeros((len(q), model.nv)), np.zeros((len(q), model.nsensordata))
+    position, speed, pull = data.qpos, data.qvel, data.qacc
+    effort, sensor, sensing = data.qfrc_inverse, data.sensordata, model.nsensordata > 0
+    for k in range(len(q)):
+        position[:], speed[:], pull[:] = q[k], v[k], a[k]
+        mujoco.mj_inverse(model, data)
+        efforts[k] = effort
+        if sensing:
+            sensed[k] = sensor
+    return _Moved(q, v, efforts, sensed)
+
+
+def _single(work: Work) -> list[tuple[str, str]]:
+    """Joints of one coordinate that are fed in, with their signals."""
+    joints = work.rig.description.drive.joints
+    return [(j, s) for j, s in joints.items() if work.programme.drive[s].shape[1] == 1]
+
+
+def _command(work: Work, compared: Compared, moved: _Moved) -> FloatArray:
+    model = work.model
+    actuator = model.actuator(compared.actuator)
+    joint = model.joint(int(actuator.trnid[0]))
+    dof = int(joint.dofadr[0])
+    speed = moved.speed[:, dof]
+    effort = moved.effort[:, dof] + float(model.dof_damping[dof]) * speed
+    effort = effort + work.dry(joint.name, speed) + work.resistance(joint.name, speed)
+    effort = effort + work.held(joint.name, moved.position[:, int(joint.qposadr[0])])
+    effort = effort + work.coupled(joint.name, moved.speed)
+    gain = float(actuator.gear[0]) * float(actuator.gainprm[0])
+    if work.rig.description.drive.held:
+        effort = shifted(effort, work.programme.time, -0.5 * work.programme.period)
+    return work.required(compared.actuator, effort / gain)
+
+
+def _states(motion: _Motion) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Qpos (n, nq), qvel and qacc (n, nv) of the motion that is fed in."""
+    work = motion.work
+    told, model, programme = work.rig.description, work.model, work.programme
+    rows = len(programme.time)
+    q = np.tile(model.qpos0, (rows, 1))
+    v, a = np.zeros((rows, model.nv)), np.zeros((rows, model.nv))
+    for joint, signal in told.drive.joints.items():
+        at, dof = int(model.joint(joint).qposadr[0]), int(model.joint(joint).dofadr[0])
+        if joint not in motion.positions:  # a free joint: MuJoCo has the scalar part first
+            q[:, at : at + 7] = programme.drive[signal][:, [0, 1, 2, 6, 3, 4, 5]]
+            continue
+        q[:, at] = motion.positions[joint]
+        if not programme.poses:
+            smooth = smoothed(q[:, at], programme.period, told.drive.smoothing)
+            q[:, at] = smooth
+            v[:, dof] = np.gradient(smooth, programme.period)
+            a[:, dof] = np.gradient(v[:, dof], programme.period)
+    return q, v, a
+
+
+def smoothed(column: FloatArray, period: float, corner: float) -> FloatArray:
+    """A column (n,) behind a low-pass [Hz] without phase; as it is where the corner is too high."""
+    share = 2.0 * corner * period
+    if share >= 0.9:
+        return column
+    b, a = butter(ORDER, share)
+    return np.asarray(filtfilt(b, a, column))

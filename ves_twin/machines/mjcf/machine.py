@@ -1,0 +1,306 @@
+"""Rig: an MJCF model and its description, with everything that may differ in it."""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+
+import mujoco
+
+from ves_twin.core.errors import FileAccessError, InvalidInputError, UnknownNameError, one_line
+from ves_twin.core.units import to_si
+from ves_twin.diagnosis.forward import Hypothesis, Parameter
+from ves_twin.effects.magnitude import Magnitude, Sign
+from ves_twin.machines.mjcf.check_description import check_description
+from ves_twin.machines.mjcf.description import Allowed, RigDescription, Setting, load_description
+from ves_twin.machines.mjcf.effect import RigEffect
+from ves_twin.machines.mjcf.element import Element
+from ves_twin.machines.mjcf.place import Place
+from ves_twin.machines.mjcf.places import place_of
+from ves_twin.machines.mjcf.registry import RIG_EFFECTS, build_rig_effect
+
+
+@dataclass(frozen=True)
+class Entry:
+    """One kind of effect on one target: sizes, nominal values, whether it is a cause.
+
+    Attributes:
+        effect: of that kind, with all sizes zero.
+        place: its target.
+        magnitudes: sizes with unit, range and commissioning sd.
+        nominal: value of each, as the rig has it.
+        cause: whether it may be named.
+        per_recording: drawn anew for each recording.
+        source: of the sizes.
+    """
+
+    effect: RigEffect
+    place: Place
+    magnitudes: tuple[Magnitude, ...]
+    nominal: tuple[float, ...]
+    cause: bool
+    per_recording: bool
+    source: str
+
+    @property
+    def key(self) -> tuple[str, str]:
+        """Kind and target."""
+        return self.effect.kind, self.effect.target
+
+    def name(self, magnitude: Magnitude) -> str:
+        """Of a parameter: kind@target:magnitude."""
+        return f"{self.effect.kind}@{self.effect.target}:{magnitude.name}"
+
+    def at(self, values: Mapping[str, float]) -> RigEffect:
+        """The effect where its parameters have values; those left out are nominal."""
+        sizes = {}
+        native = bool(self.effect.attribute)
+        for magnitude, nominal in zip(self.magnitudes, self.nominal, strict=True):
+            value = values.get(self.name(magnitude), nominal)
+            sizes[magnitude.name] = value - nominal if native else value
+        return self.effect.sized(sizes)
+
+
+@dataclass(frozen=True)
+class Rig:
+    """Two files as a plant.
+
+    Attributes:
+        description: the TOML file.
+        folder: that the model's path starts from.
+        file: name or path it was loaded by.
+        payloads: known point masses on it, each a body, a mass [kg] and a place in the body [m].
+    """
+
+    description: RigDescription
+    folder: Path
+    file: str = ""
+    payloads: tuple[tuple[str, float, tuple[float, float, float]], ...] = ()
+
+    @staticmethod
+    def load(name_or_path: str) -> Rig:
+        """A shipped rig by name, or a TOML file beside its MJCF file.
+
+        Raises:
+            VesTwinError: a file that is missing or wrong, or names that do not fit together.
+        """
+        rig = Rig(*load_description(name_or_path), name_or_path)
+        rig.check()
+        return rig
+
+    @cached_property
+    def model(self) -> mujoco.MjModel:
+        """The compiled model with the nominal values of the description.
+
+        Raises:
+            FileAccessError: no such model.
+            InvalidInputError: not MJCF.
+        """
+        path = self.folder / self.description.model
+        if not path.is_file():
+            raise FileAccessError(f"model file '{path}' of rig {self.description.name} is missing")
+        try:
+            model = self._loaded(path) if self.payloads else mujoco.MjModel.from_xml_path(str(path))
+        except ValueError as error:
+            raise InvalidInputError(str(path), one_line(error), "a MuJoCo model") from None
+        for setting in self.description.parameters:
+            if setting.value is not None:
+                effect, place = self._effect_of(setting, model)
+                (magnitude,) = effect.magnitudes(place)
+                change = {
+                    magnitude.name: _value(setting, effect, magnitude) - effect.present(model)
+                }
+                effect.sized(change).edit_model(model)
+        mujoco.mj_setConst(model, mujoco.MjData(model))
+        return model
+
+    @cached_property
+    def entries(self) -> tuple[Entry, ...]:
+        """Everything that may differ, causes and commissioning errors."""
+        found: dict[tuple[str, str], Entry] = {}
+        settings = {self._key(s): s for s in self.description.parameters}
+        for allowed in self.description.effects:
+            for target in allowed.on:
+                entry = self._entry(allowed, target, settings.get((allowed.kind, target)))
+                found[allowed.kind, target] = entry
+        for (kind, target), setting in settings.items():
+            if (kind, target) not in found:
+                only = Allowed(kind=kind, on=(target,), cause=False)
+                found[kind, target] = self._entry(only, target, setting)
+        for kind, targets in self.description.present.items():
+            for target in targets:
+                if (kind, target) not in found:
+                    only = Allowed(kind=kind, on=(target,), cause=False)
+                    found[kind, target] = self._entry(only, target, None)
+        order = list(RIG_EFFECTS)
+        return tuple(sorted(found.values(), key=lambda e: order.index(e.effect.kind)))
+
+    @cached_property
+    def parameters(self) -> tuple[Parameter, ...]:
+        """Of all entries."""
+        found = []
+        settings = {self._key(s): s for s in self.description.parameters}
+        for entry in self.entries:
+            for m, nominal in zip(entry.magnitudes, entry.nominal, strict=True):
+                low, high = _bounds(entry, m, nominal, settings.get(entry.key))
+                name = entry.name(m)
+                one = entry.per_recording
+                found.append(Parameter(name, m.unit, nominal, low, high, m.sd, one))
+        return tuple(found)
+
+    @cached_property
+    def hypotheses(self) -> tuple[Hypothesis, ...]:
+        """Causes that may be named."""
+        found = []
+        for entry in self.entries:
+            if not entry.cause:
+                continue
+            first, nominal = entry.magnitudes[0], entry.nominal[0]
+            one_sided = first.sign is Sign.POSITIVE and nominal == 0.0
+            found.append(
+                Hypothesis(
+                    effect=entry.effect.kind,
+                    target=entry.effect.target,
+                    parameters=tuple(entry.name(m) for m in entry.magnitudes),
+                    smallest=tuple(m.smallest for m in entry.magnitudes),
+                    largest=tuple(m.largest for m in entry.magnitudes),
+                    signs=(1,) if one_sided else (-1, 1),
+                    source=entry.source,
+                    linear=entry.effect.linear and len(entry.magnitudes) == 1,
+                    transient=entry.effect.transient,
+                    starts=entry.effect.starts(entry.place),
+                )
+            )
+        return tuple(found)
+
+    @cached_property
+    def identity(self) -> str:
+        """Hash of both files' content and of MuJoCo's version."""
+        parts = (self.description.model_dump_json(), mujoco.__version__, *self.payloads)
+        digest = hashlib.sha256(repr(parts).encode())
+        digest.update((self.folder / self.description.model).read_bytes())
+        return digest.hexdigest()[:16]
+
+    def effects_at(self, values: Mapping[str, float]) -> Iterator[tuple[RigEffect, Place]]:
+        """Effects that are at work where parameters have values."""
+        for entry in self.entries:
+            effect = entry.at(values)
+            if not effect.neutral:
+                yield effect, entry.place
+
+    def check(self) -> None:
+        """Raise UnknownNameError or InvalidInputError where the two files do not fit together."""
+        check_description(self.description, self.model)
+        _ = self.hypotheses, self.parameters
+
+    def _loaded(self, path: Path) -> mujoco.MjModel:
+        """The model with its payloads: bodies without a joint and without extent."""
+        spec = mujoco.MjSpec.from_file(str(path))
+        for name, mass, place in self.payloads:
+            body = spec.body(name)
+            if body is None or name == "world":
+                known = {b.name for b in spec.bodies if b.name != "world"}
+                raise UnknownNameError("body of the payload", name, known)
+            point = body.add_body(pos=place, mass=mass, ipos=[0.0] * 3, inertia=[0.0] * 3)
+            point.explicitinertial = True
+        return spec.compile()
+
+    def _entry(self, allowed: Allowed, target: str, setting: Setting | None) -> Entry:
+        if allowed.kind not in RIG_EFFECTS:
+            raise UnknownNameError("effect", allowed.kind, RIG_EFFECTS)
+        effect = build_rig_effect(allowed.kind, target, {})
+        place = place_of(effect.element, target, self.description, self.model, effect.kind)
+        told = self.description.present.get(allowed.kind, {}).get(target, {})
+        if told and effect.attribute:
+            name, attribute = effect.setting
+            expected = f'[[parameters]] with {effect.element} = "{name}", attribute = "{attribute}"'
+            came = f"present.{allowed.kind}.{target}"
+            raise InvalidInputError(came, told, f"{expected} and value")
+        if set(told) - set(effect.sizes):
+            build_rig_effect(allowed.kind, target, told)
+        magnitudes = tuple(
+            _sized(m, allowed, setting, f"{allowed.kind}@{target}")
+            for m in effect.magnitudes(place)
+        )
+        if effect.attribute:
+            nominal: tuple[float, ...] = (effect.present(self.model),)
+        else:
+            nominal = tuple(float(told.get(m.name, 0.0)) for m in magnitudes)
+            for m, value in zip(magnitudes, nominal, strict=True):
+                if value < effect.least(0.0):
+                    what = f"present.{allowed.kind}.{target}.{m.name}"
+                    raise InvalidInputError(what, value, f"at least {effect.least(0.0):g}")
+        source = allowed.source or (setting.source if setting else "") or effect.source
+        return Entry(
+            effect, place, magnitudes, nominal, allowed.cause, allowed.per_recording, source
+        )
+
+    def _effect_of(self, setting: Setting, model: mujoco.MjModel) -> tuple[RigEffect, Place]:
+        kind, target = self._key(setting)
+        effect = build_rig_effect(kind, target, {})
+        return effect, place_of(effect.element, target, self.description, model, kind)
+
+    @staticmethod
+    def _key(setting: Setting) -> tuple[str, str]:
+        """Kind and target of the effect that changes an attribute."""
+        element, name = setting.element
+        attribute = setting.attribute
+        if element is Element.BODY and attribute[:-1] == "centre_" and attribute[-1] in "xyz":
+            return "mass_centre", f"{name}.{attribute[-1]}"
+        known = {
+            k.attribute: k.kind
+            for k in map(RIG_EFFECTS.__getitem__, RIG_EFFECTS.built_in)
+            if k.attribute and k.element is element and k.attribute != "centre"
+        }
+        if attribute not in known:
+            centres = {f"centre_{axis}" for axis in "xyz"} if element is Element.BODY else set()
+            raise UnknownNameError(f"attribute of {element} {name}", attribute, {*known, *centres})
+        return known[attribute], name
+
+
+def _bounds(
+    entry: Entry, m: Magnitude, nominal: float, setting: Setting | None
+) -> tuple[float, float]:
+    """Of a parameter: what the file says, else the largest departure; never what cannot be."""
+    one_sided = m.sign is Sign.POSITIVE
+    low, high = 0.0 if one_sided else nominal - m.largest, nominal + m.largest
+    least = 0.0 if one_sided else entry.effect.least(nominal)
+    what = f"{entry.effect.kind} of {entry.effect.target}"
+    if setting and setting.low is not None:
+        low = to_si(setting.low, m.unit, f"low of {what}")
+    if setting and setting.high is not None:
+        high = to_si(setting.high, m.unit, f"high of {what}")
+    told = setting is not None and (setting.low, setting.high) != (None, None)
+    if told and not low <= nominal <= high:
+        raise InvalidInputError(f"low, high of {what}", (low, high), f"{nominal:g} within them")
+    return min(max(low, least), nominal), high
+
+
+def _value(setting: Setting, effect: RigEffect, m: Magnitude) -> float:
+    """What a setting makes of its attribute: a mass above zero, friction and springs not below."""
+    what = f"{setting.attribute} of {effect.target}"
+    value = to_si(setting.value, m.unit, what)
+    if m.sign is Sign.POSITIVE and value < 0.0:
+        raise InvalidInputError(what, setting.value, "zero or more")
+    if value <= effect.least(0.0):
+        raise InvalidInputError(what, setting.value, "more than zero")
+    return value
+
+
+def _sized(m: Magnitude, allowed: Allowed, setting: Setting | None, what: str) -> Magnitude:
+    """A size with what the file says of it."""
+    sd = to_si(setting.sd, m.unit, f"sd of {what}") if setting else 0.0
+    sd = to_si(allowed.sd, m.unit, f"sd of {what}") or sd
+    smallest, largest = m.smallest, m.largest
+    if allowed.largest is not None:
+        largest = to_si(allowed.largest, m.unit, f"largest of {what}")
+        smallest = smallest * largest / m.largest
+    if allowed.smallest is not None:
+        smallest = to_si(allowed.smallest, m.unit, f"smallest of {what}")
+    if not 0.0 < smallest < largest:
+        expected = "0 < smallest < largest; typical sizes of its joint or signal give them"
+        raise InvalidInputError(f"sizes of {what}", (smallest, largest), expected)
+    return Magnitude(m.name, m.unit, sd, smallest, largest, m.sign)

@@ -1,0 +1,140 @@
+"""place_of and typical_speed: a target as a place in model or signals, with typical sizes."""
+
+from __future__ import annotations
+
+import mujoco
+
+from ves_twin.core.errors import InvalidInputError, UnknownNameError
+from ves_twin.core.units import to_si
+from ves_twin.machines.mjcf.description import RigDescription, Span
+from ves_twin.machines.mjcf.element import Element
+from ves_twin.machines.mjcf.joint_units import joint_units
+from ves_twin.machines.mjcf.place import Place
+
+SINGLE = (int(mujoco.mjtJoint.mjJNT_HINGE), int(mujoco.mjtJoint.mjJNT_SLIDE))
+"""Joints that effects of joints are made for."""
+
+COLUMNS = {"sensor_delay": 0, "cross_talk": 2}
+"""Numbers at the end of a target that is a signal, where not one."""
+
+
+def place_of(
+    element: Element, target: str, told: RigDescription, model: mujoco.MjModel, kind: str
+) -> Place:
+    """The place of a target.
+
+    Raises:
+        UnknownNameError: no such part or signal; says the nearest one.
+        InvalidInputError: a joint that neither turns nor slides, or no typical sizes.
+    """
+    if element is Element.SIGNAL:
+        return _signal(target, told, kind)
+    if element is Element.BODY:
+        axis = target.rpartition(".") if kind == "mass_centre" else (target, "", "")
+        if kind == "mass_centre" and axis[2] not in tuple("xyz"):
+            raise InvalidInputError(f"target of {kind}", target, "a body and an axis, as tool.x")
+        name = axis[0]
+        _known("body", name, {model.body(i).name for i in range(1, model.nbody)})
+        return Place(element, target, mass=float(model.body_mass[model.body(name).id]))
+    if element is Element.ACTUATOR:
+        _known("actuator", target, {model.actuator(i).name for i in range(model.nu)})
+        return Place(element, target)
+    if element is Element.TENDON:
+        return _tendon(target, told, model)
+    _known("joint", target, {model.joint(i).name for i in range(model.njnt)})
+    found = int(model.jnt_type[model.joint(target).id])
+    if found not in SINGLE:
+        raise InvalidInputError(f"joint {target}", "a free or ball joint", "a hinge or a slide")
+    hinge = found == SINGLE[0]
+    span = told.typical.joint.get(target, Span())
+    what = f"typical.joint.{target}"
+    return Place(
+        element,
+        target,
+        hinge=hinge,
+        effort=_positive(span.effort, "N*m" if hinge else "N", f"{what}.effort"),
+        speed=typical_speed(target, told, model),
+        travel=_positive(span.travel, "rad" if hinge else "m", f"{what}.travel"),
+    )
+
+
+def typical_speed(joint: str, told: RigDescription, model: mujoco.MjModel) -> float:
+    """Typical speed of a joint [m/s or rad/s].
+
+    Raises:
+        InvalidInputError: the file says none.
+    """
+    _, unit = joint_units(model, joint)
+    span = told.typical.joint.get(joint, Span())
+    return _positive(span.speed, unit, f"typical.joint.{joint}.speed")
+
+
+def _tendon(target: str, told: RigDescription, model: mujoco.MjModel) -> Place:
+    """What is typical of a sum of joints: the least effort, the sums of speeds and travels."""
+    _known("tendon", target, {model.tendon(i).name for i in range(model.ntendon)})
+    parts = tendon_joints(model, target)
+    places = [place_of(Element.JOINT, joint, told, model, "") for joint, _ in parts]
+    if not places or len({p.hinge for p in places}) > 1:
+        expected = "a fixed tendon over joints that all turn, or all slide"
+        raise InvalidInputError(f"tendon {target}", [joint for joint, _ in parts], expected)
+    shares = [abs(share) for _, share in parts]
+    return Place(
+        Element.TENDON,
+        target,
+        hinge=places[0].hinge,
+        effort=min(p.effort / s for p, s in zip(places, shares, strict=True)),
+        speed=sum(s * p.speed for p, s in zip(places, shares, strict=True)),
+        travel=sum(s * p.travel for p, s in zip(places, shares, strict=True)),
+    )
+
+
+def tendon_joints(model: mujoco.MjModel, tendon: str) -> list[tuple[str, float]]:
+    """Joints of a fixed tendon with their coefficients; none of a spatial one."""
+    number = model.tendon(tendon).id
+    first, count = int(model.tendon_adr[number]), int(model.tendon_num[number])
+    rows = range(first, first + count)
+    if any(int(model.wrap_type[k]) != int(mujoco.mjtWrap.mjWRAP_JOINT) for k in rows):
+        return []
+    return [(model.joint(int(model.wrap_objid[k])).name, float(model.wrap_prm[k])) for k in rows]
+
+
+def _signal(target: str, told: RigDescription, kind: str) -> Place:
+    count = COLUMNS.get(kind, 1)
+    parts = target.split(".")
+    name = ".".join(parts[:-count] if count else parts)
+    _known("signal", name, told.signals)
+    column = told.signals[name]
+    for number in parts[len(parts) - count :]:
+        if not number.isdigit() or not 1 <= int(number) <= len(column.columns):
+            raise InvalidInputError(
+                f"target of {kind}", target, f"columns of {name} from 1 to {len(column.columns)}"
+            )
+    told_span = told.typical.signal.get(name, Span()).span
+    span = _positive(told_span, column.unit, f"typical.signal.{name}.span")
+    place = Place(Element.SIGNAL, target, unit=column.unit, span=span)
+    if kind != "sensor_drift":
+        return place
+    if told.drift is None:
+        raise InvalidInputError("drift", None, "a table with the end of the stretch it spans")
+    drift = told.drift
+    return Place(
+        Element.SIGNAL,
+        target,
+        unit=column.unit,
+        span=span,
+        begin=drift.begin,
+        end=drift.end,
+        terms=drift.terms,
+    )
+
+
+def _known(what: str, name: str, there: object) -> None:
+    if name not in there:  # type: ignore[operator]
+        raise UnknownNameError(what, name, there)  # type: ignore[arg-type]
+
+
+def _positive(value: float | str, unit: str, what: str) -> float:
+    number = to_si(value, unit, what)
+    if number <= 0.0:
+        raise InvalidInputError(what, value, f"a typical size in {unit}, above zero")
+    return number

@@ -1,0 +1,55 @@
+"""rig_signals and rig_ranges: what a rig records, as an import of lab files needs it."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ves_twin.core.signals import Role, Signal
+from ves_twin.core.types import FloatArray
+from ves_twin.core.units import to_si
+from ves_twin.machines.mjcf.description import Column, RigDescription, Span
+from ves_twin.machines.mjcf.machine import Rig
+
+WIDE = 10.0
+"""Times the typical size that a signal may be before another unit is suspected: typical sizes are
+rough, and mm for m are off by 1000."""
+
+
+def rig_signals(rig: Rig) -> tuple[Signal, ...]:
+    """The signals of a rig's file; those that hold from row to row are commands."""
+    told = rig.description
+    commands = {*told.drive.actuators.values(), *(c.reference for c in told.controllers.values())}
+    return tuple(
+        _signal(name, column, Role.COMMAND if name in commands else Role.MEASUREMENT)
+        for name, column in told.signals.items()
+    )
+
+
+def _signal(name: str, column: Column, role: Role) -> Signal:
+    width = len(column.columns)
+    axes = tuple(f"{i + 1}" for i in range(width))
+    return Signal(name, axes, (column.unit,) * width, role, column.into, column.source)
+
+
+def rig_ranges(rig: Rig) -> dict[str, tuple[FloatArray, FloatArray]]:
+    """Range about zero that each signal with a typical size can have, WIDE of it either way."""
+    found = {}
+    for name, column in rig.description.signals.items():
+        size = _typical(rig.description, name, column)
+        if size > 0.0:
+            reach = np.full(len(column.columns), WIDE * size)
+            found[name] = (-reach, reach)
+    return found
+
+
+def _typical(told: RigDescription, name: str, column: Column) -> float:
+    """Typical size of a signal: its own, or that of the joint it measures; 0 if nobody says."""
+    own = told.typical.signal.get(name)
+    if own is not None:
+        return to_si(own.span, column.unit, f"typical.signal.{name}.span")
+    compared = told.compare.get(name)
+    if compared is None or not compared.joint:
+        return 0.0
+    joint = told.typical.joint.get(compared.joint, Span())
+    value = joint.travel if compared.of == "position" else joint.speed
+    return to_si(value, column.unit, f"typical.joint.{compared.joint}")

@@ -1,0 +1,212 @@
+"""motion_of_drive: the joints' motion under recorded commands, or under a controller."""
+
+from __future__ import annotations
+
+import mujoco
+import numpy as np
+from mujoco import rollout
+
+from ves_twin.core.types import FloatArray
+from ves_twin.core.units import to_si
+from ves_twin.machines.mjcf.description import Controller, Mode
+from ves_twin.machines.mjcf.effect import RigEffect
+from ves_twin.machines.mjcf.element import Element
+from ves_twin.machines.mjcf.inverse import smoothed
+from ves_twin.machines.mjcf.joint_units import joint_units
+from ves_twin.machines.mjcf.work import Work, sensor_rows
+
+FAILED = (
+    mujoco.mjtWarning.mjWARN_BADQPOS,
+    mujoco.mjtWarning.mjWARN_BADQVEL,
+    mujoco.mjtWarning.mjWARN_BADQACC,
+    mujoco.mjtWarning.mjWARN_BADCTRL,
+)
+"""After these MuJoCo goes on from its reference state, or without commands: not what was asked."""
+
+
+def motion_of_drive(work: Work, mode: Mode, refined: bool = False) -> dict[str, FloatArray]:
+    """Signals (n, w) that the rig's description compares, by forward simulation.
+
+    Row k holds the state at t_k; its command acts from then on. The model's step is the whole part
+    of a row's period nearest to the model's own, half of it if refined.
+
+    Args:
+        work: what is simulated.
+        mode: CONTROL feeds recorded commands, REFERENCE set-points of the controllers.
+        refined: with half the step.
+
+    Returns:
+        Signals; NaN throughout where the motion diverged and MuJoCo had to start it anew.
+    """
+    model, period = work.model, work.programme.period
+    steps = max(1, round(period / model.opt.timestep)) * (2 if refined else 1)
+    model.opt.timestep = period / steps
+    state = _start(work)
+    closed = mode is Mode.REFERENCE
+    if not closed and not _resisted(work):
+        path, sensed, commands = _open(work, state, steps)
+    else:
+        path, sensed, commands = _stepped(work, state, steps, closed)
+    if _failed(state):
+        path, sensed = np.full_like(path, np.nan), np.full_like(sensed, np.nan)
+        commands = np.full_like(commands, np.nan)
+    return _signals(work, path, sensed, commands)
+
+
+def _failed(data: mujoco.MjData) -> bool:
+    return any(data.warning[kind].number for kind in FAILED)
+
+
+def _start(work: Work) -> mujoco.MjData:
+    """State of the first row."""
+    data = mujoco.MjData(work.model)
+    for joint in work.rig.description.start:
+        at = work.model.joint(joint)
+        position, speed = _measured_start(work, joint)
+        data.qpos[at.qposadr[0]] = position + work.values.get(f"start@{joint}:position", 0.0)
+        data.qvel[at.dofadr[0]] = speed + work.values.get(f"start@{joint}:speed", 0.0)
+    return data
+
+
+def _measured_start(work: Work, joint: str) -> tuple[float, float]:
+    """Given by the file, or by the first rows of the joint's signal."""
+    told = work.rig.description
+    start = told.start[joint]
+    if start.position != "measured":
+        units, what = joint_units(work.model, joint), f"start.{joint}"
+        at = to_si(start.position, units[0], f"{what}.position")
+        return at, to_si(start.speed, units[1], f"{what}.speed")
+    signal, sign = position_signal(work, joint)
+    column = sign * work.programme.drive[signal][:, 0]
+    smooth = smoothed(column, work.programme.period, told.drive.smoothing)
+    speed = (smooth[1] - smooth[0]) / work.programme.period
+    return float(column[0]), float(speed)
+
+
+def position_signal(work: Work, joint: str) -> tuple[str, int]:
+    """The signal that measures a joint's position, and its sign."""
+    for name, compared in work.rig.description.compare.items():
+        if compared.joint == joint and compared.of == "position":
+            return name, compared.sign
+    return work.rig.description.drive.joints[joint], 1
+
+
+def _resisted(work: Work) -> bool:
+    """Whether an effect depends on speed or place in a way that the model itself lacks."""
+    plain = (RigEffect.resist, RigEffect.hold)
+    return any((type(e).resist, type(e).hold) != plain for e, _ in work.effects)
+
+
+def _open(work: Work, data: mujoco.MjData, steps: int) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Recorded commands, stepped by MuJoCo's own loop."""
+    model = work.model
+    commands = _commands(work)
+    size = mujoco.mj_stateSize(model, mujoco.mjtState.mjSTATE_FULLPHYSICS)
+    state = np.zeros(size)
+    mujoco.mj_getState(model, data, state, mujoco.mjtState.mjSTATE_FULLPHYSICS)
+    control = np.repeat(commands, steps, axis=0)[None]
+    path, sensed = rollout.rollout(model, data, initial_state=state[None], control=control)
+    rows = np.concatenate([state[None], path[0][steps - 1 :: steps][:-1]])
+    width = model.nq + model.nv
+    return rows[:, 1 : 1 + width], np.asarray(sensed[0][::steps]), commands
+
+
+def _commands(work: Work) -> FloatArray:
+    """Commands (n, nu) that reach the actuators."""
+    commands = np.zeros((len(work.programme.time), work.model.nu))
+    for actuator, signal in work.rig.description.drive.actuators.items():
+        column = work.programme.drive[signal][:, 0]
+        commands[:, work.model.actuator(actuator).id] = work.command(actuator, column)
+    return commands
+
+
+class _Pd:
+    """One controller with the memory that its rate needs."""
+
+    def __init__(self, work: Work, actuator: str, told: Controller) -> None:
+        self.told, self.actuator = told, work.model.actuator(actuator).id
+        self.at = int(work.model.joint(told.joint).qposadr[0])
+        self.dof = int(work.model.joint(told.joint).dofadr[0])
+        self.reference = work.programme.drive[told.reference][:, 0].tolist()
+        self.period = work.programme.period
+        self.last: list[float] = []
+        self.mean = 0.0
+
+    def command(self, row: int, data: mujoco.MjData) -> float:
+        told, q = self.told, float(data.qpos[self.at])
+        self.last = [*self.last[1 - told.average :], q] if told.average > 1 else [q]
+        mean = sum(self.last) / len(self.last)
+        rate = (mean - self.mean) / self.period if row else float(data.qvel[self.dof])
+        self.mean = mean
+        u = told.kp * (self.reference[row] - q) - told.kd * rate
+        return float(min(max(u, -told.limit), told.limit))
+
+
+def _stepped(
+    work: Work, data: mujoco.MjData, steps: int, closed: bool
+) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Row by row, with controllers and with efforts that follow the speed."""
+    model, rows = work.model, len(work.programme.time)
+    told = work.rig.description
+    loops = [_Pd(work, name, c) for name, c in told.controllers.items()] if closed else []
+    asked = np.zeros((rows, model.nu)) if closed else _commands(work)
+    resisted = [
+        (name, int(model.joint(name).dofadr[0]), int(model.joint(name).qposadr[0]))
+        for name in {e.target for e, _ in work.effects if e.element is Element.JOINT}
+    ]
+    holders = {n: [e.holder() for e, _ in work.at(Element.JOINT, n)] for n, _, _ in resisted}
+    path, sensed = np.zeros((rows, model.nq + model.nv)), np.zeros((rows, model.nsensordata))
+    speed, reach = np.zeros(1), _Reach(work)
+    for k in range(rows):
+        path[k, : model.nq], path[k, model.nq :] = data.qpos, data.qvel
+        for loop in loops:
+            asked[k, loop.actuator] = loop.command(k, data)
+        data.ctrl[:] = reach.at(asked[k], k) if closed else asked[k]
+        for n in range(steps):
+            for name, dof, at in resisted:
+                speed[0], q = data.qvel[dof], float(data.qpos[at])
+                held = sum(holder(q) for holder in holders[name])
+                data.qfrc_applied[dof] = -work.resistance(name, speed)[0] - held
+            mujoco.mj_step(model, data)
+            if n == 0:
+                sensed[k] = data.sensordata
+        if _failed(data):
+            break
+    return path, sensed, asked
+
+
+class _Reach:
+    """Commands of a closed loop as they reach the actuators, row by row, effect after effect."""
+
+    def __init__(self, work: Work) -> None:
+        self.time = work.programme.time
+        self.chain = [
+            (effect, work.model.actuator(effect.target).id, np.zeros(len(self.time)))
+            for effect, _ in work.effects
+            if effect.element is Element.ACTUATOR
+        ]
+
+    def at(self, asked: FloatArray, row: int) -> FloatArray:
+        reach = asked.copy()
+        for effect, i, given in self.chain:
+            given[row] = reach[i]
+            reach[i] = effect.edit_row(given, self.time, row)
+        return reach
+
+
+def _signals(
+    work: Work, path: FloatArray, sensed: FloatArray, commands: FloatArray
+) -> dict[str, FloatArray]:
+    model, found = work.model, {}
+    for name, compared in work.rig.description.compare.items():
+        if compared.sensor:
+            rows = sensor_rows(model, sensed, compared)
+        elif compared.actuator:
+            rows = commands[:, [model.actuator(compared.actuator).id]]
+        elif compared.of == "position":
+            at = int(model.joint(compared.joint).qposadr[0])
+            rows = work.position(compared.joint, path[:, at])[:, None]
+        else:
+            rows = path[:, [model.nq + int(model.joint(compared.joint).dofadr[0])]]
+        found[name] = compared.sign * rows
+    return found

@@ -1,0 +1,140 @@
+"""Work: one prediction under way: the edited model, what acts on it, and what was fed in."""
+
+from __future__ import annotations
+
+import copy
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import mujoco
+import numpy as np
+
+from ves_twin.core.types import FloatArray
+from ves_twin.diagnosis.forward import Excitation
+from ves_twin.machines.mjcf.description import Compared
+from ves_twin.machines.mjcf.effect import RigEffect
+from ves_twin.machines.mjcf.element import Element
+from ves_twin.machines.mjcf.joint_effects import CoulombFriction
+from ves_twin.machines.mjcf.machine import Rig
+from ves_twin.machines.mjcf.place import Place
+from ves_twin.machines.mjcf.places import tendon_joints, typical_speed
+
+SMOOTH = 0.0005
+"""Share of the typical speed over which a sign is smoothed, chosen on EMPS: four times as much
+makes its 20 N of dry friction read 0.8 % high and its 200 N s/m of damping 0.8 % low."""
+
+
+@dataclass(frozen=True)
+class Work:
+    """What a prediction needs.
+
+    Attributes:
+        rig: whose prediction.
+        programme: what is fed in.
+        model: with effects of the model.
+        effects: all that are at work.
+        values: parameter -> value.
+    """
+
+    rig: Rig
+    programme: Excitation
+    model: mujoco.MjModel
+    effects: tuple[tuple[RigEffect, Place], ...]
+    values: Mapping[str, float]
+
+    @staticmethod
+    def begin(rig: Rig, programme: Excitation, values: Mapping[str, float]) -> Work:
+        """A copy of the rig's model with the effects that the values say."""
+        effects = tuple(rig.effects_at(values))
+        model = copy.copy(rig.model)
+        for effect, _ in effects:
+            effect.edit_model(model)
+        if effects:
+            mujoco.mj_setConst(model, mujoco.MjData(model))
+        return Work(rig, programme, model, effects, values)
+
+    def at(self, element: Element, name: str) -> list[tuple[RigEffect, Place]]:
+        """Effects on one target."""
+        return [(e, p) for e, p in self.effects if e.element is element and e.target == name]
+
+    def resistance(self, joint: str, speed: FloatArray) -> FloatArray:
+        """Effort [N, N m] against motion of a joint that the model itself lacks (n,)."""
+        total = np.zeros_like(speed)
+        for effect, place in self.at(Element.JOINT, joint):
+            total = total + effect.resist(speed, SMOOTH * place.speed)
+        return total
+
+    def dry(self, joint: str, speed: FloatArray) -> FloatArray:
+        """The model's friction loss along a given motion: level * tanh(v / slow) (n,)."""
+        level = CoulombFriction(joint).present(self.model)
+        if level == 0.0:
+            return np.zeros_like(speed)
+        slow = SMOOTH * typical_speed(joint, self.rig.description, self.model)
+        return np.asarray(level * np.tanh(speed / slow))
+
+    def held(self, joint: str, position: FloatArray) -> FloatArray:
+        """Effort [N, N m] against a joint along given positions (n,)."""
+        total = np.zeros_like(position)
+        for effect, _ in self.at(Element.JOINT, joint):
+            total = total + effect.hold(position)
+        return total
+
+    def coupled(self, joint: str, speed: FloatArray) -> FloatArray:
+        """Effort of the fixed tendons over a joint against given speeds (n, nv): (n,).
+
+        Damping, and friction loss as `dry` has it, of each tendon's own speed.
+        """
+        model, total = self.model, np.zeros(len(speed))
+        for number in range(model.ntendon):
+            damping = float(model.tendon_damping[number])
+            level = float(model.tendon_frictionloss[number])
+            parts = tendon_joints(model, model.tendon(number).name)
+            share = dict(parts).get(joint, 0.0)
+            if share == 0.0 or (damping, level) == (0.0, 0.0):
+                continue
+            own = sum(c * speed[:, int(model.joint(j).dofadr[0])] for j, c in parts)
+            effort = damping * own
+            if level != 0.0:
+                typical = (abs(c) * typical_speed(j, self.rig.description, model) for j, c in parts)
+                effort = effort + level * np.tanh(own / (SMOOTH * sum(typical)))
+            total = total + share * effort
+        return total
+
+    def position(self, joint: str, position: FloatArray) -> FloatArray:
+        """A joint's position behind the effects between it and where it is measured (n,)."""
+        for effect, _ in self.at(Element.JOINT, joint):
+            position = effect.edit_position(position)
+        return position
+
+    def command(self, actuator: str, command: FloatArray) -> FloatArray:
+        """What reaches an actuator (n,)."""
+        for effect, _ in self.at(Element.ACTUATOR, actuator):
+            command = effect.edit_command(command, self.programme.time)
+        return command
+
+    def required(self, actuator: str, effort: FloatArray) -> FloatArray:
+        """The command that an actuator needs (n,)."""
+        for effect, _ in self.at(Element.ACTUATOR, actuator):
+            effort = effect.edit_required(effort, self.programme.time)
+        return effort
+
+    def reading(self, signal: str, true: FloatArray) -> FloatArray:
+        """What is recorded of a signal (n, w)."""
+        reading = true
+        for effect, place in self.effects:
+            name = effect.target
+            if effect.element is Element.SIGNAL and (name == signal or _of(name, signal)):
+                reading = effect.edit_reading(reading, true, self.programme.time, place)
+        return reading
+
+
+def _of(target: str, signal: str) -> bool:
+    rest = target.removeprefix(f"{signal}.")
+    return rest != target and rest.replace(".", "").isdigit()
+
+
+def sensor_rows(model: mujoco.MjModel, sensordata: FloatArray, compared: Compared) -> FloatArray:
+    """Columns of a named sensor (n, w) out of all sensor data (n, all)."""
+    sensor = model.sensor(compared.sensor)
+    first = int(sensor.adr[0])
+    return np.asarray(sensordata[:, first : first + int(sensor.dim[0])])

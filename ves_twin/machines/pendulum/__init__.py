@@ -1,0 +1,1 @@
+"""Pendulum: one link on a hinge, the smallest machine of the diagnosis."""

@@ -1,0 +1,220 @@
+"""RigForward: VES II as the diagnosis sees it: set-points in, lengths, wrench and torques out."""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from ves_twin.core.errors import EndedEarlyError, UnreachableError
+from ves_twin.core.recording.recording import Recording, RecordingInfo
+from ves_twin.core.signals import SIGNALS
+from ves_twin.core.types import FloatArray
+from ves_twin.diagnosis.forward import Channel, Excitation, Hypothesis, Parameter
+from ves_twin.machines.ves2.declared_load import LOAD, load_in
+from ves_twin.machines.ves2.library import (
+    AXES,
+    WANDER,
+    hypotheses_of,
+    idle_kinds,
+    offset_parameters,
+    parameters_of,
+    table_parameters,
+    wander_parameters,
+    with_departures,
+)
+from ves_twin.machines.ves2.sensor_change import SensorChange, without_sensor_kinds
+from ves_twin.machines.ves2.slow_noise import MODES, slow_modes
+from ves_twin.plant.known_weight import hang_weight
+from ves_twin.plant.plant import Plant
+from ves_twin.scenario.schema import Scenario
+from ves_twin.simulator.predict import predict
+from ves_twin.simulator.simulate import versions
+
+DRIVE = ("leg.command", "arm.command", "gravity.estimate")
+COMPARED = ("leg.length", "sensor.wrench", "arm.q", "arm.torque", "supply.pressure")
+
+WRENCH = slice(6, 12)
+"""Columns of the sensor's wrench among the compared ones."""
+
+FORCES = ("sensor.wrench", "arm.torque")
+SETTLING = 1.0
+"""Rows of forces that say nothing [s]: joints that stand are held by friction as it happens, the
+servo's integral against it. Two runs 1e-4 commissioning sd apart differ there by up to 10 sigma."""
+
+REPEATABLE = 1e-5
+"""What a leg length is good for [m]: joints and frame give that much, far above the transducer."""
+
+
+@dataclass(frozen=True)
+class RigForward:
+    """VES II under position control, the loop cut above the legs.
+
+    Attributes:
+        plant: the nominal rig.
+        scenario: rates, leg gains and where the arm starts.
+        exclude: kinds of effects that are left out of the library.
+        loaded: whether every programme says what hangs on the arm.
+    """
+
+    plant: Plant
+    scenario: Scenario
+    exclude: frozenset[str] = frozenset()
+    loaded: bool = False
+
+    @cached_property
+    def identity(self) -> str:
+        """Changes with plant, settings, library and versions; not with what programmes say."""
+        parts = (self.plant.hash, _settings(self.scenario).model_dump_json(), versions())
+        digest = hashlib.sha256(repr(parts).encode())
+        digest.update(repr((self.parameters, self.hypotheses, self.channels)).encode())
+        return digest.hexdigest()[:16]
+
+    @property
+    def drive(self) -> tuple[str, ...]:
+        """Set-points of legs and arm, and the estimate that the sensor is zeroed against."""
+        return (*DRIVE, LOAD.name) if self.loaded else DRIVE
+
+    @cached_property
+    def channels(self) -> tuple[Channel, ...]:
+        """Measured columns with the sd that the plant's own numbers declare."""
+        sds = noise_of(self.plant)
+        corner = self.plant.actual.number("sensor.corner")
+        return tuple(
+            Channel(
+                column,
+                name,
+                i,
+                unit,
+                float(sds[name][i]),
+                corner if name == "sensor.wrench" else None,
+                SETTLING if name in FORCES else 0.0,
+            )
+            for name in COMPARED
+            for i, (column, unit) in enumerate(
+                zip(SIGNALS[name].columns, SIGNALS[name].units, strict=True)
+            )
+        )
+
+    @cached_property
+    def parameters(self) -> tuple[Parameter, ...]:
+        """Sizes of all effects, numbers of the table that commissioning leaves open, offsets."""
+        return (
+            *parameters_of(self.plant),
+            *table_parameters(self.plant),
+            *offset_parameters(self.plant),
+            *wander_parameters(),
+        )
+
+    @cached_property
+    def hypotheses(self) -> tuple[Hypothesis, ...]:
+        """Every effect on every target that it can have."""
+        return hypotheses_of(self.plant, self.exclude | idle_kinds(self.scenario))
+
+    def simulate(
+        self, programme: Excitation, values: Mapping[str, float], refined: bool = False
+    ) -> FloatArray:
+        """Channels (n, channels) that a rig with these values measures, without noise.
+
+        Gain and cross-talk of the sensor are laid over a run without them, which is kept: most
+        commissioning tolerances are of that kind, and then cost no run of their own.
+        """
+        load = load_in(programme)
+        rig = hang_weight(self._smooth, load) if load else self._smooth
+        plant, offsets = with_departures(rig, values)
+        hardware = plant
+        if self.scenario.gravity.file is None:  # else the reading is calibrated, too
+            hardware, _ = with_departures(rig, without_sensor_kinds(values))
+        rows = self._kept.run(hardware, programme, self._rates(refined)).copy()
+        if hardware is not plant:
+            at_rest = programme.drive["gravity.estimate"][0] * float(self.scenario.gravity.zero)
+            change = SensorChange.between(hardware, plant)
+            rows[:, WRENCH] = change.apply(rows[:, WRENCH], at_rest)
+        rows[:, WRENCH] += offsets + self._wander(programme, values)
+        return rows
+
+    def _wander(self, programme: Excitation, values: Mapping[str, float]) -> FloatArray:
+        """The sensor's slow noise [N, N m] (n, 6), or zeros (6,) where its modes have no weight."""
+        weights = np.array(
+            [
+                [values.get(f"{WANDER}{axis}.{mode + 1}", 0.0) for axis in AXES]
+                for mode in range(MODES)
+            ]
+        )
+        if not weights.any():
+            return np.zeros(6)
+        parameters = self.plant.parameters
+        shapes = slow_modes(programme.time, parameters.number("sensor.wander_time"))
+        return np.asarray(shapes @ weights * parameters.array("sensor.wander"))
+
+    @cached_property
+    def _smooth(self) -> Plant:
+        """The rig without counts: its noise hides them, and without noise legs hunt over one."""
+        counts = ("transducer.resolution", "sensor.resolution", "arm.encoder_resolution")
+        none = {name: 0.0 * self.plant.parameters.array(name) for name in counts}
+        return self.plant.with_values(none)
+
+    def _rates(self, refined: bool) -> Scenario:
+        if not refined:
+            return self.scenario
+        substeps = 2 * self.scenario.run.substeps
+        run = self.scenario.run.model_copy(update={"substeps": substeps})
+        return self.scenario.model_copy(update={"run": run})
+
+    @cached_property
+    def _kept(self) -> LastRun:
+        return LastRun()
+
+
+class LastRun:
+    """The last replay of each programme: the next one is often of the same hardware."""
+
+    def __init__(self) -> None:
+        self._kept: dict[str, tuple[str, Scenario, FloatArray]] = {}
+
+    def __reduce__(self) -> tuple[type[LastRun], tuple[()]]:
+        return LastRun, ()  # other processes run for themselves
+
+    def run(self, plant: Plant, programme: Excitation, scenario: Scenario) -> FloatArray:
+        """Compared channels (n, channels) of a plant, not to be written to; NaN if it fails."""
+        asked = plant.hash
+        kept = self._kept.get(programme.identity)
+        if kept is not None and kept[0] == asked and kept[1] == scenario:
+            return kept[2]
+        info = RecordingInfo("measured")
+        fed = {name: programme.drive[name] for name in DRIVE}
+        recording = Recording(programme.time - programme.time[0], fed, info)
+        try:
+            answer = predict(recording, plant, scenario, DRIVE, COMPARED)
+            rows = np.concatenate([answer[name] for name in COMPARED], axis=1)
+        except (EndedEarlyError, UnreachableError):
+            width = sum(len(SIGNALS[name].columns) for name in COMPARED)
+            rows = np.full((len(programme.time), width), np.nan)
+        self._kept[programme.identity] = (asked, scenario, rows)
+        return rows
+
+
+def _settings(scenario: Scenario) -> Scenario:
+    """Rates, leg program, sensor and start: a scenario without what set-points replace."""
+    run = scenario.run.model_copy(update={"duration": 1.0, "seed": 0, "log": "admittance"})
+    arm = scenario.arm.model_copy(update={"moves": (), "path": None, "operator": None})
+    platform = scenario.platform.model_copy(update={"motion": None})
+    parts = {"name": "", "question": "", "run": run, "arm": arm, "platform": platform}
+    return scenario.model_copy(update=parts)
+
+
+def noise_of(plant: Plant) -> dict[str, FloatArray]:
+    """Declared sd of one sample of every compared signal."""
+    array, number = plant.parameters.array, plant.parameters.number
+    counts = array("arm.encoder_resolution") / np.sqrt(12.0)
+    wrench = np.hypot(array("sensor.noise"), array("sensor.resolution") / np.sqrt(12.0))
+    return {
+        "leg.length": np.full(6, np.hypot(number("transducer.noise"), REPEATABLE)),
+        "sensor.wrench": wrench,
+        "arm.q": counts,
+        "arm.torque": array("arm.torque_noise"),
+        "supply.pressure": np.array([number("supply.noise")]),
+    }

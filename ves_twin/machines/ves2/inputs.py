@@ -1,0 +1,64 @@
+"""prepare_inputs: recordings of VES II made fit for a diagnosis, or refused with what is wrong."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+from ves_twin.core.errors import VesTwinError
+from ves_twin.core.recording.even_clock import even_clock
+from ves_twin.core.recording.recording import Recording
+from ves_twin.data.quality.check import Check
+from ves_twin.data.quality.gate import quality_gate
+from ves_twin.machines.ves2.declared_load import LOAD, loads_of
+from ves_twin.machines.ves2.forward import DRIVE
+from ves_twin.plant.plant import Plant
+
+REFUSED = frozenset({"wiring", "sign", "units", "frame"})
+"""Checks whose failure makes any cause that is named a wrong one: the recording is not what it says
+it is."""
+
+
+@dataclass(frozen=True)
+class Inputs:
+    """Recordings on even clocks, and the checks that they failed without being refused."""
+
+    recordings: tuple[Recording, ...]
+    flaws: tuple[Check, ...]
+
+    def with_loads(self) -> Inputs:
+        """The same, every recording saying what hung on the arm: nothing where it did not."""
+        return replace(self, recordings=loads_of(self.recordings))
+
+
+def prepare_inputs(recordings: Sequence[Recording], plant: Plant, word: str) -> Inputs:
+    """Put recordings through the quality gate and on an even clock.
+
+    Rows that are missing become rows without measurements, and short holes of the set-points are
+    bridged; `even_clock` says how.
+
+    Args:
+        recordings: measured or simulated.
+        plant: whose arm the force sensor carries.
+        word: what they are called in messages, for instance "recording".
+
+    Raises:
+        VesTwinError: columns that look swapped, turned, in other units or in another frame.
+        UnknownNameError: a set-point that is not recorded.
+        InvalidInputError: set-points that are missing for too long.
+    """
+    carried, gravity = plant.parameters.array("arm.mass").sum(), plant.parameters.number("gravity")
+    even, flaws = [], []
+    for number, recording in enumerate(recordings, 1):
+        name = f"{word} {number}"
+        load = recording[LOAD.name][0, 0] if LOAD.name in recording.signals else 0.0
+        failed = quality_gate(recording, float((carried + load) * gravity)).failures
+        wrong = [check for check in failed if check.name in REFUSED]
+        if wrong:
+            raise VesTwinError(f"{name}: {'; '.join(check.message for check in wrong)}")
+        flaws += [replace(check, message=f"{name}: {check.message}") for check in failed]
+        for signal in DRIVE:
+            recording[signal]  # told by name where it is missing
+        fed = (*DRIVE, LOAD.name) if LOAD.name in recording.signals else DRIVE
+        even.append(even_clock(recording, fed))
+    return Inputs(tuple(even), tuple(flaws))

@@ -1,0 +1,68 @@
+"""write_next_experiment: a proposed programme as set-points, and as a scenario that plays them."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import numpy as np
+
+from ves_twin.core.whole_file import write_whole
+from ves_twin.diagnosis.forward import Excitation
+from ves_twin.machines.ves2.excitations import write_setpoints
+from ves_twin.plant.plant import Plant
+from ves_twin.scenario.schema import Scenario
+from ves_twin.simulator.build import belief_of
+from ves_twin.simulator.setpoint_motion import poses_of
+
+SETPOINTS, SCENARIO = "next_experiment.csv", "next_experiment.toml"
+
+
+def write_next_experiment(
+    programme: Excitation, scenario: Scenario, plant: Plant, folder: Path
+) -> None:
+    """Write SETPOINTS for the laboratory's own programs, and SCENARIO for `ves-twin run`.
+
+    The recording of that run, or the laboratory's of the same set-points, is what the next
+    diagnosis takes.
+
+    Args:
+        programme: set-points of legs and arm.
+        scenario: of the diagnosis: rates, leg gains, belief.
+        plant: the nominal rig; a run takes the shipped one of its form unless told otherwise.
+        folder: takes both files.
+
+    Raises:
+        FileAccessError: not writable.
+    """
+    write_setpoints(programme, folder / SETPOINTS)
+    write_whole(folder / SCENARIO, _text(programme, scenario, plant))
+
+
+def _text(programme: Excitation, scenario: Scenario, plant: Plant) -> str:
+    first = np.ascontiguousarray(programme.drive["leg.command"][:1])
+    start = poses_of(first, np.zeros(6), belief_of(scenario).geometry)[0]
+    # round-off of the inverse kinematics, which would show as a start beside home
+    start = np.where(np.abs(start) < 1e-9, 0.0, start)
+    legs, gravity = scenario.legs, scenario.gravity
+    tables = {
+        "run": {"duration": float(programme.time[-1] + 0.5 * programme.period)},
+        "platform": {
+            "mode": "position",
+            "rate": scenario.platform.rate,
+            "start": start.tolist(),
+        },
+        "platform.motion": {"kind": "setpoints", "file": SETPOINTS},
+        "gravity": {"zero": gravity.zero}
+        | ({"method": "model", "file": gravity.file} if gravity.file else {}),
+        "legs": legs.model_dump(mode="json"),
+        "arm": {"start": programme.drive["arm.command"][0].tolist()},
+    }
+    lines = [
+        f"# Which of the causes that look alike is it? Programme: {programme.name}",
+        f"plant = {json.dumps(plant.base)}",
+        f"belief = {json.dumps(scenario.belief)}",
+    ]
+    for name, values in tables.items():
+        lines += ["", f"[{name}]", *(f"{key} = {json.dumps(v)}" for key, v in values.items())]
+    return "\n".join(lines) + "\n"

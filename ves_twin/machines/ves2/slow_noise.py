@@ -1,0 +1,40 @@
+"""slow_modes: the sensor's slow noise in a record, as a few shapes with unit normal weights."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ves_twin.core.types import FloatArray
+
+MODES = 7
+"""Shapes that are kept. A record of 10 s at T = 20 s has the 7th at 0.05 of the slow sd: a third of
+what the sensor's fast noise leaves of such a shape."""
+
+GRID = 160
+"""Points on which the covariance is taken apart."""
+
+
+def slow_modes(time: FloatArray, correlation_time: float, zeroed: float = 0.5) -> FloatArray:
+    """Karhunen-Loeve modes of a Gauss-Markov noise since the sensor was zeroed.
+
+    x has covariance exp(-|t - s| / T). Zeroing takes its value at -t0 away, so a record holds
+    x(t) - x(-t0) with covariance e(t - s) - e(t + t0) - e(s + t0) + 1; its eigenvectors, scaled by
+    the root of their eigenvalues, have independent unit normal weights.
+
+    Args:
+        time: of the rows, since the start of the run [s] (n,).
+        correlation_time: T [s].
+        zeroed: t0, how long before the start the zero holds [s].
+
+    Returns:
+        Shapes for a slow noise of sd 1 (n, MODES).
+
+    Source: K. Karhunen 1947, M. Loeve 1948.
+    """
+    t = np.linspace(time[0], time[-1], GRID)
+    since = np.exp(-(t - time[0] + zeroed) / correlation_time)
+    covariance = np.exp(-np.abs(t[:, None] - t) / correlation_time) - since[:, None] - since + 1.0
+    values, vectors = np.linalg.eigh(covariance)
+    loudest = np.argsort(-values)[:MODES]
+    shapes = vectors[:, loudest] * np.sqrt(np.maximum(values[loudest], 0.0))
+    return np.stack([np.interp(time, t, shape) for shape in shapes.T], axis=1)

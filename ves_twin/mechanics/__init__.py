@@ -1,0 +1,1 @@
+"""Closed-form mechanics of rig and arm, without MuJoCo: kinematics, beams, gravity, planning."""

@@ -1,0 +1,79 @@
+"""Figures of a comparison: levels, bands, stretches of time, and traces."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from ves_twin.core.signals import SIGNALS
+from ves_twin.diagnosis.residuals.cells import Cell
+from ves_twin.diagnosis.residuals.channel import ChannelComparison
+from ves_twin.machines.ves2.comparison_result import RecordingComparison, Traces
+from ves_twin.report.figure import new_figure, svg
+from ves_twin.report.html import Html
+from ves_twin.report.plots import (
+    MEASURED,
+    RESIDUAL,
+    SIMULATED,
+    Trace,
+    draw_cells,
+    draw_levels,
+    draw_traces,
+)
+
+
+def levels_figure(recording: RecordingComparison, name: str) -> Html:
+    """Rms of every column in sigma."""
+    labels = [
+        f"{c.name} ({c.axis})" if c.axis not in c.name else c.name for c in recording.channels
+    ]
+    figure = draw_levels(labels, [c.rms_sigma for c in recording.channels], "rms / sigma", 1.0)
+    return svg(figure, f"{name}-levels", "Residual of each column; red: its noise.")
+
+
+def cells_figure(recording: RecordingComparison, kind: str, name: str) -> Html:
+    """Map of columns against bands ("band") or stretches ("time")."""
+    cells: list[tuple[Cell, ...]] = [
+        c.bands if kind == "band" else c.blocks for c in recording.channels
+    ]
+    columns = list(dict.fromkeys(cell.label for row in cells for cell in row))
+    values = np.full((len(cells), len(columns)), np.nan)
+    for i, row in enumerate(cells):
+        for cell in row:
+            values[i, columns.index(cell.label)] = cell.sigma
+    axis = "frequency" if kind == "band" else "time"
+    figure = draw_cells([c.name for c in recording.channels], columns, values, axis)
+    caption = f"Residual over its noise by {axis}, in sigma (1 = noise)."
+    return svg(figure, f"{name}-{kind}", caption)
+
+
+def channel_figure(channel: ChannelComparison, traces: Traces, other: str, name: str) -> Html:
+    """One column: measured and expected above, their difference below."""
+    column = SIGNALS[channel.signal].columns.index(channel.name)
+    measured = traces.measured[channel.signal][:, column]
+    expected = traces.expected[channel.signal][:, column]
+    figure = new_figure(3.4)
+    above, below = figure.subplots(2, 1, sharex=True)
+    lines = [Trace("measured", measured, MEASURED), Trace(other, expected, SIMULATED)]
+    unit = channel.unit.replace("*", " ")
+    draw_traces(above, traces.time, lines, unit)
+    residual = [Trace("residual", measured - expected, RESIDUAL)]
+    draw_traces(below, traces.time, residual, f"residual, {unit}", 2.0 * channel.sigma)
+    below.set_xlabel("t, s", fontsize=8)
+    caption = f"{channel.name} ({channel.axis}). Grey: two sigma of noise."
+    return svg(figure, f"{name}-{channel.name}", caption)
+
+
+def residuals_figure(channels: Sequence[ChannelComparison], traces: Traces, name: str) -> Html:
+    """Residuals of many columns, in sigma, one above the other."""
+    figure = new_figure(0.5 + 0.75 * len(channels))
+    axes = np.atleast_1d(figure.subplots(len(channels), 1, sharex=True))
+    for one, channel in zip(axes, channels, strict=True):
+        column = SIGNALS[channel.signal].columns.index(channel.name)
+        gap = traces.measured[channel.signal] - traces.expected[channel.signal]
+        line = Trace(channel.name, gap[:, column] / channel.sigma, RESIDUAL)
+        draw_traces(one, traces.time, [line], channel.name, 2.0)
+        one.yaxis.label.set(rotation=0, ha="right", va="center")
+    axes[-1].set_xlabel("t, s", fontsize=8)
+    return svg(figure, f"{name}-residuals", "Residuals in sigma. Grey: two sigma.")

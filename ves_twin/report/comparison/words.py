@@ -1,0 +1,131 @@
+"""Sentences that say what a comparison found: trust, size of the gap, limits, where it lives."""
+
+from __future__ import annotations
+
+from ves_twin.core.quantity import digits, quantity
+from ves_twin.data.quality.check import Grade
+from ves_twin.diagnosis.residuals.cells import Cell
+from ves_twin.diagnosis.residuals.channel import FAR, LOUD, ChannelComparison
+from ves_twin.machines.ves2.comparison_result import Basis, Comparison, RecordingComparison
+from ves_twin.machines.ves2.tolerance import Excess
+
+NAMED = 3
+"""Channels named in a sentence."""
+
+CONTRAST = 1.5
+"""One regime is named where the residual is larger there by this factor."""
+
+HELD_AGAINST = {
+    Basis.PLANT: "the plant's answer to its set-points",
+    Basis.RECORDING: "the other recording of the same programme",
+    Basis.RESIDUAL: "the other recording, each less the plant's answer to its own set-points",
+}
+
+
+def trust_sentence(recording: RecordingComparison) -> str:
+    """Whether the data can be trusted."""
+    failed = [c for c in recording.checks if c.grade is Grade.FAILED]
+    doubts = [c for c in recording.checks if c.grade is Grade.UNKNOWN]
+    asked = len(recording.checks)
+    if failed:
+        return (
+            f"Data: {len(failed)} of {asked} quality checks failed. What follows may come from the"
+            " recording and not from the rig."
+        )
+    if doubts:
+        return f"Data: no quality check failed; {len(doubts)} of {asked} cannot tell."
+    return f"Data: all {asked} quality checks passed."
+
+
+def gap_sentence(recording: RecordingComparison) -> str:
+    """How large the gap is, in words, SI and sigma."""
+    loud, count = recording.beyond_noise, len(recording.channels)
+    if not loud:
+        top = max(recording.channels, key=lambda c: c.rms_sigma, default=None)
+        most = f" (largest: {top.name} {size(top)})" if top else ""
+        return f"Gap: none beyond noise in any of {count} columns{most}."
+    names = ", ".join(f"{c.name} {size(c)}" for c in loud[:NAMED])
+    return f"Gap: {len(loud)} of {count} columns are beyond noise. Loudest: {names}."
+
+
+def size(channel: ChannelComparison) -> str:
+    """Rms of a column in SI and in sigma."""
+    return f"{quantity(channel.rms, channel.unit)} rms = {digits(channel.rms_sigma)} sigma"
+
+
+def tolerance_sentence(comparison: Comparison) -> str:
+    """Whether the limits are kept."""
+    if comparison.excesses is None:
+        return "Tolerance: none given."
+    if not comparison.excesses:
+        return "Tolerance: every limit is kept."
+    count = len(comparison.excesses)
+    some = ", ".join(excess_words(e) for e in comparison.excesses[:NAMED])
+    rest = f" and {count - NAMED} more" if count > NAMED else ""
+    return f"Out of tolerance: {some}{rest}."
+
+
+def excess_words(excess: Excess) -> str:
+    """One limit that is not kept."""
+    limit = quantity(excess.limit, excess.unit)
+    if excess.found is None:
+        return f"{excess.channel} {excess.measure} (not compared, limit {limit})"
+    found = quantity(excess.found, excess.unit)
+    return f"{excess.channel} {excess.measure} {found} (limit {limit})"
+
+
+def cost_sentence(recording: RecordingComparison) -> str:
+    """What the gap costs the emulation; empty where nothing is emulated."""
+    cost = recording.cost
+    if cost is None:
+        return ""
+    pose = ""
+    if cost.translation is not None:
+        pose = (
+            f" The platform itself is off by {quantity(cost.translation, 'm')} and"
+            f" {quantity(cost.rotation, 'rad')} rms."
+        )
+    peaks = f"{digits(cost.force_share, '.2g')} and {digits(cost.moment_share, '.2g')}"
+    base = f"{quantity(cost.base_translation, 'm')} and {quantity(cost.base_rotation, 'rad')}"
+    return (
+        f"Cost for the emulation of {cost.emulated}: the wrench gap is {quantity(cost.force, 'N')}"
+        f" and {quantity(cost.moment, 'N*m')} rms, noise included; its peaks are {peaks} times the"
+        f" 1 N and 1.5 N m that thesis 3.2.3 allows. Alone it would move the emulated base by up to"
+        f" {base}.{pose}"
+    )
+
+
+def place_sentence(channel: ChannelComparison) -> str:
+    """Where a column's gap lives: band, stretch, regime, lag, colour."""
+    parts = []
+    for cells, word in ((channel.bands, "at"), (channel.blocks, "in")):
+        top = max(cells, key=lambda c: c.score, default=None)
+        if top is not None and top.score > LOUD:
+            parts.append(f"{word} {top.label} ({digits(top.sigma, '.2g')} sigma)")
+    where = f"loudest {' and '.join(parts)}" if parts else "a constant; nothing of it moves"
+    text = f"{channel.name} ({channel.axis}): {where}"
+    for kind in ("velocity", "position", "load") if parts else ():
+        text += _contrast([c for c in channel.regimes if c.kind == kind])
+    if abs(channel.mean_score) > FAR:
+        text += f"; mean {quantity(channel.mean, channel.unit)}"
+    lag = channel.lag
+    if lag is not None and abs(lag.value) > 4.0 * lag.sd and abs(lag.value) > 5e-5:
+        later = "later" if lag.value > 0 else "earlier"
+        text += f"; {abs(lag.value) * 1e3:.2g} +- {lag.sd * 1e3:.1g} ms {later} than expected"
+    coherence = channel.coherence
+    if coherence is not None and coherence.told and coherence.value > 0.3:
+        text += f"; {coherence.value:.0%} of it goes along with {coherence.column}"
+    return f"{text}."
+
+
+def _contrast(cells: list[Cell]) -> str:
+    """Where one regime is clearly larger than the least one, or its mean clearly apart."""
+    if len(cells) < 2:
+        return ""
+    top, least = max(cells, key=lambda c: c.rms), min(cells, key=lambda c: c.rms)
+    if least.rms > 0.0 and top.rms > CONTRAST * least.rms:
+        return f"; {top.rms / least.rms:.2g} times larger with {top.label} than {least.label}"
+    apart = max(cells, key=lambda c: abs(c.mean))
+    if abs(apart.mean) > 0.6 * top.rms:
+        return f"; its mean changes with {apart.label}"
+    return ""

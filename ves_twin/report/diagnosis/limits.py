@@ -1,0 +1,134 @@
+"""Sentences of what a diagnosis cannot say, why rivals lost, and what to record next."""
+
+from __future__ import annotations
+
+from math import inf
+
+from ves_twin.core.quantity import digits, percent, quantity
+from ves_twin.diagnosis.rivals import Rival, Standing
+from ves_twin.diagnosis.tolerances import FEWEST
+from ves_twin.diagnosis.verdict import Kind, Verdict
+from ves_twin.report.diagnosis.words import TOLD, capital, ends_words, name_of, spoken
+
+STRAINED = 3.0
+"""Declared sd beyond which a commissioning error is called strained."""
+
+
+def rival_words(rival: Rival, best: bool) -> str:
+    """Why an explanation was kept or lost."""
+    if rival.standing is Standing.SCREENED:
+        return (
+            f"not fitted: alone it was predicted to take {digits(rival.score)} of chi^2 away, less"
+            " than each of those that were fitted first"
+        )
+    if best:
+        return "the best"
+    if rival.standing is Standing.KEPT:
+        return "as good as the best"
+    place = rival.place
+    if place is not None:
+        alone = "alone it leaves" if rival.standing is Standing.ALONE else "leaves"
+        return (
+            f"{alone} {digits(place.rival)} sigma in {place.channel} at {ends_words(place)},"
+            f" where the best leaves {digits(place.best)}"
+        )
+    if rival.pull is not None and rival.pull > STRAINED:
+        return f"needs a commissioning error of {rival.pull:.1f} declared tolerances"
+    return "needs larger commissioning errors than the best"
+
+
+def limit_sentences(verdict: Verdict) -> tuple[str, ...]:
+    """What the verdict does not prove."""
+    count = len(verdict.smallest_findable)
+    said = [
+        f"The library has {count} causes. What it lacks is never named; at best"
+        " something is said to be left."
+    ]
+    if verdict.excluded:
+        said.append(f"Not considered, as asked: {', '.join(map(spoken, verdict.excluded))}.")
+    if verdict.causes:
+        said.append(
+            "Probabilities and intervals hold if the cause is in the library and the model is"
+            " otherwise right; they are not probabilities that the rig is as the model says."
+        )
+    if verdict.causes and verdict.basis.held_out == "none":
+        said.append(
+            "A cause that fits these recordings may fail on others; no held-out one was given."
+        )
+    if verdict.basis.tolerances == "declared":
+        said.append(
+            "The tolerances are declared. Were they 2.5 times too small, an error of commissioning"
+            " would look like a cause; names below that are called provisional."
+        )
+    if verdict.unseen:
+        said.append(
+            "Not recorded, or with holes all over, so nothing is known of it:"
+            f" {', '.join(verdict.unseen)}."
+        )
+    if verdict.holes:
+        told = ", ".join(f"{name} {percent(share)}" for name, share in verdict.holes.items())
+        said.append(f"Rows without a value, which were left out: {told}.")
+    blind = [spoken(k) for k, f in verdict.smallest_findable.items() if f.value is None]
+    if blind:
+        more = f" and {len(blind) - TOLD} more" if len(blind) > TOLD else ""
+        said.append(f"Nothing can be said about {', '.join(blind[:TOLD])}{more}.")
+    return (*said, *_lookalikes(verdict), *_twins(verdict))
+
+
+def _lookalikes(verdict: Verdict) -> tuple[str, ...]:
+    """What each named cause could be taken for, and up to which size; the worst first."""
+    ranked = sorted(verdict.lookalikes, key=lambda pair: -(pair.beyond or inf))
+    said = []
+    for pair in ranked[:TOLD]:
+        cause, other = spoken(pair.cause), spoken(pair.other)
+        if pair.beyond is None:
+            most = quantity(pair.largest, pair.unit)
+            said.append(
+                f"Recordings like these cannot tell {cause} from {other} at any size up to {most}."
+            )
+        else:
+            size = quantity(pair.beyond, pair.unit)
+            said.append(f"{capital(cause)} of less than {size} would be taken for {other}.")
+    more = len(ranked) - len(said)
+    return (*said, f"So for {more} more pairs (verdict.json).") if more else tuple(said)
+
+
+def _twins(verdict: Verdict) -> tuple[str, ...]:
+    """Look-alikes of what was named; of everything, where nothing was."""
+    named = {f"{cause.effect}@{cause.target}" for cause in verdict.causes}
+    pairs = [t for t in verdict.twins if not named or named & set(t[:2])][:TOLD]
+    return tuple(
+        f"{spoken(a)} and {spoken(b)} look alike in these recordings (cosine {cosine:.3f})."
+        for a, b, cosine in pairs
+    )
+
+
+def next_sentences(verdict: Verdict) -> tuple[str, ...]:
+    """What would make the verdict surer."""
+    said = []
+    if verdict.verdict is Kind.AMBIGUOUS:
+        names = " from ".join(name_of(verdict.causes[a[0]]) for a in verdict.alternatives[:2])
+        top = verdict.next_experiment[0] if verdict.next_experiment else None
+        if top:
+            said.append(f"To tell {names}: {top.programme}.")
+        else:
+            said.append(f"To tell {names}: another programme; none was offered to choose from.")
+    if verdict.verdict is Kind.UNKNOWN:
+        said.append(
+            "Record the same programme on a rig in order, or before and after a change, and compare"
+            " the two recordings (ves-twin compare --against)."
+        )
+    if verdict.causes and verdict.basis.held_out == "none":
+        said.append("Record another programme on the same rig and give it as --held-out.")
+    if verdict.basis.tolerances == "declared":
+        said.append(
+            f"Record {FEWEST} rigs in order, or this one mounted anew {FEWEST} times, and give them"
+            " as --commissioning: then the tolerances are measured."
+        )
+    if verdict.basis.noise == "declared":
+        said.append("Record the rig standing still and give it as --standstill.")
+    blind = [spoken(k) for k, f in verdict.smallest_findable.items() if f.value is None]
+    if blind:
+        some = ", ".join(blind[:TOLD])
+        said.append(f"Find a programme that excites what this one cannot show: {some}.")
+    return tuple(said)

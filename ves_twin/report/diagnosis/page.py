@@ -1,0 +1,255 @@
+"""diagnosis_page: a verdict as one HTML page: what is wrong, how sure, and why nothing else."""
+
+from __future__ import annotations
+
+from ves_twin.core.quantity import UNSURE, digits, quantity
+from ves_twin.diagnosis.report_traces import ReportTraces
+from ves_twin.diagnosis.rivals import Rival
+from ves_twin.diagnosis.verdict import MANY, Cause, Kind, Verdict
+from ves_twin.report.diagnosis.limits import limit_sentences, next_sentences, rival_words
+from ves_twin.report.diagnosis.pictures import (
+    cells_figure,
+    change_figure,
+    residuals_figure,
+    trace_figure,
+)
+from ves_twin.report.diagnosis.proved import proved_parts
+from ves_twin.report.diagnosis.words import (
+    alone_sentences,
+    ambiguity_sentences,
+    basis_sentences,
+    ends_words,
+    fitted_word,
+    gain_sentence,
+    headline,
+    interval_words,
+    name_of,
+    nearest_sentence,
+    size_words,
+    spoken,
+    tone,
+)
+from ves_twin.report.html import Html, bullets, folded, joined, paragraph, section, table
+from ves_twin.report.page import html_page
+
+SHOWN = 4
+"""Channels drawn large: those with the largest residual before."""
+
+DRAWN = 2
+"""Recordings whose traces are drawn; the numbers are of all."""
+
+
+def diagnosis_page(verdict: Verdict, title: str = "Diagnosis", plant: str = "") -> str:
+    """The page of a verdict that still has its traces.
+
+    Args:
+        verdict: from `diagnose`; one read from a file has no traces, and gets no pictures.
+        title: heading, for instance the recordings' names.
+        plant: what became of the extended plant, one sentence.
+    """
+    exhibit = verdict.exhibit
+    parts = [_answer(verdict, plant), section("Before and after", *_levels(verdict))]
+    if exhibit:
+        parts += _pictures(verdict, exhibit)
+    parts += proved_parts(verdict)
+    if verdict.rivals:
+        parts.append(section("Rivals, and why they lost", _rivals(verdict.rivals)))
+    parts += [
+        section("Smallest size that would have been found", *_findable(verdict)),
+        section("What this does not prove", bullets(limit_sentences(verdict))),
+    ]
+    if verdict.leftover:
+        parts.append(section("What is left", *_leftover(verdict)))
+    parts.append(section("Next experiment", *_next(verdict)))
+    return html_page(title, parts)
+
+
+def _answer(verdict: Verdict, plant: str) -> Html:
+    """The first screen: verdict, cause, size, gain, basis."""
+    parts = [paragraph(headline(verdict), f"lead {tone(verdict)}")]
+    if verdict.causes and not verdict.proved:
+        head = ("cause", "size", "90 % interval", _origin(verdict), "probability", "standing")
+        parts.append(table(head, [row for c in verdict.causes for row in _cause(c, verdict)]))
+        parts += [
+            paragraph(
+                f"The largest {len(c.largest)} of {len(c.parameters)} numbers of {name_of(c)};"
+                " verdict.json has all.",
+                "note",
+            )
+            for c in verdict.causes
+            if len(c.largest) < len(c.parameters)
+        ]
+    for said in (nearest_sentence(verdict), gain_sentence(verdict)):
+        if said:
+            parts.append(paragraph(said))
+    parts.append(bullets(ambiguity_sentences(verdict)))
+    parts.append(bullets(alone_sentences(verdict)))
+    failed = [check.message for check in verdict.quality]
+    if failed:
+        parts.append(paragraph("The recordings have flaws that the verdict may rest on:", "bad"))
+        parts.append(bullets(failed))
+    parts.append(bullets(basis_sentences(verdict)))
+    if plant:
+        parts.append(paragraph(plant, "note"))
+    return joined(parts)
+
+
+def _origin(verdict: Verdict) -> str:
+    """What departures count from."""
+    return "the baseline" if verdict.basis.baseline == "measured" else "nominal"
+
+
+def _cause(cause: Cause, verdict: Verdict) -> list[tuple[str, ...]]:
+    standing = "firm" if cause.firm else f"provisional, {cause.sigmas or 0.0:.1f} tolerances off"
+    if verdict.verdict is Kind.AMBIGUOUS:
+        standing = f"one of {len(verdict.alternatives)}, {standing}"
+    return [
+        (
+            name_of(cause) if len(cause.parameters) == 1 else f"{name_of(cause)}: {name}",
+            size_words(estimate, _origin(verdict)),
+            interval_words(estimate, _origin(verdict)),
+            quantity(estimate.nominal, estimate.unit),
+            f"{100.0 * cause.probability:.0f} %",
+            standing,
+        )
+        for name, estimate in cause.largest.items()
+    ]
+
+
+def _levels(verdict: Verdict) -> list[Html]:
+    head = ("channel", "before, sigma", "after, sigma", "before", "after", "spread of the signal")
+    rows = [
+        (
+            name,
+            digits(e.before),
+            digits(e.after),
+            quantity(e.before_si, e.unit),
+            quantity(e.after_si, e.unit),
+            quantity(e.spread, e.unit),
+        )
+        for name, e in verdict.residuals.items()
+    ]
+    return [change_figure(verdict), table(head, rows)]
+
+
+def _pictures(verdict: Verdict, exhibit: ReportTraces) -> list[Html]:
+    before = [error.before for error in verdict.residuals.values()]
+    loud = sorted(range(len(before)), key=lambda c: -before[c])[:SHOWN]
+    shown = exhibit.traces[:DRAWN]
+    what = (
+        f"Fitted model: {' with '.join(map(spoken, exhibit.causes))} and commissioning errors."
+        if exhibit.causes
+        else "Fitted model: commissioning errors alone."
+    )
+    if verdict.verdict is Kind.UNKNOWN and exhibit.causes:
+        what += " It is the nearest that the library has, and was not accepted."
+    left = [
+        residuals_figure(exhibit.channels, traces, f"r{k}") for k, traces in enumerate(shown, 1)
+    ]
+    return [
+        section(
+            "Measured, nominal, fitted",
+            paragraph(what, "note"),
+            *(
+                trace_figure(exhibit, t, c, fitted_word(verdict), f"r{k}")
+                for k, t in enumerate(shown, 1)
+                for c in loud
+            ),
+            folded("What is left in every channel", *left),
+        ),
+        section(
+            "Where it was, and what is left",
+            folded(
+                "Before",
+                cells_figure(exhibit, exhibit.before, "band", "before"),
+                cells_figure(exhibit, exhibit.before, "time", "before"),
+            ),
+            cells_figure(exhibit, exhibit.after, "band", "after"),
+            cells_figure(exhibit, exhibit.after, "time", "after"),
+        ),
+    ]
+
+
+def _rivals(rivals: tuple[Rival, ...]) -> Html:
+    head = ("cause", "size fitted", "chi^2 more than the best", "why")
+    rows = [
+        (
+            " with ".join(map(spoken, rival.causes)),
+            _sizes(rival),
+            _chi2(rival.behind),
+            rival_words(rival, best=n == 0),
+        )
+        for n, rival in enumerate(rivals)
+    ]
+    return table(head, rows)
+
+
+def _sizes(rival: Rival) -> str:
+    if len(rival.sizes) > MANY:
+        size, unit = max(rival.sizes, key=lambda one: abs(one[0]))
+        return f"{len(rival.sizes)} numbers, up to {quantity(size, unit)}"
+    return ", ".join(quantity(size, unit) for size, unit in rival.sizes) or UNSURE
+
+
+def _chi2(value: float | None) -> str:
+    return f"{value:.0f}" if value is not None and value >= 100.0 else digits(value, ".2g")
+
+
+def _findable(verdict: Verdict) -> list[Html]:
+    known = {k: f for k, f in verdict.smallest_findable.items() if f.value is not None}
+    blind = [spoken(k) for k, f in verdict.smallest_findable.items() if f.value is None]
+    rows = [(spoken(label), quantity(f.value, f.unit)) for label, f in known.items()]
+    parts = [
+        paragraph(
+            "A cause of this size is found seven times out of ten by recordings like these.", "note"
+        ),
+        table(("cause", "smallest size"), rows),
+    ]
+    if len(rows) > 3 * SHOWN:
+        parts = [parts[0], folded(f"{len(rows)} causes", parts[1])]
+    if blind:
+        parts.append(
+            paragraph(
+                f"Nothing can be said about: {', '.join(blind)}. What even the largest size tried"
+                " would change here is no more than noise and commissioning errors may."
+            )
+        )
+    return parts
+
+
+def _leftover(verdict: Verdict) -> list[Html]:
+    left = verdict.leftover
+    if left is None:
+        return []
+    parts = [paragraph(f"Mean square of what is left: {left.mean_square:.3g} (1 is noise).")]
+    if not left.loud:
+        most = digits(verdict.statistics.misfit_threshold)
+        said = f"No band and no stretch of time passes {most} sigma, the most that rigs in order"
+        return [*parts, paragraph(f"{said} leave in these recordings.")]
+    if left.onset is not None:
+        parts.append(paragraph(f"First stretch beyond noise: from {left.onset:.2f} s."))
+    head = ("recording", "channel", "where", "score, sigma", "share of what is left")
+    rows = [
+        (
+            loud.recording,
+            loud.channel,
+            ends_words(loud),
+            digits(loud.score),
+            f"{100.0 * loud.share:.0f} %",
+        )
+        for loud in left.loud
+    ]
+    goes = [
+        f"{f.channel} goes along with {f.shape} (correlation {f.correlation:+.2f})"
+        for f in left.features
+        if abs(f.correlation) > 0.1
+    ]
+    return [*parts, table(head, rows), bullets(goes)]
+
+
+def _next(verdict: Verdict) -> list[Html]:
+    parts = [bullets(next_sentences(verdict))]
+    if verdict.next_experiment:
+        rows = [(p.programme, _chi2(p.separation)) for p in verdict.next_experiment]
+        parts.append(table(("programme", "chi^2 between the likest rivals"), rows))
+    return parts

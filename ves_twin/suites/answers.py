@@ -1,0 +1,101 @@
+"""Answer: what was said of a case, as it stands in a file of answers."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from ves_twin.core.errors import FileAccessError, InvalidInputError
+from ves_twin.core.whole_file import write_whole
+from ves_twin.diagnosis.verdict import Verdict
+
+
+@dataclass(frozen=True)
+class Answer:
+    """What was said of a case.
+
+    Attributes:
+        verdict: as in verdict.json, or "error".
+        causes: effect@target of each, the most probable first.
+        firm: whether each is called a fault for sure.
+        probability: of the first.
+        sizes: parameter -> (value, low, high, nominal), of all causes.
+        gain: share of the excess on held-out data that the extension took; None without.
+        seconds: that it took.
+        energies: mean z^2 on held-out data before and after; None without.
+        passed: whether the gate lets the extension through; None without held-out data.
+        behind: effect@target of a single cause -> chi^2 that it leaves more than the best.
+        programmes: offered next programme -> chi^2 by which it should part the causes.
+        scale: of the tolerances, if recordings of other rigs told it.
+    """
+
+    verdict: str
+    causes: Sequence[str] = ()
+    firm: Sequence[bool] = ()
+    probability: float = 0.0
+    sizes: Mapping[str, Sequence[float]] | None = None
+    gain: float | None = None
+    seconds: float = 0.0
+    energies: Sequence[float] | None = None
+    passed: bool | None = None
+    behind: Mapping[str, float] | None = None
+    programmes: Mapping[str, float] | None = None
+    scale: float | None = None
+
+    @staticmethod
+    def of(verdict: Verdict, seconds: float) -> Answer:
+        """From a verdict."""
+        gain = verdict.gain
+        sizes = {
+            f"{cause.effect}@{cause.target}:{name}": (p.value, p.low, p.high, p.nominal)
+            for cause in verdict.causes
+            for name, p in cause.parameters.items()
+        }
+        behind = {
+            r.causes[0]: r.behind
+            for r in verdict.rivals
+            if len(r.causes) == 1 and r.behind is not None
+        }
+        return Answer(
+            verdict.verdict.value,
+            [f"{cause.effect}@{cause.target}" for cause in verdict.causes],
+            [cause.firm for cause in verdict.causes],
+            verdict.causes[0].probability if verdict.causes else 0.0,
+            sizes,
+            None if gain is None else gain.share,
+            round(seconds, 1),
+            None if gain is None else (gain.before, gain.after),
+            None if gain is None else gain.passed,
+            behind,
+            {p.programme: p.separation for p in verdict.next_experiment},
+            verdict.statistics.tolerance_scale,
+        )
+
+
+def read_answers(path: Path) -> dict[str, Answer]:
+    """Answers of a file; `ves-twin blind score` marks anybody's.
+
+    Raises:
+        FileAccessError: it cannot be read.
+        InvalidInputError: not case -> {verdict, causes, ...}.
+    """
+    try:
+        content = json.loads(path.read_text(encoding="utf-8"))
+        return {str(case): Answer(**answer) for case, answer in content.items()}
+    except OSError as error:
+        raise FileAccessError(f"cannot read {path}: {error.strerror}") from None
+    except (ValueError, TypeError, AttributeError):
+        expected = 'answers: {"case-0001": {"verdict": "named", "causes": ["effect@target"]}}'
+        raise InvalidInputError(str(path), "something else", expected) from None
+
+
+def write_answers(found: Mapping[str, Answer], path: Path) -> None:
+    """Write them whole or not at all.
+
+    Raises:
+        FileAccessError: not writable.
+    """
+    content = {case: vars(answer) for case, answer in found.items()}
+    write_whole(path, json.dumps(content, indent=1) + "\n")

@@ -1,0 +1,150 @@
+"""draw_truths: what the cases of a suite hide, spread over causes and over sizes in sigma."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from ves_twin.core.errors import InvalidInputError
+from ves_twin.core.types import FloatArray
+from ves_twin.diagnosis.detectability import detectability
+from ves_twin.diagnosis.forward import Hypothesis
+from ves_twin.diagnosis.linearise import Linearisation
+from ves_twin.diagnosis.metric import Metric
+from ves_twin.diagnosis.whitening import Whitening
+from ves_twin.suites.bench import BlindBench
+from ves_twin.suites.truth import Hidden, HiddenCause, Truth
+
+LOUDNESS = (6.0, 40.0)
+"""Sizes in sigma that single causes are drawn from, log-uniform; none is fainter in the end."""
+
+PAIR_LOUDNESS = (10.0, 40.0)
+"""The same for each of two."""
+
+ATTEMPTS = 60
+"""Causes that are tried before a size in sigma is given up."""
+
+SECANTS = 4
+"""Runs at most to find the size of a cause that is as loud as asked."""
+
+
+@dataclass(frozen=True)
+class Loudness:
+    """How loud departures are at nominal: d^2 = <s, s>, nuisances marginalised.
+
+    Attributes:
+        base: nuisance columns of the programme.
+        whitening: noise as declared.
+    """
+
+    base: Linearisation
+    whitening: Whitening
+
+    def linear(self, shift: FloatArray) -> float:
+        """D by the columns at nominal: one run."""
+        change = self.base.runs.one(shift) - self.base.prediction
+        signature = self.whitening.apply(change)
+        return float(np.sqrt(max(float(signature @ self._metric.project(signature)), 0.0)))
+
+    def full(self, shift: FloatArray) -> float:
+        """D with the commissioning errors fitted by the full forward."""
+        return detectability(self.base, self.whitening, shift, rounds=0)
+
+    @cached_property
+    def _metric(self) -> Metric:
+        return Metric(self.whitening.apply(self.base.columns).T)
+
+
+def draw_truths(
+    bench: BlindBench,
+    counts: Mapping[Hidden, int],
+    loudness: Loudness,
+    rng: np.random.Generator,
+    spread: float = 1.0,
+) -> list[Truth]:
+    """What each case hides, in random order; causes with a twin only as confusable ones.
+
+    Args:
+        bench: the plant.
+        counts: how many of each sort.
+        loudness: of departures.
+        rng: of all draws.
+        spread: commissioning errors, in declared sd.
+
+    Raises:
+        InvalidInputError: a plant without causes of that sort.
+    """
+    sorts = [sort for sort, count in counts.items() for _ in range(count)]
+    rng.shuffle(sorts)
+    library = bench.forward.hypotheses
+    clear = [h for h in library if h.label not in bench.confusable]
+    truths = []
+    for n, sort in enumerate(sorts):
+        case = f"case-{n + 1:04d}"
+        causes: tuple[HiddenCause, ...] = ()
+        kind, size = "", 0.0
+        match Hidden(sort):
+            case Hidden.SINGLE:
+                causes = (_cause(clear, loudness, LOUDNESS, rng),)
+            case Hidden.CONFUSABLE:
+                group = [h for h in library if h.label in bench.confusable]
+                causes = (_cause(group, loudness, LOUDNESS, rng),)
+            case Hidden.PAIR:
+                first = _cause(clear, loudness, PAIR_LOUDNESS, rng)
+                rest = [h for h in clear if h.effect != first.effect]
+                causes = (first, _cause(rest, loudness, PAIR_LOUDNESS, rng))
+            case Hidden.OUTSIDE if rng.random() < 0.25:  # leave one out
+                causes = (_cause(library, loudness, PAIR_LOUDNESS, rng),)
+            case Hidden.OUTSIDE:
+                kind = str(rng.choice(sorted(bench.outside)))
+                size = _log_uniform(*bench.outside[kind], rng)
+        truths.append(Truth(case, Hidden(sort), causes, kind, size, spread))
+    return truths
+
+
+def _cause(
+    library: Sequence[Hypothesis],
+    loudness: Loudness,
+    limits: tuple[float, float],
+    rng: np.random.Generator,
+) -> HiddenCause:
+    if not library:
+        raise InvalidInputError("causes to hide", "none", "some of the plant's library")
+    for _ in range(ATTEMPTS):
+        hypothesis = library[int(rng.integers(len(library)))]
+        wanted = _log_uniform(*limits, rng)
+        found = _at_loudness(hypothesis, wanted, loudness, rng)
+        if found is not None and found.d >= limits[0]:  # commissioning errors, fitted, take some
+            return found
+    raise InvalidInputError("causes to hide", "all too faint", f"one that reaches d = {limits[0]}")
+
+
+def _at_loudness(
+    hypothesis: Hypothesis, wanted: float, loudness: Loudness, rng: np.random.Generator
+) -> HiddenCause | None:
+    """The cause at the size whose d is within a tenth of what is wanted; None if out of range."""
+    runs = loudness.base.runs
+    where = runs.indices(hypothesis)
+    low, high = np.array(hypothesis.smallest), np.array(hypothesis.largest)
+    sign = rng.choice(hypothesis.signs)
+    share = rng.uniform(0.2, 1.0, len(where)) if len(where) > 1 else np.ones(1)
+    size = float(np.sqrt(low[0] * high[0]) / high[0])  # of the largest
+    for _ in range(SECANTS):
+        shift = runs.depart(runs.origin, where, sign * size * share * high)
+        d = loudness.linear(shift)
+        if abs(np.log(max(d, 1e-6) / wanted)) < 0.1:
+            break
+        size *= float(np.clip(wanted / max(d, 1e-6), 0.05, 20.0))
+        if size > 1.0 or size * high[0] < low[0]:
+            return None
+    shift = runs.depart(runs.origin, where, sign * size * share * high)
+    names = hypothesis.parameters
+    departures = {name: float(shift[i]) for name, i in zip(names, where, strict=True)}
+    return HiddenCause(hypothesis.effect, hypothesis.target, departures, loudness.full(shift))
+
+
+def _log_uniform(low: float, high: float, rng: np.random.Generator) -> float:
+    return float(np.exp(rng.uniform(np.log(low), np.log(high))))

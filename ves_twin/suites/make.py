@@ -1,0 +1,146 @@
+"""make_suite: recordings with hidden effects in a folder, the truth of each sealed beside it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+
+from ves_twin.core.errors import FileAccessError, InvalidInputError
+from ves_twin.core.whole_file import whole_file
+from ves_twin.core.workers import Workers
+from ves_twin.diagnosis.linearise import linearise
+from ves_twin.diagnosis.preprocess import preprocess
+from ves_twin.diagnosis.whitening import whitening_declared
+from ves_twin.suites.aliases import stand_ins
+from ves_twin.suites.bench import BlindBench, BlindRig
+from ves_twin.suites.benches import bench_of
+from ves_twin.suites.draw import Loudness, draw_truths
+from ves_twin.suites.pinned import pinned_recipe
+from ves_twin.suites.recipe import Recipe
+from ves_twin.suites.save_bare import save_bare
+from ves_twin.suites.seal import new_key, seal
+from ves_twin.suites.suite import (
+    BASELINE,
+    FILE,
+    HELD_OUT,
+    RECORDING,
+    STANDSTILL,
+    Suite,
+    commissioning_file,
+)
+from ves_twin.suites.truth import Hidden, Truth
+
+Progress = Callable[[float, str], None]
+
+DRIFT = 0.3
+"""Commissioning sd by which a rig changes between its baseline and the case, of its spread."""
+
+LEAD = (2.0, 8.0)
+"""Motion before the piece that a cut recording is [s]."""
+
+
+def make_suite(
+    recipe: Recipe, folder: Path, key_file: Path, progress: Progress, workers: int = 1
+) -> Suite:
+    """Write a suite; one that was interrupted goes on where it was.
+
+    Args:
+        recipe: what it is asked to hold.
+        folder: for the recordings.
+        key_file: takes the key; it is what a diagnosis must not see.
+        progress: told how far it is.
+        workers: processes.
+
+    Raises:
+        UnknownNameError: no such plant or background.
+        InvalidInputError: a folder that holds something else, or a recipe that cannot be met.
+        FileAccessError: not writable.
+    """
+    bench = bench_of(recipe.bench)
+    recipe.check(bench)
+    key = _key(folder, key_file)
+    recipe = pinned_recipe(recipe, folder, key)
+    root = recipe.rng(1)
+    standstill = bench.record(BlindRig(bench.commissioned(root, recipe.spread)), "standstill", root)
+    save_bare(standstill, folder / STANDSTILL)
+    _commission(bench, recipe, folder)
+    truths = _truths(bench, recipe, progress, workers)
+    for n, truth in enumerate(truths):
+        progress(n / len(truths), "recordings")
+        sealed = folder / truth.case / "truth.sealed"
+        if not sealed.is_file():
+            whole = _record(bench, truth, recipe, folder, n)
+            with whole_file(sealed) as partial:
+                partial.write_bytes(seal(whole.to_json(), key))
+    excluded = {
+        t.case: tuple(c.label for c in t.causes)
+        for t in truths
+        if t.hidden is Hidden.OUTSIDE and t.causes
+    }
+    cases = tuple(t.case for t in truths)
+    suite = Suite(recipe.bench, cases, excluded, recipe.commissioned, recipe.baseline)
+    suite.save(folder)
+    return suite
+
+
+def _key(folder: Path, key_file: Path) -> str:
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        if key_file.is_file():
+            return key_file.read_text().strip()
+        if (folder / FILE).exists() or any(folder.glob("case-*")):
+            raise InvalidInputError(str(folder), "cases whose key is missing", "an empty folder")
+        key = new_key()
+        key_file.write_text(key + "\n")
+    except OSError as error:
+        raise FileAccessError(f"cannot write {error.filename}: {error.strerror}") from None
+    return key
+
+
+def _commission(bench: BlindBench, recipe: Recipe, folder: Path) -> None:
+    """Other rigs in order, each drawn for itself."""
+    for k in range(recipe.commissioned):
+        rng = recipe.rng(3, k)
+        rig = BlindRig(bench.commissioned(rng, recipe.spread), background=recipe.background)
+        save_bare(bench.record(rig, "train", rng), folder / commissioning_file(k + 1))
+
+
+def _truths(bench: BlindBench, recipe: Recipe, progress: Progress, workers: int) -> list[Truth]:
+    rng = recipe.rng(0)
+    nominal = bench.record(BlindRig(), recipe.programme, rng)
+    with Workers(workers) as shared:
+        runs = preprocess(bench.forward, [nominal], shared).runs
+        base = linearise(runs, runs.origin, progress)
+        loudness = Loudness(base, whitening_declared(runs))
+        truths = draw_truths(bench, recipe.counts, loudness, rng, recipe.spread)
+        left_out = [t for t in truths if t.hidden is Hidden.OUTSIDE and t.causes]
+        likes = dict(zip([t.case for t in left_out], stand_ins(runs, left_out), strict=True))
+    return [
+        replace(t, background=recipe.background, stand_ins=likes.get(t.case, ())) for t in truths
+    ]
+
+
+def _record(bench: BlindBench, truth: Truth, recipe: Recipe, folder: Path, number: int) -> Truth:
+    """Write the recordings of a case; its truth with every value of the rig."""
+    rng = recipe.rng(2, number)
+    usual = bench.commissioned(rng, truth.spread)
+    nominal = {p.name: p.nominal for p in bench.forward.parameters}
+    values = dict(usual)
+    for cause in truth.causes:
+        for name, departure in cause.departures.items():
+            values[name] = values.get(name, nominal[name]) + departure
+    truth = replace(truth, values=values, repaired=recipe.repaired)
+    rig = BlindRig(values, truth.outside, truth.outside_size, background=truth.background)
+    healthy = BlindRig(usual, background=truth.background)
+    place = folder / truth.case
+    lead = recipe.rng(4, number).uniform(*LEAD) if recipe.cut else 0.0
+    save_bare(bench.record(rig, recipe.programme, rng, lead), place / RECORDING)
+    held = healthy if recipe.repaired else rig
+    save_bare(bench.record(held, "held_out", rng, lead), place / HELD_OUT)
+    if recipe.baseline:
+        rng = recipe.rng(5, number)
+        before = bench.again(usual, rng, truth.spread, DRIFT * truth.spread)
+        healthy = replace(healthy, values=before)
+        save_bare(bench.record(healthy, recipe.programme, rng), place / BASELINE)
+    return truth
