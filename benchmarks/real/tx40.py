@@ -76,10 +76,6 @@ def description() -> str:
     for body, mass in zip(BODIES, (10.5, 3.6, 4.07, 3.62, 1.02, 0.2), strict=True):
         text += f'[[parameters]]\nbody = "{body}"\nattribute = "mass"\nsd = {0.05 * mass}\n'
     torques = [f"torque.{k}" for k in range(1, 7)]
-    crossed = [
-        f"cross_talk.{a}.{b}" for a in range(1, 7) for b in range(1, 7) if a != b
-    ]  # one signal of six columns would be needed; not offered
-    del crossed
     return text + effects(
         ("viscous_friction", JOINTS),
         ("coulomb_friction", JOINTS),

@@ -10,7 +10,6 @@ import numpy as np
 from ves_twin.core.recording.recording import Recording
 from ves_twin.core.workers import Workers
 from ves_twin.diagnosis.assess import pull_limit
-from ves_twin.diagnosis.build_up import build_up
 from ves_twin.diagnosis.build_up.build_up import Built, build_up
 from ves_twin.diagnosis.build_up.halves import split
 from ves_twin.diagnosis.build_up.result import BuildUp

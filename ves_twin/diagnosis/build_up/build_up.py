@@ -10,6 +10,7 @@ from scipy.stats import norm
 
 from ves_twin.core.types import FloatArray
 from ves_twin.diagnosis.adequacy import cells, misfit
+from ves_twin.diagnosis.build_up.discrepancy import discrepancy
 from ves_twin.diagnosis.build_up.halves import Halves, carried_point, halves_at
 from ves_twin.diagnosis.build_up.paired import loss
 from ves_twin.diagnosis.build_up.proof import Bench, Proof, prove
@@ -29,6 +30,11 @@ from ves_twin.diagnosis.whitening import Whitening
 
 ROUNDS = 3
 """Times that columns are computed anew where a choice of causes, fitted in full, has moved them."""
+
+EVEN = 1.0
+"""White noise that is added to the discrepancy where sizes are fitted in full, as a share of its
+variance: fitted by innovations alone, a friction with a gap slides into a wrong one that turns
+round at the right instants and is off by kilonewtons in between (the damper)."""
 
 MOVED = 0.05
 """Share of what is left by which a full fit may differ from the linear one; TX40 moves by less
@@ -68,8 +74,9 @@ class _Builder:
         causes = self.desk.first.screen.bank.hypotheses
         return halves_at(self.fitted, self.held, point, causes, present, self.desk.progress)
 
-    def evidence(self, whitening: Whitening) -> Evidence:
-        """The fitted half, whitened by a discrepancy."""
+    def evidence(self, residual: FloatArray) -> Evidence:
+        """The fitted half with the discrepancy that a residual shows, as sizes are fitted by."""
+        whitening = discrepancy(self.fitted.runs, residual, EVEN)
         return Evidence(self.fitted.runs, self.fitted.measured, whitening)
 
     def chosen(self) -> tuple[Halves, list[int], FloatArray]:
@@ -81,7 +88,7 @@ class _Builder:
             chosen = selector.run(_places(halves, present))
             before = {trial.cause.label for trial in present}
             best = halves.regression.fit(chosen)
-            evidence, linear = self.evidence(best.whitening), best.residual
+            evidence, linear = self.evidence(best.residual), best.residual
             fit = self.refined(halves, chosen, point, evidence)
             left = bare_residual(evidence, fit)
             present = _present([halves.regression.trials[n] for n in chosen], fit)
@@ -133,7 +140,7 @@ def build_up(desk: FitContext, start: Explanation, fitted: Dataset, held: Datase
     proof = _no_worse(halves, prove(halves.regression, halves.held, chosen))
     if not proof.tested:
         return None
-    evidence = builder.evidence(proof.bench.fit.whitening)
+    evidence = builder.evidence(proof.bench.fit.residual)
     final = builder.refined(halves, proof.proved, point, evidence, probed=True)
     before = builder.refined(halves, (), point, evidence)
     final = _widened(evidence, final, desk.settings.confidence)

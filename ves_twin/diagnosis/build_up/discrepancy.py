@@ -19,7 +19,7 @@ WHITE = 0.01
 range to 20 dB, beyond which slow causes would be whitened away. Chosen on TX40 and the damper."""
 
 
-def discrepancy(runs: Runs, residual: FloatArray) -> Whitening:
+def discrepancy(runs: Runs, residual: FloatArray, white: float = WHITE) -> Whitening:
     """Whitening by which a residual is white: sensor noise and model error together.
 
     An autoregression of each channel by Yule-Walker, pooled over all recordings, then the inverse
@@ -29,13 +29,14 @@ def discrepancy(runs: Runs, residual: FloatArray) -> Whitening:
     Args:
         runs: whose rows these are.
         residual: measured less predicted (rows, c).
+        white: noise that is added, as a share of the variance.
     """
     covariance = _autocovariance(runs, residual)
     channels = [runs.forward.channels[c] for c in runs.columns]
     declared = np.array([runs.grids[0].autocovariance(c.sd, ORDER, c.corner) for c in channels])
     quiet = covariance[:, 0] < declared[:, 0]
     covariance[quiet] = declared[quiet]
-    covariance[:, 0] *= 1.0 + WHITE
+    covariance[:, 0] *= 1.0 + white
     copies, width = len(runs.slices), len(channels)
     plain = Whitening(
         runs,

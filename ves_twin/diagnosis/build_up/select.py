@@ -56,7 +56,7 @@ class Selector:
         gains = self.regression.gains(fit, rest)
         single = max(rest, key=gains.of)
         pair = self._pair(gains, rest)
-        return [[single], *([list(pair)] if pair else [])]
+        return [self.swapped(few) for few in ([single], list(pair or ())) if few]
 
     def price(self, samples: float, width: int) -> float:
         """Chi^2 that trials must take to enter."""
