@@ -81,7 +81,7 @@ class _Builder:
 
     def chosen(self) -> tuple[Halves, list[int], FloatArray]:
         """Trials worth a proof, about the point where all of them are fitted in full."""
-        point, present = self.fitted.runs.origin, ()
+        point, present = self.fitted.runs.origin, tuple[Trial, ...]()
         halves = self.halves(point, present)
         for _ in range(ROUNDS):
             selector = Selector(halves.regression)
@@ -148,7 +148,10 @@ def build_up(desk: FitContext, start: Explanation, fitted: Dataset, held: Datase
     final, before = _in_noise(plain, final), _in_noise(plain, before)
     found = _explained(desk, start, final) if proof.proved else start
     there = held.runs.one(carried_point(fitted.runs, held.runs, final.shift))
-    ends = bare_residual(evidence, final), held.measured - there
+    ends = (
+        np.asarray(bare_residual(evidence, final), float),
+        np.asarray(held.measured - there, float),
+    )
     return Built(found, before, report_of(halves, proof, ends))
 
 

@@ -94,7 +94,7 @@ def _half(
     """What is to be explained: measured less predicted, with what is at work put back."""
     runs = seen.runs
     local = linearise(runs, point)
-    target = seen.measured.astype(float) - local.prediction
+    target = np.asarray(seen.measured - local.prediction, float)
     at_work = {trial.cause.label: trial for trial in present}
     moved = np.zeros(len(runs.coordinates), bool)
     for trial, column in zip(trials, columns, strict=True):
@@ -102,7 +102,7 @@ def _half(
             target = target + column.sum(axis=0)
             moved[runs.indices(trial.cause)] = True
     pull = np.where(moved[runs.nuisances], 0.0, point[runs.nuisances] / runs.sd[runs.nuisances])
-    target = target + np.tensordot(pull, local.columns[:-1], axes=1)
+    target = np.asarray(target + np.tensordot(pull, local.columns[:-1], axes=1), float)
     return _sorted(seen, local, target, columns, same)
 
 

@@ -87,11 +87,12 @@ class Bench:
     @cached_property
     def pieces(self) -> IntArray:
         """Number of the contiguous stretch of each held-out sample (rows,)."""
-        any_kept = self.whole.any(axis=1)
-        numbers, start = [], 0
+        any_kept = np.asarray(self.whole.any(axis=1))
+        numbers: list[IntArray] = []
+        start = 0
         for k, block in enumerate(self.own_colour.times()):
             rows = any_kept[start : start + len(block)]
-            steps = np.cumsum(np.append(False, np.diff(rows.astype(int)) != 0))
+            steps = np.cumsum(np.append(0, np.abs(np.diff(rows.astype(int)))))
             numbers.append(steps + (numbers[-1][-1] + 1 if k and len(numbers[-1]) else 0))
             start += len(block)
         return np.concatenate(numbers)

@@ -163,7 +163,7 @@ class Regression:
         target = whitening.apply(self.half.target.astype(np.float32))
         hessian = design.T @ design + np.eye(len(scale))
         gradient = design.T @ target
-        shares = np.linalg.solve(hessian, gradient)
+        shares = np.asarray(np.linalg.solve(hessian, gradient), float)
         residual = self.half.target - np.tensordot(shares * scale, columns, axes=1)
         samples = float(np.sum(whitening.freedom))
         return LinearFit(

@@ -131,7 +131,7 @@ class Selector:
         if len(offer) < 3:
             return gains.of(*offer) - self.price(samples, width)
         once = self.price(samples, 1) - np.log(samples)
-        return gains.of(*offer) - width * float(np.log(samples)) - once
+        return float(gains.of(*offer) - width * np.log(samples) - once)
 
     def _pair(self, gains: Gains, rest: list[int]) -> tuple[int, int] | None:
         """The two trials of different causes that take most together."""

@@ -76,7 +76,7 @@ def _rows(one: Proved, verdict: Verdict) -> list[tuple[str, ...]]:
         f"{name} {digits(before)} to {quantity(after, verdict.left[name].unit)}"
         for name, (before, after) in ranked
     )
-    rows = []
+    rows: list[tuple[str, ...]] = []
     for n, (name, size) in enumerate(one.parameters.items()):
         label = spoken(one.label)
         rows.append(
