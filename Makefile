@@ -22,25 +22,28 @@ demo-diagnosis: .venv/.run
 	$(BIN)/ves-twin blind reveal --out $(HIDDEN)
 
 test: .venv/.dev lint layers types
-	$(BIN)/python -m pytest -n 2 --dist loadgroup --durations=25 --costs runs/test-costs.csv
+	$(BIN)/python -m pytest -n 2 --dist worksteal --durations=25 --costs runs/test-costs.csv
 
 # Statistical suites at full size as well; ends with one table of them.
-nightly: .venv/.dev lint layers types
-	$(BIN)/python -m pytest -n 2 --dist loadgroup --nightly --costs runs/nightly-costs.csv
-	$(MAKE) attack
+nightly: .venv/.dev lint layers types attack
+	$(BIN)/python -m pytest -n 2 --dist worksteal --nightly --mutations 10000 \
+		--costs runs/nightly-costs.csv
 
 check: .venv/.dev lint layers types fast
 
 fast: .venv/.dev
-	$(BIN)/python -m pytest -n 2 --dist loadgroup -m "not slow"
+	$(BIN)/python -m pytest -n 2 --dist worksteal -m "not slow"
 
 fuzz: .venv/.dev
 	$(BIN)/python -m pytest -n 2 tests/fuzz --mutations 10000
 
-# Inputs of a standing attack on every reader, N of them; a seed is drawn and printed.
+# A standing attack: N inputs on every reader, KILLS of runs and as many on other commands that
+# write, with two at a time in one folder; seeds are drawn and printed.
 N ?= 20000
+KILLS ?= 200
 attack: .venv/.dev
 	$(BIN)/python tests/attack/attack_inputs.py --inputs $(N) --out runs/attack.jsonl
+	$(BIN)/python tests/attack/attack_commands.py --kills $(KILLS) --others $(KILLS)
 
 # Mutants of the kernels and of the diagnosis core; hours, and goes on where it stopped.
 mutation: .venv/.dev

@@ -14,7 +14,8 @@ from collections import Counter
 from scipy.stats import binomtest
 
 import ves_twin as vt
-from ves_twin.machines.ves2.compare import Named, compare
+from ves_twin.machines.compare import compare
+from ves_twin.machines.machine import Named
 
 PLANT = "ves2_pressure_fast"
 

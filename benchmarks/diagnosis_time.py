@@ -26,9 +26,10 @@ from ves_twin.diagnosis.diagnose import diagnose
 from ves_twin.diagnosis.forward import Excitation
 from ves_twin.diagnosis.settings import Settings
 from ves_twin.diagnosis.verdict import Verdict
+from ves_twin.machines.compare import compare
+from ves_twin.machines.diagnose import verdict_on
+from ves_twin.machines.machine import Named
 from ves_twin.machines.pendulum.forward import START, STEP, Pendulum
-from ves_twin.machines.ves2.compare import Named, compare
-from ves_twin.machines.ves2.diagnose_rig import diagnose_rig
 from ves_twin.plant.plant import Plant
 from ves_twin.report.comparison.page import comparison_page
 from ves_twin.suites import pendulum as generator
@@ -133,7 +134,7 @@ def ves2_rows(folder: Path) -> None:
         timed(
             "ves2_fast",
             case,
-            lambda r=records[name]: said(diagnose_rig([r], plant, settings=settings).verdict),
+            lambda r=records[name]: said(verdict_on([r], plant, settings=settings)),
         )
 
 

@@ -107,6 +107,8 @@ def _nodes(node: ast.AST, function: str, result: str = "") -> Iterator[tuple[str
         inside = [node.value] if node.value else []
     elif isinstance(node, ast.Raise | ast.JoinedStr | ast.Import | ast.ImportFrom):
         return
+    elif isinstance(node, ast.keyword) and node.arg == "strict":
+        return  # of zip: it guards lengths that are equal
     else:
         inside = list(ast.iter_child_nodes(node))
     if isinstance(node, ast.Return):

@@ -68,9 +68,14 @@ ROOMS = (
     ),
     Room(
         (f"{LOOP}/loop.py",),
-        tuple(
-            f"tests/simulator/test_{name}.py"
-            for name in ("reference", "simulator", "sensor_in_the_rig", "hydraulics", "clock")
+        (
+            "tests/simulator/test_reference.py",
+            "tests/simulator/test_simulator.py",
+            "tests/simulator/test_sensor_in_the_rig.py",
+            "tests/simulator/test_hydraulics.py",
+            "tests/simulator/test_hydraulic_faults.py",
+            "tests/simulator/test_clock.py",
+            "tests/effects/test_timing_effects.py",
         ),
         True,
     ),
@@ -82,8 +87,9 @@ ROOMS = (
         tuple(
             f"tests/diagnosis/test_{name}.py"
             for name in (
-                "whitening", "refine", "search", "gain", "assess", "explain", "diagnose",
-                "build_up", "bad_input", "differential", "grid", "plan", "forecast", "lacking",
+                "whitening", "refine", "search", "search_steps", "gain", "assess", "explain",
+                "diagnose", "build_up", "bad_input", "differential", "grid", "plan", "forecast",
+                "lacking",
             )
         ),
         False,

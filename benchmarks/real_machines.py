@@ -20,8 +20,7 @@ import numpy as np
 from real.machine import Set
 
 from ves_twin.diagnosis.settings import Settings
-from ves_twin.machines.mjcf.diagnose_mjcf import MjcfDiagnosis, diagnose_mjcf
-from ves_twin.machines.mjcf.extend import write_rig
+from ves_twin.machines.diagnose import Diagnosis, diagnose
 from ves_twin.report.diagnosis.page import diagnosis_page
 from ves_twin.report.page import write_page
 
@@ -63,9 +62,7 @@ HEAD = (
 def row(one: Set, folder: Path) -> str:
     """Diagnose one set, keep its page and its plant, and say what came out."""
     begin = time.process_time()
-    found = diagnose_mjcf(
-        one.fitted, one.rig, held_out=one.held_out, settings=Settings(), progress=tell
-    )
+    found = diagnose(one.fitted, one.rig, held_out=one.held_out, settings=Settings(), progress=tell)
     minutes = (time.process_time() - begin) / 60.0
     keep(one, found, folder)
     verdict = found.verdict
@@ -84,7 +81,7 @@ def row(one: Set, folder: Path) -> str:
     )
 
 
-def errors(one: Set, found: MjcfDiagnosis) -> tuple[str, str]:
+def errors(one: Set, found: Diagnosis) -> tuple[str, str]:
     """Pooled error on held-out recordings before and after: of one channel its rms, of many the
     share of their norm."""
     gain = found.verdict.gain
@@ -100,12 +97,12 @@ def errors(one: Set, found: MjcfDiagnosis) -> tuple[str, str]:
     return f"{before:.1f} %", f"{after:.1f} %"
 
 
-def keep(one: Set, found: MjcfDiagnosis, folder: Path) -> None:
+def keep(one: Set, found: Diagnosis, folder: Path) -> None:
     name = one.name.replace(", ", "-").replace(" ", "-")
     found.verdict.save(folder / f"{name}.verdict.json")
     write_page(folder / f"{name}.html", diagnosis_page(found.verdict, one.name))
     if found.extended is not None:
-        write_rig(found.extended, folder / f"{name}.plant.toml", found.verdict.words)
+        found.extended.save(folder / f"{name}.plant.toml", found.verdict.words)
 
 
 def tell(share: float, what: str) -> None:

@@ -31,7 +31,7 @@ FIGURES = pytest.StashKey[list[Figure]]()
 
 def pytest_addoption(parser: pytest.Parser) -> None:
     parser.addoption(
-        "--mutations", metavar="N", type=int, help="harmed files of tests/fuzz instead of 1000"
+        "--mutations", metavar="N", type=int, default=1000, help="harmed files of tests/fuzz"
     )
     parser.addoption("--figures", metavar="FILE", help="write the measured figures as a page")
 

@@ -36,6 +36,7 @@ def test_package_and_help_load_nothing_heavy(code):
 
 
 @pytest.mark.nightly
+@pytest.mark.timeout(900)  # builds, installs, compiles from nothing: a minute alone
 def test_wheel_carries_models_and_scenarios_and_works_from_another_folder(tmp_path):
     build = [sys.executable, "-m", "pip", "wheel", "--quiet", "--no-deps", "--no-build-isolation"]
     subprocess.run([*build, "--wheel-dir", str(tmp_path), str(ROOT)], check=True)

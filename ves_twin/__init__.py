@@ -13,8 +13,12 @@ __version__ = "0.1.0"
 if TYPE_CHECKING:
     from ves_twin.core.recording.files import load_recording
     from ves_twin.core.recording.recording import Recording
-    from ves_twin.machines.ves2.diagnose_rig import effects_of
-    from ves_twin.machines.ves2.diagnose_rig import verdict_on as diagnose
+    from ves_twin.machines.compare import compare
+    from ves_twin.machines.diagnose import verdict_on as diagnose
+    from ves_twin.machines.machine import Machine
+    from ves_twin.machines.plan import plan
+    from ves_twin.machines.trend import trend
+    from ves_twin.machines.ves2.effects_of import effects_of
     from ves_twin.plant.plant import Plant
     from ves_twin.scenario.schema import Scenario
     from ves_twin.simulator.outcome import Outcome
@@ -23,31 +27,39 @@ if TYPE_CHECKING:
     from ves_twin.simulator.simulator import Simulator
 
 _HOMES = {
+    "Machine": "ves_twin.machines.machine",
     "Outcome": "ves_twin.simulator.outcome",
     "Plant": "ves_twin.plant.plant",
     "Recording": "ves_twin.core.recording.recording",
     "Scenario": "ves_twin.scenario.schema",
     "Simulator": "ves_twin.simulator.simulator",
-    "diagnose": "ves_twin.machines.ves2.diagnose_rig:verdict_on",
-    "effects_of": "ves_twin.machines.ves2.diagnose_rig",
+    "compare": "ves_twin.machines.compare",
+    "diagnose": "ves_twin.machines.diagnose:verdict_on",
+    "effects_of": "ves_twin.machines.ves2.effects_of",
     "load_recording": "ves_twin.core.recording.files",
+    "plan": "ves_twin.machines.plan",
     "record": "ves_twin.simulator.simulate",
     "replay": "ves_twin.simulator.replay",
     "simulate": "ves_twin.simulator.simulate",
+    "trend": "ves_twin.machines.trend",
 }
 
 __all__ = [
+    "Machine",
     "Outcome",
     "Plant",
     "Recording",
     "Scenario",
     "Simulator",
+    "compare",
     "diagnose",
     "effects_of",
     "load_recording",
+    "plan",
     "record",
     "replay",
     "simulate",
+    "trend",
 ]
 
 

@@ -15,7 +15,7 @@ from ves_twin.core.signals import SIGNALS
 from ves_twin.data.import_map import ImportMap
 from ves_twin.diagnosis.verdict import Verdict
 from ves_twin.machines.mjcf.description import KIND, RigDescription
-from ves_twin.machines.mjcf.experiment import RigExperiment
+from ves_twin.machines.mjcf.experiment import MjcfExperiment
 from ves_twin.procedures.registry import PROCEDURES
 from ves_twin.scenario.experiment import Experiment
 from ves_twin.scenario.schema import Scenario
@@ -75,7 +75,7 @@ _HEADS = {
     " worked example in [measured data](../measured-data.md#map).",
     "experiment": "# Experiment\n\nTOML, read by `ves-twin compare --experiment` and `ves-twin diagnose --experiment`;"
     " see [measured data](../measured-data.md#experiment-file).",
-    "rig-experiment": "# Rig experiment\n\nTOML, the `--experiment` of a rig of two files;"
+    "rig-experiment": "# Rig experiment\n\nTOML, the `--experiment` of an MJCF machine;"
     " see [measured data](../measured-data.md#experiment-file).",
     "recording": "# Recording\n\n`recording.parquet`: a column `t` [s] and a column for each axis of each signal, as doubles. The metadata are JSON"
     " under the Parquet key `ves_twin`; while a run goes on, the same rows are in `recording.arrows`.",
@@ -90,7 +90,7 @@ def format_pages() -> dict[str, str]:
         "rig": RigDescription.model_json_schema(),
         "import-map": ImportMap.model_json_schema(),
         "experiment": Experiment.model_json_schema(),
-        "rig-experiment": RigExperiment.model_json_schema(),
+        "rig-experiment": MjcfExperiment.model_json_schema(),
         "recording": TypeAdapter(RecordingInfo).json_schema(),
         "verdict": _verdict_schema(),
     }

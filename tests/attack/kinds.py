@@ -25,7 +25,7 @@ from ves_twin.data.inspect_log import TableReport, inspect_log
 from ves_twin.data.inspection_text import inspection_text
 from ves_twin.data.open_log import open_log
 from ves_twin.envs.rig_set import RigSet
-from ves_twin.machines.mjcf.experiment import RigExperiment
+from ves_twin.machines.mjcf.experiment import MjcfExperiment
 from ves_twin.machines.mjcf.machine import Rig
 from ves_twin.scenario.setpoint_file import read_setpoints
 from ves_twin.suites.answers import read_answers
@@ -180,7 +180,7 @@ SETPOINTS = ("t,leg.command.1,leg.command.2,leg.command.3,leg.command.4,leg.comm
 OWN = (
     Kind("rig.toml", 0.06, _text(_files("models/rigs", "*.toml"), True), _machine),
     Kind("model.xml", 0.03, _text(_files("models/rigs", "emps.xml"), False), _model),
-    Kind("rig_experiment.toml", 0.04, _text(lambda: [RIG_EXPERIMENT], True), RigExperiment.load),
+    Kind("rig_experiment.toml", 0.04, _text(lambda: [RIG_EXPERIMENT], True), MjcfExperiment.load),
     Kind("set.toml", 0.03, _text(_files("models/rig_sets", "*.toml"), True),
          lambda p: RigSet.load(str(p))),
     Kind("claims.toml", 0.02, _text(_files("models/thesis", "claims.toml"), True),

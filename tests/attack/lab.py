@@ -53,7 +53,7 @@ def csv(chance: random.Random) -> bytes:
 
 def packed_csv(chance: random.Random) -> bytes:
     content = csv(chance)
-    if chance.random() < 0.05:
+    if chance.random() < 0.02:
         content = b"t,x\n0,1\n1,2\n" + chance.choice((b"1", b"0.1,2\n")) * (4 * 10**7)
     return gzip.compress(content, 1)
 
@@ -207,6 +207,9 @@ def mcap(chance: random.Random) -> bytes:
                 else chance.randbytes(chance.choice((0, 8, 60)))
             )
             writer.add_message(channel, chance.choice((i * 10**7, i, 2**63)), data, topic)
+    if chance.random() < 0.01:  # near the limit of a message, and all of it lists
+        channel = writer.register_channel("/c", "json", writer.register_schema("c", "", b""))
+        writer.add_message(channel, 0, b"[" + b"[]," * 10**7 + b"0]", 0)
     writer.finish()
     return sink.getvalue()
 
@@ -214,8 +217,6 @@ def mcap(chance: random.Random) -> bytes:
 def _json(chance: random.Random, i: int) -> bytes:
     if chance.random() < 0.02:
         return chance.choice((b"[" * 10**5, b'{"x":' * 1000, b"9" * 5000, b"NaN", b'"\xff"', b"{"))
-    if chance.random() < 0.002:
-        return b"[" + b"[]," * 10**7 + b"0]"
     message = {"x": 0.1 * i, "y": [i] * chance.choice((0, 3, 100)), "s": "a", "n": None,
                "stamp": {"sec": i, "nanosec": chance.choice((5, -1, 1e300, "a", 10**30))}}  # fmt: skip
     return json.dumps(message).encode()

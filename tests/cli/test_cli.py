@@ -14,7 +14,7 @@ import pytest
 
 from ves_twin.cli.main import COMMANDS, main
 from ves_twin.core.recording.files import load_recording
-from ves_twin.procedures.procedure import Account, Procedure, RunContext
+from ves_twin.procedures.procedure import Procedure, Result, RunContext
 from ves_twin.scenario.load import procedure_questions, scenario_questions
 from ves_twin.simulator.outcome import Outcome
 
@@ -43,8 +43,8 @@ def test_json_output_is_one_object_and_nothing_else(capsys, tmp_path):
 class _Endless(Procedure):
     """Ends with numbers that JSON does not know, as `confirm_by_run` may."""
 
-    def carry_out(self, conduct: RunContext) -> Account:
-        return Account(Outcome.COMPLETED, {"growth": math.inf, "sd": [math.nan, 1.0]})
+    def carry_out(self, conduct: RunContext) -> Result:
+        return Result(Outcome.COMPLETED, {"growth": math.inf, "sd": [math.nan, 1.0]})
 
 
 def test_a_procedure_s_json_has_null_for_what_is_not_finite(capsys, tmp_path, monkeypatch):

@@ -13,9 +13,10 @@ from ves_twin.core.recording.recording import Recording, RecordingInfo
 from ves_twin.diagnosis.diagnose import diagnose
 from ves_twin.diagnosis.forward import Excitation
 from ves_twin.diagnosis.settings import Settings
+from ves_twin.machines.diagnose import Diagnosis
 from ves_twin.machines.pendulum.forward import Pendulum
-from ves_twin.machines.ves2.diagnose_rig import RigDiagnosis
 from ves_twin.machines.ves2.forward import DRIVE
+from ves_twin.machines.ves2.ves2_machine import Ves2Machine
 
 SHORT = {"run.duration": 2.0, "run.settle": 0.3}
 
@@ -56,8 +57,9 @@ def found(monkeypatch, recording):
     setpoints = Excitation.of(load_recording(Path(recording)), DRIVE, "next")
     plant = vt.Plant.load("ves2").extended(vt.effects.CoulombFriction("leg.3", level=60.0))
     scenario = vt.Scenario.load("identify_fast")
-    result = RigDiagnosis(verdict, plant, "there were no held-out recordings", setpoints, scenario)
-    monkeypatch.setattr("ves_twin.machines.ves2.diagnose_rig.diagnose_rig", lambda *a, **k: result)
+    machine, why = Ves2Machine(plant, scenario), "there were no held-out recordings"
+    result = Diagnosis(verdict, machine, machine, why, setpoints)
+    monkeypatch.setattr("ves_twin.machines.diagnose.diagnose", lambda *a, **k: result)
     return verdict
 
 

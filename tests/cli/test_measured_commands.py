@@ -8,6 +8,8 @@ import pytest
 import ves_twin as vt
 from ves_twin.cli.main import main
 from ves_twin.core.recording.files import load_recording, save_recording
+from ves_twin.data.import_map import ImportMap
+from ves_twin.machines.load import open_machine
 
 SCENARIO = {
     "run.duration": 6.0,
@@ -128,6 +130,16 @@ def test_start_and_end_cut_and_keep_what_they_say(lab, capsys):
     recording = load_recording(lab / "sub" / "rec.parquet")
     assert recording.time[-1] == pytest.approx(1.5, abs=0.013)
     assert recording.info.imported["zero"] == pytest.approx(51.0, abs=0.013)
+
+
+def test_a_lab_file_of_ves_ii_is_read_by_its_map_as_its_import_is(lab):
+    text = '[clock]\ncolumn = "Time (ms)"\n[[channel]]\nfrom = "L1 [mm]"\nto = "leg.length.1"\n'
+    (lab / "m.toml").write_text("schema = 1\n" + text)
+    assert main(["import", "lab.csv", "--map", "m.toml", "--out", "rec.parquet"]) == 0
+    machine = open_machine("ves2_fast", ImportMap.load("m.toml"))
+    read, imported = machine.read("lab.csv"), machine.read("rec.parquet")
+    assert np.array_equal(read["leg.length"], imported["leg.length"], equal_nan=True)
+    assert np.array_equal(read.time, imported.time)
 
 
 def test_bad_input_gets_one_line_and_writes_nothing(lab, capsys):

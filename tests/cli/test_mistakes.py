@@ -48,7 +48,6 @@ def bench(tmp_path, monkeypatch):
         ("run position_sine --seed x", "run: argument --seed: invalid int value: 'x'"),
         ("compare lab.csv --experiment lab.toml", "`ves-twin import` makes one of a log"),
         ("trend . --plant my_rig.toml", "plant file 'my_rig.toml' does not exist"),
-        ("trend . --plant ves2", "a rig of two files; VES II is not followed"),
         (
             "run position_sine --set effects.valve_null.leg.3.null=6",
             "got 6, expected -0.05 to 0.05\n",

@@ -41,6 +41,7 @@ def result(project: Path, cache: Path) -> str:
 
 
 @pytest.mark.nightly
+@pytest.mark.timeout(900)  # three compilations from nothing: a minute alone
 def test_fresh_and_cached_compile_agree_and_an_edited_helper_is_compiled_anew(tmp_path):
     project = copy_of_the_project(tmp_path / "project")
     cache = tmp_path / "cache"

@@ -195,6 +195,13 @@ def test_a_message_and_a_line_have_limits_of_their_own(tmp_path, monkeypatch):
         inspect_log(open_log(tmp_path / "a.csv", Limits.of(["line=40kB"])))
 
 
+def test_a_byte_of_json_counts_four_times(tmp_path):
+    write_mcap(tmp_path / "a.mcap", b'{"x": [' + b"[]," * 3_000_000 + b"0]}", 1)
+    with pytest.raises(InvalidInputError, match="--limit message="):
+        inspect_log(open_log(tmp_path / "a.mcap"))
+    assert inspect_log(open_log(tmp_path / "a.mcap", Limits.of(["message=40MB"]))).tables
+
+
 def test_a_large_file_may_hold_many_times_its_size(tmp_path):
     path = tmp_path / "a.npy"
     np.save(path, np.arange(1000.0))

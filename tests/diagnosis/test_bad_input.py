@@ -52,14 +52,13 @@ def test_holes_are_left_out_and_told_and_the_cause_is_still_named(settings):
 
 
 @pytest.mark.slow
-def test_rigs_in_order_with_holes_are_left_in_peace(settings, cases):
-    count = cases(40)
+def test_rigs_in_order_with_holes_are_left_in_peace(settings):
     said = [
         diagnose(Toy(), [holed(record(np.random.default_rng(s)))], settings=settings).verdict
-        for s in range(count)
+        for s in range(40)
     ]
     # alpha is 0.2 % for each threshold: 2 of 40 has a probability of 1 %
-    assert sum(kind is not Kind.NOTHING for kind in said) <= count // 40
+    assert sum(kind is not Kind.NOTHING for kind in said) <= 1
 
 
 def test_what_is_drawn_across_a_hole_does_not_matter(settings, monkeypatch):

@@ -74,6 +74,29 @@ def test_a_kept_bank_of_a_plant_whose_code_has_changed_is_built_anew(runs, tmp_p
     assert np.array_equal(read.base.prediction, fresh.base.prediction)
 
 
+@pytest.mark.parametrize("harm", [b"", b"no zip", None], ids=["empty", "other", "a byte"])
+def test_what_is_kept_and_damaged_is_made_anew(runs, tmp_path, harm):
+    settings = Settings(nulls=8, cache=tmp_path, simulated_nulls=False)
+    rng = np.random.default_rng(3)
+    rigs = [preprocess(Toy(), [record(rng, spread=2.0)]) for _ in range(3)]
+
+    def kept():
+        bank = cached_bank(runs, tmp_path, lambda: build_bank(runs))
+        limits = cached_thresholds(bank, whitening_declared(runs), settings)
+        scale = cached_scale([(rig.runs, rig.measured) for rig in rigs], tmp_path)
+        return bank.bent, limits.effects, scale
+
+    before = kept()
+    files = list(tmp_path.glob("*.npz"))
+    assert len(files) == 3
+    for path in files:
+        content = bytearray(path.read_bytes())
+        content[len(content) // 2] ^= 1
+        path.write_bytes(content if harm is None else harm)
+    for old, new in zip(before, kept(), strict=True):
+        np.testing.assert_array_equal(new, old)
+
+
 def test_kept_thresholds_and_scales_of_changed_code_are_not_read(runs, tmp_path, monkeypatch):
     settings = Settings(nulls=8, cache=tmp_path, simulated_nulls=False)
     rng = np.random.default_rng(3)

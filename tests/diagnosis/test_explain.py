@@ -9,7 +9,7 @@ import pytest
 from toy import QUICK, SD, Toy, programme
 
 from ves_twin.diagnosis.assess import assess
-from ves_twin.diagnosis.explain import explain
+from ves_twin.diagnosis.explain import CLOSE, FAR, _starts, explain
 from ves_twin.diagnosis.null import Thresholds
 from ves_twin.diagnosis.runs import Runs
 from ves_twin.diagnosis.signature_library import build_bank
@@ -71,6 +71,30 @@ def test_fits_stand_by_rising_chi2_and_none_is_there_twice(looked):
         assert fit.chi2 > 3.0 * found.best.chi2
 
 
+def test_those_near_the_likeliest_are_fitted_and_two_at_least(looked):
+    record = looked(ONE)
+    found = explain(record, LEVELS, replace(QUICK, candidates=6))
+    suspects = record.suspects
+    reach = suspects[0].score - max(FAR * suspects[0].score, CLOSE)
+    near = [s for n, s in enumerate(suspects) if n < 2 or s.score >= reach]
+    assert len(near) < len(suspects)
+    names = {record.screen.bank.hypotheses[s.hypothesis].effect for s in near}
+    assert {effect for fit in (*found.fits, *found.hopeless) for effect in effects(fit)} == names
+
+
+def test_a_fit_begins_at_the_size_of_the_bank_too_where_that_is_another(looked):
+    record = looked(ONE)
+    suspect = record.suspects[0]
+    rows = record.screen.bank.entries(suspect.hypothesis)
+    match = record.screen.match(record.z)[rows]
+    nearest = rows[np.argmax(2.0 * match - record.screen.power[rows])]
+    own = record.screen.bank.sizes[nearest]
+    assert len(_starts(record, replace(suspect, sizes=1.2 * own))) == 1
+    scaled, other = _starts(record, replace(suspect, sizes=3.0 * own))
+    assert np.array_equal(scaled, 3.0 * own)
+    assert np.array_equal(other, own)
+
+
 def test_two_causes_explain_what_one_does_not(looked):
     record = looked(TWO)
     single = explain(record, LEVELS, QUICK, pairs=False)
@@ -119,3 +143,14 @@ def test_progress_is_a_share_of_each_stage(looked):
     stages = list(dict.fromkeys(what for _, what in told))
     assert stages[0] == "fitting single causes"
     assert {"fitting its rivals", "weighing rivals", "fitting pairs of causes"} <= set(stages)
+    assert "signatures" in stages
+
+
+def test_no_signatures_are_simulated_anew_where_the_nominal_ones_find_nothing_more(looked):
+    told = []
+    found = explain(looked(ONE), LEVELS, QUICK, progress=lambda share, what: told.append(what))
+    assert ("signatures" in told) == (found.second >= LEVELS.effect)
+    told.clear()
+    low = replace(LEVELS, effect=0.0)
+    explain(looked(ONE), low, QUICK, pairs=False, progress=lambda share, what: told.append(what))
+    assert "signatures" in told

@@ -12,7 +12,7 @@ from ves_twin.diagnosis.refusal import refusal
 from ves_twin.diagnosis.verdict import Basis, Cause, Kind, Statistics, Verdict
 from ves_twin.diagnosis.widened import LEAST, Widened, widening
 from ves_twin.machines.pendulum.forward import STEP, Pendulum
-from ves_twin.machines.ves2 import diagnose_rig
+from ves_twin.machines.ves2.ves2_machine import Ves2Machine
 from ves_twin.report.diagnosis.words import headline
 
 BASIS = Basis("declared", "measured", "none")
@@ -85,7 +85,7 @@ def test_an_extension_that_cannot_be_carried_on_is_a_candidate_on_every_rig():
     assert "not beyond their end" in refusal(replace(proven, forecast=lost))
     assert refusal(replace(proven, forecast=held)) == ""
     assert "held-out" in refusal(FIRM)
-    assert "not beyond their end" in diagnose_rig._refused(replace(proven, forecast=lost))
+    assert "not beyond their end" in Ves2Machine().refusal(replace(proven, forecast=lost))
 
 
 @pytest.mark.parametrize(

@@ -6,12 +6,16 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from two_link import programme, rig
 
 import ves_twin as vt
 from ves_twin.cli.main import main
 from ves_twin.control.controller import PlatformController
 from ves_twin.core.code_file import load_class
+from ves_twin.effects.registry import parse_effects
 from ves_twin.envs.evaluation import Trial, evaluate
+from ves_twin.machines.mjcf.forward import MjcfForward
+from ves_twin.plant.assembly import assemble
 
 PAGES = Path(__file__).parents[2] / "docs" / "plugins"
 SHORT = {"run.duration": 3.0, "run.noise": False}
@@ -125,6 +129,20 @@ def test_the_effect_of_the_page_scales_what_one_leg_reads(install):
         slopes.append(np.polyfit(true, run["leg.length"][:, 2], 1)[0])
     assert slopes[0] == pytest.approx(1.0, abs=READ_LATE)
     assert slopes[1] == pytest.approx(np.cos(0.1), abs=READ_LATE)
+
+
+def test_the_effect_on_any_machine_brakes_a_slide_and_an_arm(install, tmp_path):
+    install("effect-on-any-machine.md")
+    machine = rig(tmp_path, more='\n[[effects]]\nkind = "fan"\non = ["rail"]\n')
+    forward = MjcfForward.of(machine)
+    plain, braked = (forward.simulate(programme(), {"fan@rail:drag": d}) for d in (0.0, 20.0))
+    assert np.abs(braked[:, 0]).max() < 0.9 * np.abs(plain[:, 0]).max()
+    (fan,) = parse_effects({"fan": {"arm.q2": {"drag": 3.0}}})
+    damping = [
+        assemble(plant, 341e-6).compile().joint("arm/q2").damping[0]
+        for plant in (FAST, FAST.extended(fan))
+    ]
+    assert damping[1] == pytest.approx(damping[0] + 3.0)
 
 
 @pytest.mark.slow

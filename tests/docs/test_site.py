@@ -25,7 +25,7 @@ LOADED = re.compile(
     r'<(?:script|img|iframe)[^>]*src="(https?:[^"]+)"|<link[^>]*href="(https?:[^"]+)"'
 )
 
-pytestmark = [pytest.mark.slow, pytest.mark.xdist_group("site")]  # one build of some 4 s
+pytestmark = pytest.mark.slow  # one build of some 4 s
 
 
 def listed(entry):

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 import ves_twin as vt
+from ves_twin.core.errors import InvalidInputError
 
 LATE = 2.3e-3
 """s; 6.7 ticks, so that whole ticks and a share of one are both tested."""
@@ -87,5 +88,5 @@ def test_a_rig_with_delays_repeats_from_a_snapshot_to_the_last_bit():
 def test_a_delay_that_this_tick_has_no_room_for_is_refused():
     short = PLANT.with_values({"clock.tick": 1e-4, "clock.leg_ticks": 17})
     late = short.extended(vt.effects.SensorDelay("sensor", delay=0.015))
-    with pytest.raises(vt.errors.InvalidInputError, match="delay of the wrench"):
+    with pytest.raises(InvalidInputError, match="delay of the wrench"):
         vt.Simulator(late, vt.Scenario.load("position_sine", MOVING))

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from ves_twin.core.errors import InvalidInputError, UnknownNameError, VersionError
+from ves_twin.effects.registry import EFFECTS, targets_of
 from ves_twin.envs.rig_set import RigSet, commissioned
 from ves_twin.plant.plant import Plant
 
@@ -32,10 +33,9 @@ def test_shares_are_those_of_the_file(name):
     count = 300
     drawn = [rigs.draw(Plant.load("ves2"), rng(k)).effects for k in range(count)]
     for wanted in rigs.effects:
-        found = sum(e.kind == wanted.kind for effects in drawn for e in effects)
-        from ves_twin.effects.registry import EFFECTS
-
-        tries = count * len(wanted.targets or EFFECTS[wanted.kind].targets)
+        kind, targets = EFFECTS[wanted.kind].kind, wanted.targets or targets_of(wanted.kind)
+        found = sum((e.kind, e.target in targets) == (kind, True) for rig in drawn for e in rig)
+        tries = count * len(targets)
         spread = np.sqrt(tries * wanted.share * (1 - wanted.share))
         assert abs(found - tries * wanted.share) <= 4 * spread  # four sd of a binomial
 

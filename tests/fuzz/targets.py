@@ -20,7 +20,8 @@ from ves_twin.core.resources import resource_folder
 from ves_twin.data.import_log import import_log
 from ves_twin.data.import_map import ImportMap
 from ves_twin.data.open_log import open_log
-from ves_twin.machines.ves2.tolerance import Tolerance
+from ves_twin.machines.machine import Machine
+from ves_twin.machines.tolerance import Tolerance
 from ves_twin.mechanics.emulated import EmulatedSystem
 from ves_twin.mechanics.gravity.calibration import GravityCalibration
 from ves_twin.mechanics.gravity.learned import LearnedGravity
@@ -306,6 +307,10 @@ def _read_ledger(path: Path) -> object:
         return ledger.results
 
 
+def _tolerance(path: Path) -> Tolerance:
+    return Tolerance.load(path, Machine.load("ves2").signals)
+
+
 TARGETS = (
     Target("scenario.toml", 0.22, lambda: _shipped("scenarios"), _read_scenario, run=_run_scenario),
     Target("plant.toml", 0.16, _plants, _read_plant, run=_run_plant),
@@ -313,7 +318,7 @@ TARGETS = (
     Target("calibration.toml", 0.05, lambda: _shipped("models/gravity"), lambda p: GravityCalibration.load(str(p))),
     Target("experiment.toml", 0.05, lambda: [EXPERIMENT], Experiment.load),
     Target("map.toml", 0.08, lambda: [MAP], _read_map),
-    Target("tolerance.toml", 0.04, lambda: [TOLERANCE], Tolerance.load),
+    Target("tolerance.toml", 0.04, lambda: [TOLERANCE], _tolerance),
     Target("operator.csv", 0.03, _operator, lambda p: operator_motion(str(p), np.zeros(3))),
     Target("set.txt", 0.06, lambda: [SETS], _set),
     Target("vary.txt", 0.04, lambda: [VARIES], _vary),

@@ -143,11 +143,13 @@ def test_a_number_it_has_no_room_for_is_refused_by_name(plant, fast, name):
     assert fast.with_values(nominal).hash == fast.hash
 
 
-@pytest.mark.parametrize("kind", EFFECTS)
-def test_every_effect_has_room_in_the_fast_rig_or_is_refused(fast, kind):
-    magnitude = EFFECTS[kind].magnitudes[0]
+@pytest.mark.parametrize(
+    ("kind", "target"), [(k, row.targets[0]) for k in EFFECTS for row in EFFECTS[k].rows]
+)
+def test_every_effect_has_room_in_the_fast_rig_or_is_refused(fast, kind, target):
+    magnitude = EFFECTS[kind].magnitudes_of(target)[0]
     size = magnitude.smallest * (-1 if magnitude.sign is Sign.NEGATIVE else 1)
-    effect = build_effect(kind, EFFECTS[kind].targets[0], {magnitude.name: size})
+    effect = build_effect(kind, target, {magnitude.name: size})
     try:
         extended = fast.extended(effect)
     except InvalidInputError as refusal:

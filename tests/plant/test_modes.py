@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import ves_twin as vt
-from ves_twin.effects.cylinder import OilAir
+from ves_twin.effects import OilAir
 from ves_twin.plant.modes import structural_modes
 
 HEAVES = (-0.15, 0.0, 0.15)

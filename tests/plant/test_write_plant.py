@@ -28,3 +28,10 @@ def test_a_written_plant_is_the_same_physics(tmp_path, base):
 def test_a_folder_that_cannot_be_written_is_one_line(tmp_path):
     with pytest.raises(FileAccessError, match="cannot write"):
         write_plant(vt.Plant.load("ves2"), tmp_path / "no" / "plant.toml")
+
+
+def test_a_plant_of_any_name_loads_again(tmp_path):
+    path = tmp_path / 'rig \U0001f600 "a".toml'
+    plant = vt.Plant.load("ves2")
+    write_plant(plant, path)
+    assert vt.Plant.load(str(path)).hash == plant.hash

@@ -7,7 +7,7 @@ import pytest
 
 import ves_twin as vt
 from ves_twin.core.errors import InvalidInputError, UnknownNameError, VesTwinError
-from ves_twin.effects.cylinder import CoulombFriction
+from ves_twin.effects import CoulombFriction
 from ves_twin.procedures.calibration_files import Fit, write_fit
 from ves_twin.procedures.feasible import Feasible
 from ves_twin.procedures.procedure import RunContext

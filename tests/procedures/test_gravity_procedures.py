@@ -73,7 +73,7 @@ def test_a_frozen_platform_stalls_at_several_newtons_and_a_constant_tilt_hides(t
     )
 
 
-@pytest.mark.slow
+@pytest.mark.nightly
 def test_the_verification_run_lies_beside_table_3_1(tmp_path):
     values = carried_out("verify_gravity_model", tmp_path, {"budget": False})
     share = np.array(values["ratio_of_rms"])

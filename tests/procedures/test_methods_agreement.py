@@ -31,7 +31,7 @@ def test_mean_squares_add_over_sources_and_over_methods():
     assert table["ratio"] == pytest.approx([2.0] * 6)
 
 
-@pytest.mark.slow
+@pytest.mark.nightly
 def test_the_methods_differ_by_no_more_than_their_budgets_predict(tmp_path):
     values = load_procedure("methods_agreement", SHORT).carry_out(RunContext(tmp_path)).values
     ratio = np.array(values["ratio"])

@@ -6,8 +6,7 @@ import pytest
 import ves_twin as vt
 from ves_twin.control.leg_loop import FilterPlace
 from ves_twin.core.errors import InvalidInputError
-from ves_twin.effects.force_sensor import SensorLag
-from ves_twin.effects.valve import ValveLag
+from ves_twin.effects import SensorLag, ValveLag
 from ves_twin.procedures.one_axis import OneAxis
 
 # Bandwidths [Hz] and mass limits of an independent sampled one-axis simulation with 5 ms lag and

@@ -28,11 +28,11 @@ def carried_out(name, folder, changes=None, **conduct):
 def no_cache(monkeypatch, tmp_path_factory):
     """Banks of the tests stay with the tests."""
     folder = tmp_path_factory.mktemp("cache") / "numba"
-    monkeypatch.setattr("ves_twin.procedures.showcase.cache_folder", lambda: folder)
+    monkeypatch.setattr("ves_twin.procedures.showcase.cache_folder", lambda name: folder / name)
     monkeypatch.setattr("os.cpu_count", lambda: 1)
 
 
-@pytest.mark.slow
+@pytest.mark.nightly
 def test_two_causes_are_named_and_held_against_the_truth(tmp_path):
     account = carried_out("showcase_two_causes", tmp_path)
     assert account.values["judged"] == "right"

@@ -49,7 +49,7 @@ def test_vibration_claim_fails_without_the_legs_flexibility():
     assert bench(16.0, changes=RIGID | STIFF_OIL).vibration().growth < 0.0
 
 
-@pytest.mark.slow
+@pytest.mark.nightly
 def test_filter_claims_fail_with_the_notch_elsewhere():
     """An octave down the error's limit leaves its range; an octave up feedback is hardly wider."""
     assert 0.45 <= share(19.0, "error") <= 0.65

@@ -1,5 +1,8 @@
 """Noise is a function of seed, channel and tick alone."""
 
+import subprocess
+import sys
+
 import numpy as np
 
 from ves_twin.simulator.codes import FAST_CHANNELS, SLOW
@@ -46,3 +49,34 @@ def test_noise_off_is_zero():
     fast, slow = NoiseStreams(5, enabled=False).window(100, 37)
     assert not fast.any()
     assert not slow.any()
+
+
+FORKED = """
+import os, sys
+import subprocess
+import sys
+
+import numpy as np
+import ves_twin as vt
+from ves_twin.simulator.simulator import Simulator
+
+sim = Simulator(None, vt.Scenario.load("position_sine", {"run.duration": 6.0, "run.settle": 0.3}))
+sim.advance(0.5)
+child = os.fork()
+sim.advance(5.0)  # several blocks of noise
+said = sim.rig.board.row.tobytes()
+if child == 0:
+    with open(sys.argv[1], "wb") as file:
+        file.write(said)
+    os._exit(0)
+os.waitpid(child, 0)
+with open(sys.argv[1], "rb") as file:
+    assert file.read() == said, "the child went another way"
+"""
+
+
+def test_a_simulator_goes_on_in_a_forked_process(tmp_path):
+    """It once waited there for ever, for a thread that a fork does not copy."""
+    words = [sys.executable, "-c", FORKED, str(tmp_path / "child")]
+    done = subprocess.run(words, capture_output=True, text=True, check=False, timeout=120)
+    assert done.returncode == 0, done.stderr

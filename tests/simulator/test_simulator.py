@@ -135,11 +135,15 @@ def test_a_run_that_fails_while_it_settles_has_every_signal_of_no_rows():
     assert run["arm.q"].shape == (0, 3)
 
 
-def test_state_that_is_not_finite_ends_as_diverged():
+def test_state_that_is_not_finite_ends_as_diverged_and_is_logged(tmp_path, monkeypatch, caplog):
+    monkeypatch.chdir(tmp_path)  # MuJoCo by itself writes MUJOCO_LOG.TXT where the program stands
+    caplog.set_level("INFO", "ves_twin.mujoco")
     sim = vt.Simulator(None, vt.Scenario.load("position_sine", SHORT))
     sim.data.qvel[:] = np.nan
     sim.advance(0.1)
     assert sim.outcome is Outcome.DIVERGED
+    assert list(tmp_path.iterdir()) == []
+    assert any("QVEL" in record.getMessage() for record in caplog.records)
 
 
 def test_start_pose_out_of_reach_is_refused_with_the_leg():

@@ -59,7 +59,7 @@ TARGETS = {
     "sensor_gain": ["load.force.1"],
     "cross_talk": ["load.force.3.1"],
     "sensor_offset": ["load.force.2"],
-    "sensor_drift": ["load.force.3"],
+    "sensor_wander": ["load.force.3"],
     "sensor_delay": ["load.force"],
 }
 

@@ -16,7 +16,7 @@ from ves_twin.sweeps.plan import plan_sweep
 from ves_twin.sweeps.process_engine import ProcessEngine
 from ves_twin.sweeps.sweep import carry_out_sweep
 
-pytestmark = [pytest.mark.slow, pytest.mark.xdist_group("dask")]
+pytestmark = pytest.mark.slow
 
 
 @pytest.mark.nightly

@@ -76,7 +76,7 @@ def test_rows_of_another_sweep_are_refused(small_plan, tmp_path):
 
 
 def test_a_sweep_that_is_running_keeps_its_folder_to_itself(small_plan, tmp_path):
-    with Ledger(tmp_path, small_plan), pytest.raises(OtherSweepError, match="is running"):
+    with Ledger(tmp_path, small_plan), pytest.raises(FileAccessError, match="another command"):
         Ledger(tmp_path, small_plan)
 
 

@@ -117,7 +117,7 @@ class Killer(threading.Thread):
             time.sleep(0.01)
 
 
-@pytest.mark.slow
+@pytest.mark.nightly
 def test_points_of_a_worker_that_is_killed_run_again(small_plan, swept, tmp_path):
     killer = Killer(2)
     killer.start()

@@ -6,7 +6,7 @@ import pytest
 
 from ves_twin.core.errors import VesTwinError
 from ves_twin.plant.plant import Plant
-from ves_twin.thesis.claim import load_claims
+from ves_twin.thesis.claim import Kind, load_claims
 from ves_twin.thesis.evaluation import NotBuilt, NotTestable
 from ves_twin.thesis.evaluators import (
     appendices_d_and_f,
@@ -101,10 +101,10 @@ def test_a_file_of_ones_own_is_read(tmp_path):
         (("schema = 1", "schema = 2"), "schema"),
         (('kind = "input"', 'kind = "inptu"'), "did you mean 'input'"),
         (("quantity", "quantitty"), "did you mean 'quantity'"),
-        (('unit = "1"', "unit = 1"), "a text"),
-        (("value = 6", 'value = "six"'), "a number"),
-        (("value = 6", "value = true"), "a number"),
-        (('kind = "exact"', 'kind = "about"'), "at_most"),
+        (('unit = "1"', "unit = 1"), "C001: unit: got 1, expected a valid string"),
+        (("value = 6", 'value = "six"'), "value.*'six', expected a valid number"),
+        (("value = 6", "value = true"), "value.*expected a valid number"),
+        (('kind = "exact"', 'kind = "about"'), "comparison 'about'; did you mean 'absolute'"),
         (("[C001]\n", "C002 = 3\n[C001]\n"), "a table"),
     ],
 )
@@ -112,3 +112,16 @@ def test_a_broken_file_is_refused_in_one_line(tmp_path, change, says):
     (tmp_path / "claims.toml").write_text(GOOD.replace(*change))
     with pytest.raises(VesTwinError, match=says):
         load_claims(str(tmp_path / "claims.toml"))
+
+
+@pytest.mark.parametrize(
+    "wrong",
+    ["kind = {a = 1}", "kind = [1]", "errata = true", "errata = 3", "tolerance = {kind = {}}"],
+)
+def test_a_claim_of_wrong_kinds_is_refused_in_one_line(wrong, tmp_path):
+    texts = "".join(f'{key} = "x"\n' for key in ("where", "chapter", "quantity", "printed", "unit"))
+    kind = "" if wrong.startswith("kind") else f'kind = "{next(iter(Kind))}"\n'
+    (tmp_path / "claims.toml").write_text(f"schema = 1\n[a]\n{texts}{kind}{wrong}\n")
+    with pytest.raises(VesTwinError) as caught:
+        load_claims(str(tmp_path / "claims.toml"))
+    assert "\n" not in str(caught.value)

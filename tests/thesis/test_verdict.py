@@ -1,7 +1,5 @@
 """Verdicts: made in one place, from the comparison alone."""
 
-from dataclasses import replace
-
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -32,18 +30,18 @@ def test_reproduced_within_the_tolerance_in_kind_beyond_differs_elsewhere(value)
 
 
 def test_an_input_that_the_twin_has_is_an_input_and_one_that_it_lacks_differs():
-    given_in = replace(CLAIM, kind=Kind.INPUT, in_kind=None)
+    given_in = CLAIM.model_copy(update={"kind": Kind.INPUT, "in_kind": None})
     assert judge(given_in, Evaluation((10.0,))) == Verdict.INPUT
     assert judge(given_in, Evaluation((12.0,))) == Verdict.DIFFERS
 
 
 def test_words_can_only_be_met_in_kind():
-    words = replace(CLAIM, value=(), tolerance=None)
+    words = CLAIM.model_copy(update={"value": (), "tolerance": None})
     assert judge(words, Evaluation((6.0,))) == Verdict.IN_KIND
 
 
 def test_the_errata_decide_what_is_expected():
-    corrected = replace(CLAIM, corrected=(20.0,), in_kind=None)
+    corrected = CLAIM.model_copy(update={"corrected": (20.0,), "in_kind": None})
     assert judge(corrected, Evaluation((20.0,))) == Verdict.REPRODUCED
     assert judge(corrected, Evaluation((10.0,))) == Verdict.DIFFERS
 
@@ -60,5 +58,5 @@ def test_what_is_not_there_has_a_verdict_of_its_own():
 
 def test_inputs_and_calibrated_claims_do_not_count():
     assert CLAIM.counts
-    assert not replace(CLAIM, kind=Kind.INPUT).counts
-    assert not replace(CLAIM, calibrated_on="leg.gain").counts
+    assert not CLAIM.model_copy(update={"kind": Kind.INPUT}).counts
+    assert not CLAIM.model_copy(update={"calibrated_on": "leg.gain"}).counts

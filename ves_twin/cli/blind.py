@@ -115,10 +115,11 @@ def _beside(folder: Path, given: str | None, ending: str) -> Path:
 
 def _make(arguments: argparse.Namespace, folder: Path, key: Path) -> int:
     from ves_twin.cli.progress import RunProgress
+    from ves_twin.core.held_folder import hold_folder
     from ves_twin.suites.make import make_suite
 
     recipe = _recipe(arguments)
-    with RunProgress("blind make", 1.0, unit="share") as progress:
+    with hold_folder(folder), RunProgress("blind make", 1.0, unit="share") as progress:
         suite = make_suite(recipe, folder, key, progress.share, os.cpu_count() or 1)
     print(f"{len(suite.cases)} cases in {folder}/, key in {key}")
     return 0
@@ -164,7 +165,8 @@ def _background(text: str) -> tuple[str, float]:
 
 def _answer(arguments: argparse.Namespace, folder: Path, answers: Path) -> int:
     from ves_twin.cli.progress import RunProgress
-    from ves_twin.core.compiled import cache_folder
+    from ves_twin.core.cache_folder import cache_folder
+    from ves_twin.core.held_folder import hold_file
     from ves_twin.diagnosis.settings import Settings
     from ves_twin.suites.answer import answer_suite
     from ves_twin.suites.material import Use
@@ -172,9 +174,9 @@ def _answer(arguments: argparse.Namespace, folder: Path, answers: Path) -> int:
     use = Use(not arguments.no_commissioning, not arguments.no_baseline, arguments.after or "")
     if use.after and not arguments.answers:
         answers = _after(answers, use.after)
-    cache = cache_folder().parent / "banks"
+    cache = cache_folder("diagnosis")
     settings = Settings(workers=arguments.workers, cache=cache, nulls=arguments.nulls)
-    with RunProgress("blind answer", 1.0, unit="share") as progress:
+    with hold_file(answers), RunProgress("blind answer", 1.0, unit="share") as progress:
         found = answer_suite(folder, answers, settings, progress.share, use)
     print(f"{len(found)} answers in {answers}")
     return 0
@@ -187,12 +189,13 @@ def _after(answers: Path, choice: str) -> Path:
 
 def _play(folder: Path, key: Path, answers: Path, choice: str) -> int:
     from ves_twin.cli.progress import RunProgress
+    from ves_twin.core.held_folder import hold_folder
     from ves_twin.suites.answers import read_answers
     from ves_twin.suites.play import play_next
     from ves_twin.suites.score import read_truths
 
     secret = _read_key(key)
-    with RunProgress("blind play", 1.0, unit="share") as progress:
+    with hold_folder(folder), RunProgress("blind play", 1.0, unit="share") as progress:
         played = play_next(
             folder,
             secret,
@@ -230,6 +233,7 @@ def _read_key(key: Path) -> str:
 
 
 def _score(arguments: argparse.Namespace, folder: Path, key: Path, answers: Path) -> int:
+    from ves_twin.core.whole_file import write_whole
     from ves_twin.suites.answers import read_answers
     from ves_twin.suites.score import mark, read_truths
     from ves_twin.suites.score_gain import mark_gain
@@ -243,7 +247,7 @@ def _score(arguments: argparse.Namespace, folder: Path, key: Path, answers: Path
     marks = replace(marks, rows={**marks.rows, **more})
     text = _text(marks) + (_correlation(after) if after else "")
     if arguments.page:
-        Path(arguments.page).write_text(text, encoding="utf-8")
+        write_whole(Path(arguments.page), text)
     if arguments.json:
         counted = {**marks.rows, _COVER: marks.coverage}
         rows = {name: {"hits": r.hits, "of": r.of} for name, r in counted.items() if r.of}

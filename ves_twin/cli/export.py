@@ -17,12 +17,14 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def execute(arguments: argparse.Namespace) -> int:
     """Write the file."""
+    from ves_twin.core.held_folder import hold_file
     from ves_twin.core.recording.files import load_recording
     from ves_twin.data.export import export_recording
 
     path = Path(arguments.out)
     form = arguments.format or path.suffix.removeprefix(".")
-    recording = load_recording(arguments.recording)
-    files = export_recording(recording, form, path)
+    with hold_file(path):
+        recording = load_recording(arguments.recording)
+        files = export_recording(recording, form, path)
     print(f"{len(recording)} rows in {', '.join(map(str, files))}")
     return 0

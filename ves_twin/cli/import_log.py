@@ -10,11 +10,7 @@ from ves_twin.cli.limit import add_limit
 from ves_twin.core.json_text import json_text
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
-
-    from ves_twin.core.signals import Signal
     from ves_twin.data.import_map import Window
-    from ves_twin.data.suspicions import Range
 
 SUMMARY = "make a recording of a lab file as a map says"
 
@@ -30,7 +26,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "--plant",
         metavar="FILE",
         default="ves2",
-        help="whose ranges tell mixed units; a rig of two files: whose signals they are, too",
+        help="whose ranges tell mixed units; an MJCF machine: whose signals they are, too",
     )
     add_limit(parser)
     parser.add_argument("--json", action="store_true", help="the account as JSON on stdout")
@@ -38,43 +34,28 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def execute(arguments: argparse.Namespace) -> int:
     """Import, write the recording, print the account."""
+    from ves_twin.core.held_folder import hold_file
     from ves_twin.core.recording.files import save_recording
     from ves_twin.data.import_log import import_log
     from ves_twin.data.import_map import ImportMap
     from ves_twin.data.limits import Limits
     from ves_twin.data.open_log import open_log
-    from ves_twin.simulator.simulate import make_folder
+    from ves_twin.machines.load import open_machine
 
-    told = ImportMap.load(arguments.map)
-    window = _window(arguments, told.window)
-    ranges, known = _plant(arguments.plant)
     path = _target(arguments.out)
-    log = open_log(arguments.file, Limits.of(arguments.limit))
-    imported = import_log(log, told, window, ranges, known)
-    make_folder(path.parent)
-    save_recording(imported.recording, path)
+    with hold_file(path):
+        told = ImportMap.load(arguments.map)
+        window = _window(arguments, told.window)
+        machine = open_machine(arguments.plant)
+        log = open_log(arguments.file, Limits.of(arguments.limit))
+        imported = import_log(log, told, window, machine.ranges, machine.own_signals)
+        save_recording(imported.recording, path)
     if arguments.json:
         content = {**imported.account.to_dict(), "recording": str(path)}
         print(json_text(content))
     else:
         print(f"{imported.account.to_text()}\nrecording {path}")
     return 0
-
-
-def _plant(name: str) -> tuple[Mapping[str, Range], Sequence[Signal]]:
-    """Ranges of a plant's signals; of a rig of two files also the signals, which are its own."""
-    from ves_twin.machines.mjcf.description import is_rig
-
-    if is_rig(name):
-        from ves_twin.machines.mjcf.machine import Rig
-        from ves_twin.machines.mjcf.signals import rig_ranges, rig_signals
-
-        rig = Rig.load(name)
-        return rig_ranges(rig), rig_signals(rig)
-    from ves_twin.plant.plant import Plant
-    from ves_twin.plant.signal_ranges import signal_ranges
-
-    return signal_ranges(Plant.load(name)), ()
 
 
 def _target(out: str) -> Path:

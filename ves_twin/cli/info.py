@@ -52,13 +52,13 @@ def execute(arguments: argparse.Namespace) -> int:
 def general_content() -> dict[str, object]:
     """Versions, plants, emulated systems, controllers, plugins, scenarios, signals."""
     from ves_twin.control.registry import GRAVITY_COMPENSATIONS, PLATFORM_CONTROLLERS
-    from ves_twin.core.compiled import cache_folder
+    from ves_twin.core.compiled import compiled_folder
     from ves_twin.core.resources import resource_folder
     from ves_twin.core.signals import SIGNALS
     from ves_twin.effects.registry import EFFECTS
     from ves_twin.envs import ENVIRONMENTS
     from ves_twin.envs.baselines import BASELINES
-    from ves_twin.machines.mjcf.description import shipped_rigs
+    from ves_twin.machines.load import shipped_machines
     from ves_twin.plant.plant import Plant
     from ves_twin.scenario.load import scenario_questions
     from ves_twin.simulator.simulate import versions
@@ -68,7 +68,7 @@ def general_content() -> dict[str, object]:
         "versions": versions(),
         "plants": {p.stem: Plant.load(p.stem).hash for p in sorted(models.glob("*.toml"))},
         "emulated systems": [p.stem for p in sorted((models / "emulated").glob("*.toml"))],
-        "effects": {kind: ", ".join(_sizes(EFFECTS[kind])) for kind in EFFECTS.built_in},
+        "effects": {kind: _places(EFFECTS[kind]) for kind in EFFECTS.built_in},
         "platform controllers": list(PLATFORM_CONTROLLERS),
         "gravity compensations": list(GRAVITY_COMPENSATIONS),
         "plugins": {
@@ -78,20 +78,27 @@ def general_content() -> dict[str, object]:
         },
         "scenarios": list(scenario_questions()),
         "environments": list(ENVIRONMENTS),
-        "rigs of two files": shipped_rigs(),
+        "rigs of two files": shipped_machines(),
         "sets of rigs": [p.stem for p in sorted((models / "rig_sets").glob("*.toml"))],
         "baseline policies": list(BASELINES),
         "signals": {
             s.name: f"{s.width} {', '.join(dict.fromkeys(s.units))}; {s.role.value}; {s.meaning}"
             for s in SIGNALS.values()
         },
-        "compiled code": str(cache_folder()),
+        "compiled code": str(compiled_folder()),
     }
 
 
-def _sizes(effect: type[Effect]) -> list[str]:
-    places = effect.targets if len(effect.targets) < 4 else (effect.targets[0], "...")
-    return [f"{m.name} [{m.unit}]" for m in effect.magnitudes] + [f"on {' '.join(places)}"]
+def _places(effect: type[Effect]) -> str:
+    """Sizes with units and targets: on VES II, then on other machines."""
+    found = []
+    for row in effect.rows:
+        on = row.targets if len(row.targets) < 4 else (row.targets[0], "...")
+        sizes = [f"{m.name} [{m.unit}]" for m in effect.magnitudes_of(row.targets[0])]
+        found.append(f"{', '.join(sizes)}, on {' '.join(on)}")
+    if effect.anywhere:
+        found.append(f"{', '.join(s.name for s in effect.sizes)}, on any {effect.anywhere.element}")
+    return "; ".join(found)
 
 
 def plant_content(name: str) -> dict[str, object]:
@@ -111,11 +118,7 @@ def plant_content(name: str) -> dict[str, object]:
         "numbers by grade": grades,
         f"differences from {NOMINAL}": _differences(plant),
         "effects": {
-            f"{e.kind} on {e.target}": ", ".join(
-                f"{m.name} = {e.values[m.name]:g}{unit_tail(m.unit)}" for m in e.magnitudes
-            )
-            + f". {_meaning(e)}"
-            for e in plant.effects
+            f"{e.kind} on {e.target}": f"{_values(e)}. {_meaning(e)}" for e in plant.effects
         },
         "numbers that the effects change": _changed(plant.actual, plant.parameters),
     }
@@ -135,6 +138,11 @@ def mjcf_content(name: str, out: str) -> dict[str, object]:
         "changes that it cannot carry": list(export.lost),
         "what no MJCF carries": {str(n): what for n, what in enumerate(export.never, 1)},
     }
+
+
+def _values(effect: Effect) -> str:
+    sizes = effect.magnitudes_of(effect.target)
+    return ", ".join(f"{m.name} = {effect.values[m.name]:g}{unit_tail(m.unit)}" for m in sizes)
 
 
 def _meaning(effect: Effect) -> str:

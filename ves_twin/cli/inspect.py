@@ -24,6 +24,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def execute(arguments: argparse.Namespace) -> int:
     """Read the file once, print what is in it, write the map if one is asked for."""
+    from ves_twin.core.held_folder import hold_file
     from ves_twin.data.draft_map import draft_map
     from ves_twin.data.inspect_log import inspect_log
     from ves_twin.data.inspection_text import inspection_text
@@ -35,7 +36,8 @@ def execute(arguments: argparse.Namespace) -> int:
     content, text = inspection.to_dict(), inspection_text(inspection)
     if arguments.draft_map or arguments.out:
         path = _place(arguments.out, Path(arguments.file))
-        write_page(path, draft_map(inspection))
+        with hold_file(path):
+            write_page(path, draft_map(inspection))
         content["map"], text = str(path), f"{text}\n\nmap to edit: {path}"
     print(json_text(content) if arguments.json else text)
     return 0

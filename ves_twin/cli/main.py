@@ -8,8 +8,10 @@ import re
 import sys
 import warnings
 from collections.abc import Sequence
+from contextlib import suppress
 from functools import partial
-from typing import NoReturn
+from itertools import pairwise
+from typing import NoReturn, TextIO
 
 from ves_twin import __version__
 from ves_twin.cli import (
@@ -30,7 +32,14 @@ from ves_twin.cli import (
     view,
 )
 from ves_twin.cli.exit_codes import BAD_INPUT, DONE, INTERRUPTED
-from ves_twin.core.errors import UnknownNameError, VesTwinError, one_line
+from ves_twin.core.cache_folder import cache_folder
+from ves_twin.core.errors import (
+    InvalidInputError,
+    UnknownNameError,
+    VesTwinError,
+    VesTwinWarning,
+    one_line,
+)
 
 COMMANDS = {
     "scenarios": scenarios,
@@ -60,6 +69,9 @@ begin with:
 exit codes: 0 done, 2 bad input, 3 the run ended early, 4 out of tolerance, 130 interrupted
 """
 """What stands below the commands."""
+
+EMPTY = re.compile(r"--[a-z-]+=")
+"""An option without its value, as a shell makes of one whose variable is not set."""
 
 
 class Parser(argparse.ArgumentParser):
@@ -107,16 +119,49 @@ def main(arguments: Sequence[str] | None = None) -> int:
     Returns:
         0 done; 2 bad input; 3 the run ended early; 4 out of tolerance; 130 interrupted.
     """
-    with warnings.catch_warnings(record=True) as noted:
-        code = _answered(arguments)
+    words = list(sys.argv[1:] if arguments is None else arguments)
+    noted: list[tuple[Warning | str, type[Warning], str, int]] = []
+
+    def note(
+        message: Warning | str,
+        category: type[Warning],
+        filename: str,
+        lineno: int,
+        file: TextIO | None = None,
+        line: str | None = None,
+    ) -> None:
+        """What the user should know, at once and in one line; others' warnings at the end."""
+        if issubclass(category, VesTwinWarning):
+            print(f"ves-twin: {' '.join(str(message).split())}", file=sys.stderr)
+        else:
+            noted.append((message, category, filename, lineno))
+
+    with warnings.catch_warnings():
+        warnings.simplefilter("always", VesTwinWarning)
+        warnings.showwarning = note
+        _give_matplotlib_a_folder()
+        code = _answered(words)
     for one in noted if code != BAD_INPUT else ():  # a refusal is one line
-        warnings.showwarning(one.message, one.category, one.filename, one.lineno)
+        warnings.showwarning(*one)
     return code
 
 
-def _answered(arguments: Sequence[str] | None) -> int:
-    words = list(sys.argv[1:] if arguments is None else arguments)
+def _give_matplotlib_a_folder() -> None:
+    """Where there is no home to write: it would warn, and look for its fonts in every command."""
+    if "MPLCONFIGDIR" not in os.environ and not os.access(os.path.expanduser("~"), os.W_OK):
+        with suppress(OSError):  # no place at all: whoever needs one says so
+            os.environ["MPLCONFIGDIR"] = str(cache_folder("matplotlib"))
+
+
+def _refuse_empty(words: Sequence[str]) -> None:
+    for before, word in pairwise(["ves-twin", *words]):
+        if not word.strip() or EMPTY.fullmatch(word):
+            raise InvalidInputError(word[:-1] if word.strip() else before, "", "a value")
+
+
+def _answered(words: list[str]) -> int:
     try:
+        _refuse_empty(words)
         if words and not words[0].startswith("-") and words[0] not in COMMANDS:
             raise UnknownNameError("command", words[0], COMMANDS)
         parser = build_parser()
@@ -135,6 +180,12 @@ def _answered(arguments: Sequence[str] | None) -> int:
             os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
             return DONE
         print(f"ves-twin: {one_line(error)}", file=sys.stderr)
+        return BAD_INPUT
+    except MemoryError:
+        print(
+            "ves-twin: not enough memory; a shorter run or a smaller file takes less",
+            file=sys.stderr,
+        )
         return BAD_INPUT
     except KeyboardInterrupt:
         print("ves-twin: interrupted", file=sys.stderr)

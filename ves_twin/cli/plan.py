@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import argparse
-import os
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
@@ -23,9 +22,15 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     )
     parser.add_argument("--seconds", metavar="N", type=float, help="how long (default: all of it)")
     parser.add_argument(
-        "--scenario", metavar="NAME", default="identify_fast", help="what the rig would do"
+        "--scenario",
+        metavar="NAME",
+        default="",
+        help="what would be fed in: a scenario of VES II (default: identify_fast), an excitation"
+        " that an MJCF machine offers, or a recording",
     )
-    parser.add_argument("--plant", metavar="FILE", help="the nominal plant (default: its own)")
+    parser.add_argument(
+        "--plant", metavar="FILE", help="the machine (default: the scenario's plant)"
+    )
     parser.add_argument(
         "--quick", action="store_true", help="threshold of white noise; simulate no rigs in order"
     )
@@ -42,32 +47,17 @@ def execute(arguments: argparse.Namespace) -> int:
 
 
 def _plan(arguments: argparse.Namespace) -> Plan:
+    from ves_twin.cli.given import bank_settings
     from ves_twin.cli.progress import RunProgress
-    from ves_twin.core.compiled import cache_folder
-    from ves_twin.diagnosis.plan import check_channels, plan_recording
-    from ves_twin.diagnosis.settings import Settings
-    from ves_twin.machines.ves2.diagnose_rig import drawn_nulls
-    from ves_twin.machines.ves2.excitation import planned_rig
-    from ves_twin.plant.plant import Plant
-    from ves_twin.scenario.schema import Scenario
+    from ves_twin.machines.plan import plan
 
-    scenario = Scenario.load(arguments.scenario)
-    plant = Plant.load(arguments.plant or scenario.plant)
-    seconds = arguments.seconds
-    if seconds is not None and seconds > scenario.run.duration:
-        scenario = Scenario.load(arguments.scenario, {"run.duration": seconds})
-    settings = Settings(workers=os.cpu_count() or 1, cache=cache_folder().parent / "banks")
-    settings = drawn_nulls(settings)
     with RunProgress("plan", 1.0, unit="share") as progress:
-        progress.share(0.0, "set-points")
-        forward, programme = planned_rig(scenario, plant)
-        check_channels(forward, arguments.channels)
-        return plan_recording(
-            forward,
-            programme,
+        return plan(
+            arguments.plant,
+            arguments.scenario,
             channels=arguments.channels,
-            seconds=seconds,
+            seconds=arguments.seconds,
             quick=arguments.quick,
-            settings=settings,
+            settings=bank_settings(),
             progress=progress.share,
         )

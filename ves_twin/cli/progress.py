@@ -6,12 +6,12 @@ import signal
 import sys
 import threading
 import time
-from types import FrameType, TracebackType
+from types import FrameType
 from typing import Any
 
 from tqdm import tqdm
 
-from ves_twin.core.compiled import cache_folder
+from ves_twin.core.compiled import compiled_folder
 
 FIRST = 1.0
 """A command that is done sooner says nothing [s]: a bad input is then one line alone."""
@@ -78,19 +78,14 @@ class RunProgress:
         return text
 
     def __enter__(self) -> RunProgress:
-        if not any(cache_folder().iterdir()):
+        if not any(compiled_folder().iterdir()):
             print("compiling the inner loop, once: about half a minute", file=sys.stderr)
         self._before = signal.signal(signal.SIGINT, self._stop)
         if self._bar.disable:
             self._teller.start()
         return self
 
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        trace: TracebackType | None,
-    ) -> None:
+    def __exit__(self, *error: object) -> None:
         self._over.set()
         if self._teller.is_alive():
             self._teller.join()

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+from contextlib import nullcontext
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -10,7 +11,6 @@ from ves_twin.core.json_text import json_text
 
 if TYPE_CHECKING:
     from ves_twin.thesis.context import Context
-    from ves_twin.thesis.figures.figure import FigureResult
     from ves_twin.thesis.scorecard import Scorecard
 
 SUMMARY = "hold the twin against the thesis: every claim, some claims, or a figure"
@@ -40,9 +40,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def execute(arguments: argparse.Namespace) -> int:
     """Evaluate what was asked for and print it."""
+    from ves_twin.cli.output_folder import output_folder
     from ves_twin.cli.scorecard_text import figure_text, scorecard_text
     from ves_twin.core.errors import UnknownNameError
-    from ves_twin.simulator.simulate import make_folder
     from ves_twin.thesis.claim import load_claims
     from ves_twin.thesis.figures.registry import FIGURES
 
@@ -52,18 +52,19 @@ def execute(arguments: argparse.Namespace) -> int:
         if name not in claims and name not in FIGURES:
             raise UnknownNameError("claim or figure", name, [*claims, *FIGURES])
     context = _context(arguments)
-    if arguments.out:
-        make_folder(Path(arguments.out))
-    drawn = _figures(arguments, [name for name in names if name in FIGURES], context)
+    figures = [name for name in names if name in FIGURES]
     chosen = list(dict.fromkeys(name for name in names if name in claims))
-    card = None if names and not chosen else _score(arguments, chosen, context)
-    content = {
-        **(card.to_dict() if card else {}),
-        "figures": [{**vars(figure), "png": str(figure.png)} for figure in drawn],
-    }
-    text = json_text(content)
-    if arguments.out and card:
-        _write(Path(arguments.out), card, text)
+    writes = arguments.out or figures
+    with output_folder(arguments.out, "reproduce") if writes else nullcontext() as held:
+        drawn = [FIGURES[name](context.plant, held.path, context.quick) for name in figures if held]
+        card = None if names and not chosen else _score(arguments, chosen, context)
+        content = {
+            **(card.to_dict() if card else {}),
+            "figures": [{**vars(figure), "png": str(figure.png)} for figure in drawn],
+        }
+        text = json_text(content)
+        if arguments.out and card and held:
+            _write(held.path, card, text)
     if arguments.json:
         print(text)
         return 0
@@ -97,20 +98,6 @@ def _score(arguments: argparse.Namespace, chosen: list[str], context: Context) -
     selected = [claims[name] for name in chosen] if chosen else list(claims.values())
     with RunProgress("reproduce", 1.0, unit="share") as progress:
         return score_claims(selected, ANSWERS, context, store, progress.share)
-
-
-def _figures(
-    arguments: argparse.Namespace, names: list[str], context: Context
-) -> list[FigureResult]:
-    from ves_twin.cli.output_folder import output_folder
-    from ves_twin.simulator.simulate import make_folder
-    from ves_twin.thesis.figures.registry import FIGURES
-
-    if not names:
-        return []
-    folder = output_folder(arguments.out, "reproduce")
-    make_folder(folder)
-    return [FIGURES[name](context.plant, folder, context.quick) for name in names]
 
 
 def _write(folder: Path, card: Scorecard, text: str) -> None:

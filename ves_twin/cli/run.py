@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import argparse
 import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -58,15 +60,15 @@ def execute(arguments: argparse.Namespace) -> int:
         from ves_twin.envs.film import check_video
 
         check_video(video, load(arguments)[0].run.duration)
-    summary, folder = run_scenario(arguments)
-    if arguments.json:
-        print(summary.to_json())
-    else:
-        from ves_twin.cli.summary_text import summary_text
+    with run_scenario(arguments) as (summary, folder):
+        if arguments.json:
+            print(summary.to_json())
+        else:
+            from ves_twin.cli.summary_text import summary_text
 
-        print(summary_text(summary, folder))
-    if video is not None:
-        print(_draw(folder, video), file=sys.stderr if arguments.json else sys.stdout)
+            print(summary_text(summary, folder))
+        if video is not None:
+            print(_draw(folder, video), file=sys.stderr if arguments.json else sys.stdout)
     return exit_code(summary.outcome)
 
 
@@ -82,23 +84,24 @@ def _draw(folder: Path, video: Path) -> str:
     return f"  video     {video}"
 
 
-def run_scenario(arguments: argparse.Namespace) -> tuple[Summary, Path]:
-    """Run the scenario that the arguments name into its output folder."""
+@contextmanager
+def run_scenario(arguments: argparse.Namespace) -> Iterator[tuple[Summary, Path]]:
+    """Run the scenario that the arguments name; its folder is held until the block ends."""
     from ves_twin.cli.output_folder import output_folder
     from ves_twin.cli.progress import RunProgress
     from ves_twin.simulator.simulate import record
 
     scenario, plant = load(arguments)
-    folder = output_folder(arguments.out, scenario.name)
-    with RunProgress(scenario.name, scenario.run.duration) as progress:
-        controller = load_controller(arguments)
-        summary = record(scenario, folder, plant, arguments.seed, progress, controller)
-    if not arguments.no_rrd and summary.duration > 0:
-        from ves_twin.core.recording.files import load_recording
-        from ves_twin.report.rerun.write import write_rrd
+    controller = load_controller(arguments)
+    with output_folder(arguments.out, scenario.name) as held:
+        with RunProgress(scenario.name, scenario.run.duration) as progress:
+            summary = record(scenario, held, plant, arguments.seed, progress, controller)
+        if not arguments.no_rrd and summary.duration > 0:
+            from ves_twin.core.recording.files import load_recording
+            from ves_twin.report.rerun.write import write_rrd
 
-        write_rrd(load_recording(folder), folder / "run.rrd")
-    return summary, folder
+            write_rrd(load_recording(held.path), held.path / "run.rrd")
+        yield summary, held.path
 
 
 def load(arguments: argparse.Namespace) -> tuple[Scenario, Plant | None]:

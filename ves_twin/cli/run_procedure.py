@@ -1,4 +1,4 @@
-"""run_procedure: carry out a procedure (many runs, one result), write and print its account."""
+"""run_procedure: carry out a procedure (many runs, one result), write and print that."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from ves_twin.core.json_text import json_text
 
 if TYPE_CHECKING:
-    from ves_twin.procedures.procedure import Account, Procedure
+    from ves_twin.procedures.procedure import Procedure, Result
 
 
 def run_procedure(arguments: argparse.Namespace) -> int | None:
@@ -26,7 +26,7 @@ def run_procedure(arguments: argparse.Namespace) -> int | None:
     from ves_twin.procedures.procedure import RunContext
     from ves_twin.procedures.registry import load_procedure
     from ves_twin.scenario.load import parse_setting
-    from ves_twin.simulator.simulate import SUMMARY_NAME, make_folder
+    from ves_twin.simulator.simulate import SUMMARY_NAME
 
     changes = dict(parse_setting(text) for text in arguments.settings)
     procedure = load_procedure(arguments.scenario, changes)
@@ -39,28 +39,28 @@ def run_procedure(arguments: argparse.Namespace) -> int | None:
     if arguments.seed is not None and not 0 <= arguments.seed < 2**63:
         raise InvalidInputError("--seed", arguments.seed, "at least 0 and below 2^63")
     plant = Plant.load(arguments.plant) if arguments.plant else None
-    folder = output_folder(arguments.out, procedure.name)
-    make_folder(folder)
-    with RunProgress(procedure.name, 1.0, unit="share") as progress:
-        conduct = RunContext(folder, plant, arguments.seed, progress.share)
-        account = procedure.carry_out(conduct)
-    text = json_text(_summary(procedure, account))
-    write_whole(folder / SUMMARY_NAME, text + "\n")
+    with output_folder(arguments.out, procedure.name) as held:
+        folder = held.path
+        with RunProgress(procedure.name, 1.0, unit="share") as progress:
+            conduct = RunContext(folder, plant, arguments.seed, progress.share)
+            result = procedure.carry_out(conduct)
+        text = json_text(_summary(procedure, result))
+        write_whole(folder / SUMMARY_NAME, text + "\n")
+        files = ", ".join(sorted(p.name for p in folder.iterdir()))
     if arguments.json:
         print(text)
     else:
-        files = ", ".join(sorted(p.name for p in folder.iterdir()))
         head = f"{procedure.name}: {procedure.question}"
-        outcome = f"  outcome   {account.outcome.value}"
-        print("\n".join([head, outcome, "", *account.lines, "", f"  files     {folder}/: {files}"]))
-    return exit_code(account.outcome)
+        outcome = f"  outcome   {result.outcome.value}"
+        print("\n".join([head, outcome, "", *result.lines, "", f"  files     {folder}/: {files}"]))
+    return exit_code(result.outcome)
 
 
-def _summary(procedure: Procedure, account: Account) -> dict[str, object]:
+def _summary(procedure: Procedure, result: Result) -> dict[str, object]:
     head = {
         "procedure": procedure.procedure,
         "name": procedure.name,
         "question": procedure.question,
-        "outcome": account.outcome.value,
+        "outcome": result.outcome.value,
     }
-    return {**head, **account.values, "options": procedure.model_dump(mode="json")}
+    return {**head, **result.values, "options": procedure.model_dump(mode="json")}

@@ -26,7 +26,8 @@ def sweep_rows(table: Path, keys: Mapping[str, str]) -> list[str]:
         table: the Parquet table of a sweep.
         keys: varied key -> unit.
     """
-    found = pq.read_table(table)
+    with table.open("rb") as file:
+        found = pq.read_table(file)
     rows = found.slice(0, MOST_ROWS).to_pylist()
     prefix = next((name for name in _KINDS if f"{name}.x.rms" in found.column_names), "")
     axes = SIGNALS["truth.pose"].axes if prefix else ()

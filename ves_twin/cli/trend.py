@@ -8,11 +8,11 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from ves_twin.core.recording.recording import Recording
     from ves_twin.diagnosis.trend.calendar import Calendar
     from ves_twin.diagnosis.trend.result import DaySize, Trend
+    from ves_twin.machines.machine import Named
 
-from ves_twin.cli.rig_recordings import add_rig_arguments, means_rig, rig_name, rig_recordings
+from ves_twin.cli.given import Given, add_machine_options, bank_settings
 
 SUMMARY = "follow one cause over recordings of different days: constant, step, ramp, and since when"
 
@@ -30,10 +30,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "measured", metavar="FOLDER|FILE", nargs="+", help="recordings of one rig, dated by name"
     )
-    parser.add_argument("--plant", metavar="FILE", help="the rig of two files")
-    parser.add_argument("--experiment", metavar="FILE", help="how they were made (TOML)")
-    add_rig_arguments(parser, alternate=False)
-    parser.add_argument("--standstill", metavar="REC", help="the rig standing still: its noise")
+    add_machine_options(parser)
     parser.add_argument(
         "--cause", metavar="EFFECT@TARGET", default="", help="follow this one, whatever else"
     )
@@ -56,43 +53,33 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def execute(arguments: argparse.Namespace) -> int:
     """Read, follow, write page and JSON, print the answer."""
-    from ves_twin.cli.diagnose import diagnosis_settings
     from ves_twin.cli.output_folder import output_folder
     from ves_twin.cli.progress import RunProgress
-    from ves_twin.core.errors import InvalidInputError
-    from ves_twin.machines.mjcf.trend_mjcf import trend_mjcf
-    from ves_twin.plant.plant import Plant
+    from ves_twin.machines.trend import trend
     from ves_twin.report.diagnosis.trend_page import trend_page
     from ves_twin.report.page import write_page
-    from ves_twin.simulator.simulate import make_folder
 
-    if not means_rig(arguments):
-        named = rig_name(arguments)
-        if named:
-            Plant.load(named)  # a name or file that does not exist is told as such
-        expected = "a rig of two files; VES II is not followed"
-        raise InvalidInputError("--plant", named or "no such rig", expected)
-    names = recordings_in(arguments.measured)
-    given = rig_recordings(arguments, names)
-    calendar = _calendar(names, given.measured, arguments.numbered)
-    folder = output_folder(arguments.out, "trend")
-    make_folder(folder)
-    with RunProgress("trend", 1.0, unit="share") as progress:
-        found = trend_mjcf(
-            given.measured,
-            given.rig,
-            calendar,
-            standstill=given.standstill,
-            exclude=arguments.exclude,
-            cause=arguments.cause,
-            false_alarm=arguments.false_alarm,
-            settings=diagnosis_settings(),
-            progress=progress.share,
-        )
-    found.save(folder / JSON_NAME)
-    title = f"Trend of {len(names)} recordings of {given.rig.description.name}"
-    write_page(folder / PAGE_NAME, trend_page(found, title))
-    print(found.to_json() if arguments.json else _text(found, folder))
+    with output_folder(arguments.out, "trend") as held:
+        given = Given.of(arguments)
+        measured = given.read(recordings_in(arguments.measured))
+        calendar = _calendar(measured, arguments.numbered)
+        with RunProgress("trend", 1.0, unit="share") as progress:
+            found = trend(
+                measured,
+                given.machine,
+                calendar=calendar,
+                standstill=given.standstill(arguments.standstill),
+                exclude=arguments.exclude,
+                cause=arguments.cause,
+                false_alarm=arguments.false_alarm,
+                experiment=given.experiment,
+                settings=bank_settings(),
+                progress=progress.share,
+            )
+        found.save(held.path / JSON_NAME)
+        title = f"Trend of {len(measured)} recordings of {given.machine.name}"
+        write_page(held.path / PAGE_NAME, trend_page(found, title))
+    print(found.to_json() if arguments.json else _text(found, held.path))
     return 0
 
 
@@ -131,15 +118,12 @@ def _is_recording(path: Path) -> bool:
     return path.suffix.lower() in SUFFIXES
 
 
-def _calendar(names: Sequence[str], recordings: Sequence[Recording], numbered: bool) -> Calendar:
+def _calendar(measured: Sequence[Named], numbered: bool) -> Calendar:
     from ves_twin.core.recording.date_of import date_of
-    from ves_twin.core.recording.files import recording_name
     from ves_twin.diagnosis.trend.calendar import Calendar
 
-    shown = [recording_name(name) for name in names]
-    pairs = zip(shown, recordings, strict=True)
-    dates = [None if numbered else date_of(name, recording) for name, recording in pairs]
-    return Calendar.of(shown, dates)
+    dates = [None if numbered else date_of(one.name, one.recording) for one in measured]
+    return Calendar.of([one.name for one in measured], dates)
 
 
 def _text(trend: Trend, folder: Path) -> str:

@@ -51,7 +51,8 @@ def execute(arguments: argparse.Namespace) -> int:
     if not is_recording:
         _check_something_is_there(path)
         _refuse(arguments, ("--no-rrd",), "where the rerun file is what is looked at")
-        summary, folder = run_scenario(arguments)
+        with run_scenario(arguments) as (summary, folder):
+            pass
         if not (folder / "run.rrd").is_file():
             raise VesTwinError(f"nothing to look at: {summary.outcome.value}, {summary.advice}")
         return open_viewer(folder / "run.rrd", arguments.web)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from ves_twin.core.read_only import ReadOnly
 from ves_twin.core.types import FloatArray
 from ves_twin.mechanics.gravity.gravity_model import GravityModel
 from ves_twin.mechanics.kinematics.puma560 import Puma560
@@ -11,7 +12,7 @@ from ves_twin.mechanics.kinematics.stewart import StewartGeometry
 
 
 @dataclass(frozen=True)
-class Belief:
+class Belief(ReadOnly):
     """Frozen numbers that controllers work with.
 
     Attributes:

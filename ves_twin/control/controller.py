@@ -7,13 +7,14 @@ from dataclasses import dataclass
 
 from ves_twin.control.belief import Belief
 from ves_twin.control.readings import Readings
+from ves_twin.core.read_only import ReadOnly
 from ves_twin.core.types import FloatArray
 from ves_twin.mechanics.emulated import EmulatedSystem
 from ves_twin.mechanics.joint_motion import PlatformMotion
 
 
 @dataclass(frozen=True)
-class ControlTask:
+class ControlTask(ReadOnly):
     """What a platform controller is told when it is built.
 
     Attributes:

@@ -7,8 +7,6 @@ file would silently run the old physics. Here the folder's name carries a hash o
 from __future__ import annotations
 
 import hashlib
-import os
-import tempfile
 from collections.abc import Callable
 from functools import lru_cache
 from pathlib import Path
@@ -17,6 +15,8 @@ from typing import TypeVar, cast
 import numba
 import numpy as np
 from numba.core import config as numba_config
+
+from ves_twin.core.cache_folder import cache_folder
 
 Function = TypeVar("Function", bound=Callable[..., object])
 
@@ -35,19 +35,9 @@ def sources_hash(package: Path) -> str:
 
 
 @lru_cache(maxsize=1)
-def cache_folder() -> Path:
+def compiled_folder() -> Path:
     """Folder of the compiled code: per user, named by the hash of the sources."""
-    name = sources_hash(Path(__file__).resolve().parent.parent)
-    home = os.environ.get("XDG_CACHE_HOME") or str(Path.home() / ".cache")
-    for root in (Path(home) / "ves_twin", Path(tempfile.gettempdir()) / f"ves_twin-{os.getuid()}"):
-        folder = root / f"numba-{name}"
-        try:
-            folder.mkdir(parents=True, exist_ok=True)
-        except OSError:
-            continue
-        if os.access(folder, os.W_OK):
-            return folder
-    return Path(tempfile.mkdtemp(prefix="ves_twin-"))
+    return cache_folder(f"numba-{sources_hash(Path(__file__).resolve().parent.parent)}")
 
 
 def compiled(function: Function) -> Function:
@@ -56,7 +46,7 @@ def compiled(function: Function) -> Function:
     Fast-math is off because a fresh and a cached compile would then give different runs.
     """
     before = numba_config.CACHE_DIR
-    numba_config.CACHE_DIR = str(cache_folder())
+    numba_config.CACHE_DIR = str(compiled_folder())
     try:
         return cast("Function", numba.njit(cache=True, nogil=True, error_model="numpy")(function))
     finally:

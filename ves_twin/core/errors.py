@@ -17,6 +17,10 @@ class VesTwinError(Exception):
         return _rebuilt, (type(self), str(self))
 
 
+class VesTwinWarning(UserWarning):
+    """What a user should know although nothing failed; its text is one clear line."""
+
+
 def _rebuilt(kind: type[VesTwinError], text: str) -> VesTwinError:
     error = kind.__new__(kind)
     Exception.__init__(error, text)

@@ -23,14 +23,23 @@ class Registry(Mapping[str, Kind]):
         group: entry point group, for instance "ves_twin.controllers".
         built_in: what comes with the twin.
         problem: says in some words what is wrong with a loaded object, or None.
+        also: an earlier group whose entry points are read as well.
+        renamed: earlier names of built-in implementations -> today's; understood, never listed.
     """
 
     def __init__(
-        self, group: str, built_in: Mapping[str, Kind], problem: Callable[[object], str | None]
+        self,
+        group: str,
+        built_in: Mapping[str, Kind],
+        problem: Callable[[object], str | None],
+        also: str = "",
+        renamed: Mapping[str, str] | None = None,
     ) -> None:
         self.group = group
         self._built_in = dict(built_in)
         self._problem = problem
+        self._groups = (group, also) if also else (group,)
+        self._renamed = dict(renamed or {})
 
     def __getitem__(self, name: str) -> Kind:
         """The implementation of a name.
@@ -39,7 +48,7 @@ class Registry(Mapping[str, Kind]):
             UnknownNameError: no such name; says the nearest one.
             PluginError: two packages claim the name, or the package's one cannot be loaded.
         """
-        points = self._points()
+        name, points = self._renamed.get(name, name), self._points()
         self._check_claims(name, points)
         if name in self._built_in:
             return self._built_in[name]
@@ -48,7 +57,7 @@ class Registry(Mapping[str, Kind]):
         return self._load(points[name][0])
 
     def __contains__(self, name: object) -> bool:
-        return name in self._built_in or name in self._points()
+        return name in self._built_in or name in self._renamed or name in self._points()
 
     def __iter__(self) -> Iterator[str]:
         return iter([*self._built_in, *(n for n in self._points() if n not in self._built_in)])
@@ -69,8 +78,9 @@ class Registry(Mapping[str, Kind]):
 
     def _points(self) -> dict[str, list[EntryPoint]]:
         found: dict[str, list[EntryPoint]] = {}
-        for point in _installed(self.group, tuple(sys.path)):
-            found.setdefault(point.name, []).append(point)
+        for group in self._groups:
+            for point in _installed(group, tuple(sys.path)):
+                found.setdefault(point.name, []).append(point)
         return found
 
     def _check_claims(self, name: str, points: Mapping[str, list[EntryPoint]]) -> None:

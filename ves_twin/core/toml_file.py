@@ -1,12 +1,14 @@
-"""read_toml and parse_toml: a TOML file as a table, or one line that says what is wrong with it."""
+"""read_toml, write_toml: a TOML file as a table, or one line that says what is wrong with it."""
 
 from __future__ import annotations
 
 import tomllib
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
 from ves_twin.core.errors import FileAccessError, InvalidInputError, VersionError
+from ves_twin.core.whole_file import write_whole
 
 
 def read_toml(kind: str, path: Path) -> tuple[dict[str, Any], str]:
@@ -44,6 +46,18 @@ def parse_toml(text: str) -> dict[str, Any]:
         elif isinstance(value, int) and not -(2**63) <= value < 2**63:
             raise ValueError(f"an integer of {value.bit_length()} bits, TOML has 64")
     return content
+
+
+def write_toml(path: Path, content: Mapping[str, object], note: str = "") -> None:
+    """Write a table below the lines of a note; what was there stays until the new file is whole.
+
+    Raises:
+        FileAccessError: not writable.
+    """
+    import tomli_w  # only who writes needs it
+
+    comment = "".join(f"# {line}\n" for line in note.splitlines())
+    write_whole(path, comment + tomli_w.dumps(content))
 
 
 def check_schema(content: dict[str, Any], path: Path, expected: int) -> None:

@@ -46,9 +46,12 @@ def check_writable(path: Path) -> None:
 
 
 def write_whole(path: Path, text: str) -> None:
-    """Write a text file, UTF-8, complete or not at all; raises as `whole_file`."""
+    """Write a text file, UTF-8, complete or not at all; raises as `whole_file`.
+
+    Names of files that the locale could not decode keep their bytes.
+    """
     with whole_file(path) as partial:
-        partial.write_text(text, encoding="utf-8")
+        partial.write_text(text, encoding="utf-8", errors="surrogateescape")
 
 
 def _check_target(path: Path) -> None:

@@ -57,7 +57,7 @@ def import_log(
         told: the map.
         window: stretch to import; the map's if left out.
         plausible: ranges of the plant's signals, by which mixed units are suspected.
-        known: signals of a rig of two files, which the map then need not declare.
+        known: signals of an MJCF machine, which the map then need not declare.
 
     Raises:
         UnknownNameError: a column, clock, frame or signal that does not exist, with the nearest.

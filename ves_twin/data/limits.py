@@ -25,7 +25,7 @@ class Limits:
         unfolded: what a compressed file may hold, or the columns that are read of it; a file that
             is large itself may hold `RATIO` times its size.
         line: the longest line of a text table that is larger than the piece parsed at a time.
-        message: the longest message of an MCAP file whose numbers are read.
+        message: the longest message of an MCAP file whose numbers are read; a quarter for JSON.
     """
 
     unfolded: int = 128 * 10**6

@@ -45,6 +45,9 @@ SAMPLED = 2000
 
 MANY = 10_000
 
+JSON_WEIGHT = 4
+"""Times that a byte of JSON counts as one of a message: as Python's lists it takes twenty."""
+
 WIDEST = 4096
 """Numbers of a message that become columns; a topic with more is left out."""
 
@@ -268,7 +271,8 @@ class McapLog(Log):
     def _decoded(self, topic: _Topic, message: Message) -> Any:
         if topic.decode is None:
             return None
-        self.limits.check_message(self.path, len(message.data))
+        weight = JSON_WEIGHT if topic.decode is _from_json else 1
+        self.limits.check_message(self.path, weight * len(message.data))
         try:
             return topic.decode(message.data)
         except Exception as error:  # each decoder raises its own

@@ -62,7 +62,7 @@ def resolve(log: Log, told: ImportMap, given: Sequence[Signal] = ()) -> tuple[Ta
     Args:
         log: the file.
         told: the map.
-        given: signals of a rig of two files, in place of those of VES II.
+        given: signals of an MJCF machine, in place of those of VES II.
 
     Raises:
         UnknownNameError: a column, signal, clock or frame that does not exist, with the nearest.

@@ -9,6 +9,7 @@ import numpy as np
 from scipy.stats import norm
 
 from ves_twin.core.types import FloatArray
+from ves_twin.diagnosis.residuals.spectrum import score
 from ves_twin.diagnosis.whitening import Whitening
 
 BANDS = 12
@@ -44,13 +45,9 @@ class Cell:
     freedom: int
 
     def score(self, allowed: float = 0.0) -> float:
-        """Standard-normal score of the energy less an allowance, by Wilson and Hilferty.
-
-        (E / m)^(1/3) is nearly normal with mean 1 - 2 / (9 m) and variance 2 / (9 m).
-        """
-        spread = 2.0 / (9.0 * self.freedom)
+        """Standard-normal score of the energy less an allowance; unit noise is known."""
         ratio = max(self.energy - allowed, 0.0) / self.freedom
-        return float((np.cbrt(ratio) - (1.0 - spread)) / np.sqrt(spread))
+        return score(ratio, self.freedom, known=0.0)
 
 
 def cells(whitening: Whitening, z: FloatArray) -> list[Cell]:

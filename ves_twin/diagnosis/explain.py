@@ -20,7 +20,7 @@ from ves_twin.diagnosis.screen import Candidate, Screen
 from ves_twin.diagnosis.settings import Settings
 from ves_twin.diagnosis.signature_library import build_bank
 
-HOPELESS = 4.0
+RIVAL_RATIO = 4.0
 """A fit with this many times the chi^2 of the best is not worth new nuisance columns."""
 
 LEAST = 0.7
@@ -220,7 +220,7 @@ def _settled(evidence: Evidence, fits: list[Fit], desk: FitContext) -> list[Fit]
     for _ in range(2):
         leader = min(fits, key=lambda fit: fit.chi2)
         settled = _again(evidence, leader, desk.settings.rounds)
-        near = HOPELESS * settled.chi2
+        near = RIVAL_RATIO * settled.chi2
         others = [fit for fit in fits if fit is not leader]
         jobs = [_Job.again(evidence, f, settled.local) for f in others if f.chi2 < near]
         rivals = _refined(jobs, desk, "fitting its rivals")
@@ -255,7 +255,7 @@ def judge(desk: FitContext, fits: list[Fit]) -> Explanation:
     own = plain.adapted(plain.apply(bare_residual(first.evidence, leader)))
     evidence = Evidence(runs, first.evidence.measured, own)
     commissioning = _commissioning(desk, evidence, leader)
-    near = HOPELESS * leader.chi2
+    near = RIVAL_RATIO * leader.chi2
     jobs = [_Job.again(evidence, fit) for fit in fits if fit.chi2 < near]
     ranked = _refined(jobs, desk, "weighing rivals")
     ranked.sort(key=lambda fit: fit.chi2)

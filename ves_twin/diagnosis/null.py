@@ -16,7 +16,12 @@ from ves_twin.diagnosis.linearise import STEP_SD
 from ves_twin.diagnosis.prewhitened import Prewhitened
 from ves_twin.diagnosis.runs import Progress, silent
 from ves_twin.diagnosis.settings import Settings
-from ves_twin.diagnosis.signature_library import SignatureLibrary, bank_key, write_arrays
+from ves_twin.diagnosis.signature_library import (
+    SignatureLibrary,
+    bank_key,
+    read_arrays,
+    write_arrays,
+)
 from ves_twin.diagnosis.whitening import Whitening
 
 DECLARED = ((0.9, 1.12), (0.0, 0.25))
@@ -182,11 +187,11 @@ def cached_thresholds(
     content += b"".join(bad.tobytes() for bad in bank.base.runs.holes if bad.any())
     content += bank.base.prediction.tobytes()  # as stored: another one where the code has changed
     path = settings.cache / f"null-{bank_key(bank.base.runs, content)}.npz"
-    if path.is_file():
-        with np.load(path) as kept:
-            effect, level = float(kept["effect"]), float(kept["misfit"])
-            bends = 0.0 if settings.simulated_nulls else BENDS
-            return Thresholds(effect, level, kept["effects"], kept["misfits"], bends)
+    kept = read_arrays(path)
+    if kept is not None:
+        effect, level = float(kept["effect"]), float(kept["misfit"])
+        bends = 0.0 if settings.simulated_nulls else BENDS
+        return Thresholds(effect, level, kept["effects"], kept["misfits"], bends)
     found = compute()
     write_arrays(
         path,

@@ -12,7 +12,7 @@ from ves_twin.diagnosis.forward import Hypothesis
 from ves_twin.diagnosis.linearise import STEP_SD, Linearisation, renewed
 from ves_twin.diagnosis.probe import probe
 from ves_twin.diagnosis.runs import Runs
-from ves_twin.diagnosis.search import FARTHEST, WORTHLESS, Point, Search
+from ves_twin.diagnosis.search import FARTHEST, RELATIVE_CONVERGENCE, Point, Search
 
 NEAR = 0.3
 """Commissioning sd within which nuisance columns are taken to hold; absent parameters: 6 %."""
@@ -72,7 +72,7 @@ def refine(
     step_share: float = 0.0,
     farthest: float = FARTHEST,
     probed: bool = False,
-    enough: float = WORTHLESS,
+    enough: float = RELATIVE_CONVERGENCE,
 ) -> Fit:
     """Fit causes and nuisances with the full forward.
 

@@ -19,14 +19,14 @@ FARTHEST = 30.0
 CONVERGED = 0.02
 """Fall of chi^2 that is not worth another run; names turn on differences of 9 and more."""
 
-WORTHLESS = 1e-4
-"""The same, of all of chi^2: what is lost and won by chance where parts stick and slip."""
+RELATIVE_CONVERGENCE = 1e-4
+"""The same as a share of chi^2: what is lost and won by chance where parts stick and slip."""
 
-HOT = 1.0
-"""Squared residual per sample, above one, from which a search that stalls is gone on with at the
-priors' own weight."""
+NONLINEAR_CHI2 = 2.0
+"""Squared residual per sample from which a search that stalls is gone on with at the priors' own
+weight."""
 
-COOLER = 10.0
+PRIOR_WEIGHT_RATIO = 10.0
 """Times that weight, which is tried beside it: a long step may end where the legs hunt, and no
 column points back from there."""
 
@@ -34,7 +34,7 @@ SECANT = 0.25
 """Step of a cause's own column, of its size, to either side. A rig that sticks and slips answers 1
 to 5 sigma off by chance: over 4 % of a cause of 20 sigma its column would be that alone."""
 
-BENT = 0.01
+UPDATE_TOLERANCE = 0.01
 """Squared error [sigma^2] of a predicted change above which the Jacobian is turned: single
 precision makes 1e-6 of it, and a smaller error moves no estimate."""
 
@@ -46,8 +46,8 @@ DAMPING = 10.0
 """First weight, and growth of the weight, that a step which did not help adds to the priors: a
 strong commissioning error that is a little off its column leaks into weak ones, many sd of them."""
 
-GOOD = 0.25
-"""Share of the foretold fall from which a step counts as foretold."""
+GAIN_RATIO = 0.25
+"""Found over foretold fall of chi^2 from which a step counts as foretold (Marquardt's ratio)."""
 
 ATTEMPTS = 4
 """Dampings that are tried before a search ends."""
@@ -100,7 +100,7 @@ class Search:
         free: IntArray,
         local: Linearisation,
         farthest: float = FARTHEST,
-        enough: float = WORTHLESS,
+        enough: float = RELATIVE_CONVERGENCE,
     ) -> None:
         runs = evidence.runs
         self.enough = enough
@@ -198,12 +198,12 @@ class Search:
             fall = point.chi2 - found.chi2
             point = found
             if fall < CONVERGED + self.enough * point.chi2:
-                if not self.tempered or self._heat(point) < 1.0 + HOT:
+                if not self.tempered or self._prior_weight(point) < NONLINEAR_CHI2:
                     break
                 self.tempered = False
         return point, jacobian
 
-    def _heat(self, point: Point) -> float:
+    def _prior_weight(self, point: Point) -> float:
         """Squared residual per sample: while it is far above one the model is not yet linear."""
         if not self.tempered:
             return 1.0
@@ -227,9 +227,10 @@ class Search:
         Source: Marquardt 1963, with the priors' own unit as the scale of the damping; Bakushinskii
         1992, the iteratively regularised Gauss-Newton method, for the weight of the priors.
         """
-        heat = self._heat(point)
+        prior = self._prior_weight(point)
         for attempt in range(ATTEMPTS):
-            weights = (heat, COOLER * heat) if attempt == 0 and heat > 1.0 + HOT else (heat,)
+            far = attempt == 0 and prior > NONLINEAR_CHI2
+            weights = (prior, PRIOR_WEIGHT_RATIO * prior) if far else (prior,)
             steps = [self._proposed(point, jacobian, weight) for weight in weights]
             trials = [self.at(step.shift, step.delta) for step in steps]
             for trial in trials:
@@ -259,7 +260,7 @@ class Search:
 
     def _trust(self, fall: float, hoped: float) -> None:
         """Less damping where the linear model foretold the fall; the same where it did not."""
-        if fall > GOOD * hoped:
+        if fall > GAIN_RATIO * hoped:
             self.damping = self.damping / DAMPING if self.damping > DAMPING else 0.0
 
     def _learn(self, point: Point, trial: Point, jacobian: FloatArray) -> None:
@@ -269,7 +270,7 @@ class Search:
         there = np.append(trial.shift[axes], trial.delta)
         move = (there - np.append(point.shift[axes], point.delta)) / self.unit
         surprise = point.residual - trial.residual - jacobian @ move
-        if surprise @ surprise > BENT:
+        if surprise @ surprise > UPDATE_TOLERANCE:
             turning = self.bends**2 * move
             share = turning / (turning @ move + CHANCE)
             jacobian += np.outer(surprise, share)

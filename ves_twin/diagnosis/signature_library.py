@@ -7,6 +7,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
+from zipfile import BadZipFile
 
 import numpy as np
 
@@ -202,7 +203,7 @@ def cached_bank(
     if folder is None:
         return build()
     path = folder / f"bank-{bank_key(runs)}.npz"
-    kept = _read(path, runs) if path.is_file() else None
+    kept = _read(path, runs)
     if kept is not None and still_predicts(runs, kept.base.prediction):
         return kept
     bank = build()
@@ -255,12 +256,23 @@ def write_arrays(path: Path, **arrays: np.ndarray[Any, Any]) -> None:
         np.savez(file, **arrays)  # type: ignore[arg-type]
 
 
-def _read(path: Path, runs: Runs) -> SignatureLibrary:
-    with np.load(path) as content:
-        owner = content["owner"]
-        widths = [len(runs.forward.hypotheses[i].parameters) for i in owner]
-        sizes = tuple(np.split(content["sizes"], np.cumsum(widths)[:-1])) if widths else ()
-        parts = (content[name] for name in ("prediction", "columns", "bends"))
-        base = Linearisation(runs, runs.origin, *parts)
-        shape, factor, bent = (content[name] for name in ("shape", "factor", "bent"))
-        return SignatureLibrary(base, runs.forward.hypotheses, owner, sizes, shape, factor, bent)
+def read_arrays(path: Path) -> dict[str, np.ndarray[Any, Any]] | None:
+    """What `write_arrays` wrote; None where there is no file, or one that is damaged."""
+    try:
+        with np.load(path) as content:
+            return dict(content)
+    except (OSError, ValueError, EOFError, BadZipFile):
+        return None
+
+
+def _read(path: Path, runs: Runs) -> SignatureLibrary | None:
+    content = read_arrays(path)
+    if content is None:
+        return None
+    owner = content["owner"]
+    widths = [len(runs.forward.hypotheses[i].parameters) for i in owner]
+    sizes = tuple(np.split(content["sizes"], np.cumsum(widths)[:-1])) if widths else ()
+    parts = (content[name] for name in ("prediction", "columns", "bends"))
+    base = Linearisation(runs, runs.origin, *parts)
+    shape, factor, bent = (content[name] for name in ("shape", "factor", "bent"))
+    return SignatureLibrary(base, runs.forward.hypotheses, owner, sizes, shape, factor, bent)

@@ -18,6 +18,7 @@ from ves_twin.diagnosis.runs import Runs
 from ves_twin.diagnosis.signature_library import (
     SignatureLibrary,
     bank_key,
+    read_arrays,
     still_predicts,
     write_arrays,
 )
@@ -82,9 +83,9 @@ def cached_scale(rigs: Sequence[tuple[Runs, SingleArray]], folder: Path | None) 
         return tolerance_scale(rigs)
     content = "".join(bank_key(runs, measured.tobytes()) for runs, measured in rigs)
     path = folder / f"scale-{bank_key(rigs[0][0], content.encode())}.npz"
-    if path.is_file():
-        with np.load(path) as kept:
-            scale, told = float(kept["scale"]), kept["predictions"]
+    kept = read_arrays(path)
+    if kept is not None:
+        scale, told = float(kept["scale"]), kept["predictions"]
         parts = np.split(told, np.cumsum([measured.size for _, measured in rigs])[:-1])
         if all(
             still_predicts(runs, part.reshape(measured.shape))

@@ -1,72 +1,114 @@
-"""effects: named deviations of a rig from its description, which diagnosis looks for."""
+"""effects: named deviations of a machine from its description, which diagnosis looks for."""
 
-from ves_twin.effects.arm import (
-    CableSpring,
-    EncoderOffset,
-    JointFriction,
-    JointViscous,
-    RotorInertia,
-    TorqueConstant,
-)
-from ves_twin.effects.computers import ModelMass, StaleGravity
-from ves_twin.effects.cylinder import CoulombFriction, CylinderViscous, OilAir, PistonLeakage
-from ves_twin.effects.deployed import CommandLimit, FilterEdge, LegGain, LegRateGain, ServoGain
+from ves_twin.effects.actuators import ActuatorDelay, ActuatorGain
+from ves_twin.effects.bodies import BodyInertia, BodyMass, MassCentre, PayloadMass
+from ves_twin.effects.couplings import CouplingCoulomb, CouplingInertia, CouplingViscous
 from ves_twin.effects.effect import Effect
-from ves_twin.effects.force_sensor import (
-    SensorCrossTalk,
+from ves_twin.effects.friction import FrictionBehindGap, QuadraticDrag, StribeckFriction
+from ves_twin.effects.hydraulics import (
+    OilAir,
+    PistonLeakage,
+    SupplyDroop,
+    SupplyPressure,
+    ValveDeadband,
+    ValveGain,
+    ValveLag,
+    ValveNull,
+)
+from ves_twin.effects.joints import (
+    Backlash,
+    CoulombAsymmetry,
+    CoulombFriction,
+    ForceOffset,
+    JointSpring,
+    RotorInertia,
+    ViscousAsymmetry,
+    ViscousFriction,
+)
+from ves_twin.effects.programs import (
+    CommandLimit,
+    FilterEdge,
+    LegGain,
+    LegRateGain,
+    ModelMass,
+    ServoGain,
+    StaleGravity,
+)
+from ves_twin.effects.sensors import (
+    CrossTalk,
+    EncoderOffset,
+    SensorDelay,
     SensorDrift,
     SensorGain,
     SensorLag,
     SensorMounting,
+    SensorOffset,
+    SensorWander,
 )
-from ves_twin.effects.geometry import AnchorPosition, BaseTilt, HoseStiffness, LegBending
-from ves_twin.effects.payload import LinkCentre, LinkMass, PayloadMass
-from ves_twin.effects.supply import SupplyDroop, SupplyPressure
-from ves_twin.effects.timing import DriveDelay, SensorDelay, TransducerDelay, ValveDelay
-from ves_twin.effects.transducer import LengthOffset, LengthScale
-from ves_twin.effects.valve import ValveDeadband, ValveGain, ValveLag, ValveNull
+from ves_twin.effects.structure import AnchorPosition, BaseTilt, HoseStiffness, LegBending
+from ves_twin.effects.transducers import LengthOffset, LengthScale, TransducerDelay
+
+CableSpring = JointSpring
+CylinderViscous = JointViscous = ViscousFriction
+DriveDelay = ValveDelay = ActuatorDelay
+JointFriction = CoulombFriction
+LinkCentre = MassCentre
+LinkMass = BodyMass
+SensorCrossTalk = CrossTalk
+TorqueConstant = ActuatorGain
+# names of earlier versions, as registry.RENAMED has them of files
 
 __all__ = [
+    "ActuatorDelay",
+    "ActuatorGain",
     "AnchorPosition",
+    "Backlash",
     "BaseTilt",
-    "CableSpring",
+    "BodyInertia",
+    "BodyMass",
     "CommandLimit",
+    "CoulombAsymmetry",
     "CoulombFriction",
-    "CylinderViscous",
-    "DriveDelay",
+    "CouplingCoulomb",
+    "CouplingInertia",
+    "CouplingViscous",
+    "CrossTalk",
     "Effect",
     "EncoderOffset",
     "FilterEdge",
+    "ForceOffset",
+    "FrictionBehindGap",
     "HoseStiffness",
-    "JointFriction",
-    "JointViscous",
+    "JointSpring",
     "LegBending",
     "LegGain",
     "LegRateGain",
     "LengthOffset",
     "LengthScale",
-    "LinkCentre",
-    "LinkMass",
+    "MassCentre",
     "ModelMass",
     "OilAir",
     "PayloadMass",
     "PistonLeakage",
+    "QuadraticDrag",
     "RotorInertia",
-    "SensorCrossTalk",
     "SensorDelay",
     "SensorDrift",
     "SensorGain",
     "SensorLag",
     "SensorMounting",
+    "SensorOffset",
+    "SensorWander",
     "ServoGain",
     "StaleGravity",
+    "StribeckFriction",
     "SupplyDroop",
     "SupplyPressure",
-    "TorqueConstant",
     "TransducerDelay",
     "ValveDeadband",
-    "ValveDelay",
     "ValveGain",
     "ValveLag",
     "ValveNull",
+    "ViscousAsymmetry",
+    "ViscousFriction",
 ]

@@ -71,7 +71,7 @@ class ChunkedVectorEnv(VectorEnv[FloatArray, FloatArray, Any]):
         count = min(processes or os.cpu_count() or 1, num_envs)
         ends = [num_envs * k // count for k in range(count + 1)]
         self._shares = [slice(a, b) for a, b in pairwise(ends)]
-        context = multiprocessing.get_context("spawn")  # a simulator cannot be forked
+        context = multiprocessing.get_context("spawn")  # libraries' threads do not survive a fork
         with single_threads():
             for share in self._shares:
                 ours, theirs = context.Pipe()

@@ -12,7 +12,7 @@ from ves_twin.core.errors import InvalidInputError, UnknownNameError
 from ves_twin.core.resources import find_resource
 from ves_twin.core.toml_file import check_schema, read_toml
 from ves_twin.effects.effect import Effect
-from ves_twin.effects.registry import EFFECTS
+from ves_twin.effects.registry import kind_on_ves2, targets_of
 from ves_twin.plant.plant import NOMINAL, Plant
 from ves_twin.scenario.fields import Part
 from ves_twin.scenario.load import refusal
@@ -57,10 +57,11 @@ class DrawnEffect(Part):
 
     @model_validator(mode="after")
     def _names_exist(self) -> Self:
-        if self.kind not in EFFECTS:
-            raise ValueError(str(UnknownNameError("effect", self.kind, EFFECTS)))
-        kind = EFFECTS[self.kind]
-        names = [magnitude.name for magnitude in kind.magnitudes]
+        try:
+            kind = kind_on_ves2(self.kind)
+        except UnknownNameError as error:
+            raise ValueError(str(error)) from None
+        names = [size.name for size in kind.sizes]
         for name in self.sizes:
             if name not in names:
                 raise ValueError(str(UnknownNameError(f"magnitude of {self.kind}", name, names)))
@@ -74,10 +75,10 @@ class DrawnEffect(Part):
 
     def draw(self, rng: np.random.Generator) -> list[Effect]:
         """Effects on some of the targets, sizes held within the kind's own bounds."""
-        kind, found = EFFECTS[self.kind], []
-        bounds = {m.name: (m.low, m.high) for m in kind.magnitudes}
-        for target in self.targets or kind.targets:
+        kind, found = kind_on_ves2(self.kind), []
+        for target in self.targets or targets_of(self.kind):
             if rng.uniform() < self.share:
+                bounds = {m.name: (m.low, m.high) for m in kind.magnitudes_of(target)}
                 sizes = {n: float(np.clip(s.draw(rng), *bounds[n])) for n, s in self.sizes.items()}
                 found.append(kind(target, **sizes))
         return found

@@ -10,6 +10,7 @@ from pathlib import Path
 import numpy as np
 
 from ves_twin.core.errors import InvalidInputError, UnknownNameError
+from ves_twin.core.read_only import ReadOnly
 from ves_twin.core.resources import find_resource
 from ves_twin.core.toml_file import check_schema, read_toml
 from ves_twin.core.types import FloatArray
@@ -32,7 +33,7 @@ class Coupling(StrEnum):
 
 
 @dataclass(frozen=True)
-class EmulatedSystem:
+class EmulatedSystem(ReadOnly):
     """A linear base with six coordinates Y = (X, Y, Z, phiX, phiY, phiZ).
 
     Attributes:

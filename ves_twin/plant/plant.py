@@ -32,7 +32,7 @@ NOMINAL = "ves2"
 RIG_KIND = "rig"
 """`kind` of the file of another machine, which is no plant of VES II."""
 
-_PLANT_ASKED = "a plant of VES II; compare, diagnose and trend take a rig of two files"
+_PLANT_ASKED = "a plant of VES II; compare, diagnose, trend and plan take an MJCF machine"
 
 MJCF_FILES = ("frame.xml", "leg.xml", "platform.xml", "sensor.xml", "puma560.xml")
 """The parts of the rig, each a file that opens on its own in any MuJoCo viewer."""
@@ -138,6 +138,8 @@ class Plant:
 
         An effect of zero size is left out, so that it is no effect to the last bit.
         """
+        for effect in effects:
+            effect.check()
         merged = {(e.kind, e.target): e for e in (*self.effects, *effects)}
         kept = tuple(merged[key] for key in sorted(merged) if not merged[key].neutral)
         return replace(self, effects=kept).with_fidelity(self.fidelity)

@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-import json
 from pathlib import Path
 
-from ves_twin.core.whole_file import write_whole
+from ves_twin.core.toml_file import write_toml
 from ves_twin.effects.registry import effects_table
 from ves_twin.plant.parameters import SCHEMA
 from ves_twin.plant.plant import Plant
@@ -23,18 +22,8 @@ def write_plant(plant: Plant, path: Path, note: str = "", name: str = "") -> Non
     Raises:
         FileAccessError: not writable.
     """
-    lines = [f"# {line}" for line in note.splitlines()]
-    lines += [
-        f"schema = {SCHEMA}",
-        f"name = {json.dumps(name or path.stem)}",
-        f'base = "{plant.base}"',
-    ]
-    changes = plant.changes()
-    if changes:
-        lines += ["", "[parameters]"]
-        lines += [f"{json.dumps(key)} = {json.dumps(value)}" for key, value in changes.items()]
-    for kind, targets in effects_table(plant.effects).items():
-        for target, values in targets.items():
-            lines += ["", f"[effects.{kind}.{json.dumps(target)}]"]
-            lines += [f"{key} = {value!r}" for key, value in values.items()]
-    write_whole(path, "\n".join(lines) + "\n")
+    content: dict[str, object] = {"schema": SCHEMA, "name": name or path.stem, "base": plant.base}
+    changes, effects = plant.changes(), effects_table(plant.effects)
+    content |= {"parameters": changes} if changes else {}
+    content |= {"effects": effects} if effects else {}
+    write_toml(path, content, note)

@@ -15,7 +15,7 @@ from ves_twin.plant.plant import Plant
 from ves_twin.procedures.calibration_files import Fit, write_fit
 from ves_twin.procedures.claims import KNOWN_CLAIMS, Evaluation, Gains, measure_claims
 from ves_twin.procedures.feasible import Feasible
-from ves_twin.procedures.procedure import Account, Procedure, RunContext
+from ves_twin.procedures.procedure import Procedure, Result, RunContext
 from ves_twin.scenario.fields import Part, PerSecond, named
 from ves_twin.simulator.outcome import Outcome
 
@@ -87,7 +87,7 @@ class CalibratePlant(Procedure):
     verify: bool = True
     workers: Annotated[int, Field(ge=1, le=64)] = 2
 
-    def carry_out(self, conduct: RunContext) -> Account:
+    def carry_out(self, conduct: RunContext) -> Result:
         """Fit, say what pulls against what, and write the plant and its entries."""
         plant = conduct.plant or Plant.load(self.plant)
         for knob in self.knobs:
@@ -122,7 +122,7 @@ class CalibratePlant(Procedure):
         content: dict[str, JsonValue] = json.loads(
             (conduct.folder / "calibration.json").read_text(encoding="utf-8")
         )
-        return Account(Outcome.COMPLETED, content, tuple(lines))
+        return Result(Outcome.COMPLETED, content, tuple(lines))
 
     def claims_text(self) -> dict[str, str]:
         """Each claim's bounds as text."""

@@ -16,9 +16,9 @@ from ves_twin.mechanics.gravity.interleaved_split import alternate
 from ves_twin.mechanics.gravity.observations import Observations
 from ves_twin.mechanics.gravity.poses import conditioning
 from ves_twin.plant.plant import Plant
-from ves_twin.procedures.gravity_report import Calibrated, account_of, write_report
+from ves_twin.procedures.gravity_report import Calibrated, result_of, write_report
 from ves_twin.procedures.held_poses import HeldPosesProcedure
-from ves_twin.procedures.procedure import Account, RunContext, part_of
+from ves_twin.procedures.procedure import Result, RunContext, part_of
 from ves_twin.scenario.fields import named, si
 from ves_twin.simulator.build import belief_of
 
@@ -44,7 +44,7 @@ class CalibratePoses(HeldPosesProcedure):
     gain_sd: Annotated[float, Field(gt=0, le=1)] = 0.005
     weight: Annotated[float, si("kg"), Field(gt=0, le=20)] = 5.0
 
-    def carry_out(self, conduct: RunContext) -> Account:
+    def carry_out(self, conduct: RunContext) -> Result:
         """Hold, fit, write `gravity.toml`, `report.md` and `residuals.png`.
 
         Raises:
@@ -74,7 +74,7 @@ class CalibratePoses(HeldPosesProcedure):
             conditioning=conditioning(belief.gravity, position, full_scale, q, poses[:, 3:]),
         )
         write_report(result, conduct.folder, self.question)
-        return account_of(result)
+        return result_of(result)
 
     def _observe(
         self, conduct: RunContext, plant: Plant, poses: FloatArray, q: FloatArray, seed: int

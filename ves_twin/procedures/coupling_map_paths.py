@@ -22,7 +22,7 @@ from ves_twin.plant.plant import Plant
 from ves_twin.plant.puma_chain import puma_chain
 from ves_twin.procedures.number_table import write_table
 from ves_twin.procedures.paths_on_rig import PathsOnRig
-from ves_twin.procedures.procedure import Account, Procedure, Progress, RunContext
+from ves_twin.procedures.procedure import Procedure, Progress, Result, RunContext
 from ves_twin.procedures.rig_energy import RigOptions
 from ves_twin.scenario.fields import Joints, Seconds
 from ves_twin.simulator.outcome import Outcome
@@ -122,7 +122,7 @@ class CouplingMapPaths(Procedure):
         times = (self.duration, self.rest)
         return PathsOnRig.run(self.rig, plant, seed, self.emulated, paths, times, bare, progress)
 
-    def carry_out(self, conduct: RunContext) -> Account:
+    def carry_out(self, conduct: RunContext) -> Result:
         """Run the paths; write `paths.csv` and `paths_on_rig.csv` with energies over time.
 
         Raises:
@@ -146,7 +146,7 @@ class CouplingMapPaths(Procedure):
             values |= rig.figures(peak_ratio(runs))
             lines += rig.lines()
         conduct.progress(1.0, "written")
-        return Account(Outcome.COMPLETED, values, lines)
+        return Result(Outcome.COMPLETED, values, lines)
 
 
 def peak_ratio(runs: dict[str, PathRun]) -> float:

@@ -12,7 +12,7 @@ from ves_twin.core.types import FloatArray
 from ves_twin.core.whole_file import whole_file
 from ves_twin.plant.plant import Plant
 from ves_twin.procedures.error_sources import GRAVITY_SOURCES, RIG_SOURCES, ErrorSources
-from ves_twin.procedures.procedure import Account, Procedure, RunContext
+from ves_twin.procedures.procedure import Procedure, Result, RunContext
 from ves_twin.report.picture import save_picture
 from ves_twin.scenario.fields import Seconds
 from ves_twin.simulator.outcome import Outcome
@@ -33,7 +33,7 @@ class EmulationErrorBudget(Procedure):
     duration: Annotated[Seconds, Field(gt=0, le=1e4)] = 20.0
     seed: Annotated[int, Field(ge=0, lt=2**63)] = 0
 
-    def carry_out(self, conduct: RunContext) -> Account:
+    def carry_out(self, conduct: RunContext) -> Result:
         """Run; write `budget.csv` and `budget.png`.
 
         Raises:
@@ -80,7 +80,7 @@ def _rms(values: FloatArray) -> FloatArray:
     return np.asarray(np.sqrt(np.mean(values**2, axis=0)))
 
 
-def _account(table: dict[str, FloatArray]) -> Account:
+def _account(table: dict[str, FloatArray]) -> Result:
     lines = [f"  {'rms [mm, mrad]':<22}" + "".join(f"{axis:>9}" for axis in AXES) + f"{'|xyz|':>9}"]
     for name, row in table.items():
         if name == "sum of the sources":
@@ -95,7 +95,7 @@ def _account(table: dict[str, FloatArray]) -> Account:
         "rms": {name: row.tolist() for name, row in table.items()},
         "ranked": [name for name in table if name in (*RIG_SOURCES, *GRAVITY_SOURCES)],
     }
-    return Account(Outcome.COMPLETED, values, tuple(lines))
+    return Result(Outcome.COMPLETED, values, tuple(lines))
 
 
 def _without(table: dict[str, FloatArray]) -> float:

@@ -9,7 +9,7 @@ from pydantic import Field, JsonValue
 
 from ves_twin.plant.plant import Plant
 from ves_twin.procedures.bode_plot import BodePlot
-from ves_twin.procedures.procedure import Account, Procedure, RunContext
+from ves_twin.procedures.procedure import Procedure, Result, RunContext
 from ves_twin.procedures.sine_fit import MeasuredResponse
 from ves_twin.procedures.sweep import Sweep, SweepOptions, sweep_platform
 from ves_twin.scenario.fields import Hertz, Metres
@@ -43,7 +43,7 @@ class FrequencyResponseTest(Procedure):
     periods: Annotated[int, Field(ge=3, le=1000)] = 12
     held: bool = False
 
-    def carry_out(self, conduct: RunContext) -> Account:
+    def carry_out(self, conduct: RunContext) -> Result:
         """Sweep, compare with the linear model, draw."""
         plant = conduct.plant or Plant.load(self.plant)
         options = SweepOptions(self.amplitude, self.rate, self.periods, self.held)
@@ -55,7 +55,7 @@ class FrequencyResponseTest(Procedure):
         plot.line(self._model(plant, dense), "linear model", "C0")
         plot.points(measured, "full simulation", "C1")
         plot.save(conduct.folder / PICTURE)
-        return Account(
+        return Result(
             Outcome.COMPLETED, self._values(plant, measured, model), _table(measured, model)
         )
 

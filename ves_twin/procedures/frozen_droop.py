@@ -14,7 +14,7 @@ from ves_twin.mechanics.gravity.observations import Observations
 from ves_twin.mechanics.gravity.sensitivity import AXES
 from ves_twin.plant.droop import frozen_droop
 from ves_twin.procedures.held_poses import HeldPosesProcedure
-from ves_twin.procedures.procedure import Account, RunContext, part_of
+from ves_twin.procedures.procedure import Result, RunContext, part_of
 from ves_twin.scenario.fields import Seconds, si
 from ves_twin.simulator.build import belief_of
 from ves_twin.simulator.outcome import Outcome
@@ -38,7 +38,7 @@ class FrozenDroop(HeldPosesProcedure):
     level: Annotated[float, si("rad"), Field(ge=0, le=0.05)] = 0.008726646259971648
     passes: Annotated[int, Field(ge=1, le=50)] = 5
 
-    def carry_out(self, conduct: RunContext) -> Account:
+    def carry_out(self, conduct: RunContext) -> Result:
         """Hold, alternate, write `passes.csv`; the account compares the conditions."""
         plant, seed = self.world(conduct)
         belief = belief_of(self.scenario)
@@ -70,7 +70,7 @@ def _write_passes(fitted: dict[str, tuple[Pass, ...]], conduct: RunContext) -> N
     write_whole(conduct.folder / "passes.csv", "\n".join(lines) + "\n")
 
 
-def _account(fitted: dict[str, tuple[Pass, ...]], droop: FloatArray, level: float) -> Account:
+def _account(fitted: dict[str, tuple[Pass, ...]], droop: FloatArray, level: float) -> Result:
     angles = np.degrees(droop[:, 3:])
     worst, usual = float(np.max(np.abs(angles))), float(np.sqrt(np.mean(angles**2)))
     lines = [
@@ -93,7 +93,7 @@ def _account(fitted: dict[str, tuple[Pass, ...]], droop: FloatArray, level: floa
             "moments": passes[-1].model.moments.tolist(),
         }
     lines += ["", *_hiding(fitted, values)]
-    return Account(Outcome.COMPLETED, values, tuple(lines))
+    return Result(Outcome.COMPLETED, values, tuple(lines))
 
 
 def _hiding(fitted: dict[str, tuple[Pass, ...]], values: dict[str, JsonValue]) -> list[str]:

@@ -14,7 +14,7 @@ from ves_twin.mechanics.gravity.identify import Identification
 from ves_twin.mechanics.gravity.interleaved_split import Pass
 from ves_twin.mechanics.gravity.poses import Conditioning
 from ves_twin.mechanics.gravity.sensitivity import AXES
-from ves_twin.procedures.procedure import Account
+from ves_twin.procedures.procedure import Result
 from ves_twin.report.picture import save_picture
 from ves_twin.simulator.outcome import Outcome
 
@@ -47,7 +47,7 @@ class Calibrated:
         return float(np.max(np.abs(after - before) / before))
 
 
-def account_of(result: Calibrated) -> Account:
+def result_of(result: Calibrated) -> Result:
     """Numbers for the summary and lines for a person."""
     found = result.found
     half = found.half_width()[42:]
@@ -71,7 +71,7 @@ def account_of(result: Calibrated) -> Account:
         "pinned_by": result.pin,
         "condition_of_G": result.conditioning.condition,
     }
-    return Account(Outcome.COMPLETED, values, tuple(_lines(result)))
+    return Result(Outcome.COMPLETED, values, tuple(_lines(result)))
 
 
 def write_report(result: Calibrated, folder: Path, question: str) -> None:

@@ -12,7 +12,7 @@ from ves_twin.core.types import FloatArray
 from ves_twin.mechanics.kinematics.wrenches import sensor_to_top
 from ves_twin.plant.plant import Plant
 from ves_twin.procedures.gravity_shift import gravity_shift
-from ves_twin.procedures.procedure import Account, Procedure, RunContext, part_of
+from ves_twin.procedures.procedure import Procedure, Result, RunContext, part_of
 from ves_twin.report.picture import save_picture
 from ves_twin.scenario.fields import Seconds
 from ves_twin.scenario.schema import Scenario
@@ -35,7 +35,7 @@ class GravitySensitivity(Procedure):
     errors: Annotated[tuple[float, ...], Field(min_length=1, max_length=20)] = (0.005, 0.01, 0.05)
     sudden: Annotated[Seconds, Field(ge=0)] = 0.0
 
-    def carry_out(self, conduct: RunContext) -> Account:
+    def carry_out(self, conduct: RunContext) -> Result:
         """Run; write `sensitivity.png`. A run that ends early is kept, with its outcome.
 
         Raises:
@@ -63,7 +63,7 @@ class GravitySensitivity(Procedure):
 
 def _account(
     exact: Recording, runs: dict[tuple[str, float], Recording], position: FloatArray
-) -> Account:
+) -> Result:
     force = np.linalg.norm(_in_top(exact, "gravity.estimate", position)[:, :3], axis=1)
     weight, dynamic = float(np.max(force)), _peak(_dynamic(exact, position)[:, :3])
     lines = [
@@ -92,7 +92,7 @@ def _account(
             }
         )
     values: dict[str, JsonValue] = {"weight": weight, "dynamic_force": dynamic, "runs": rows}
-    return Account(Outcome(exact.info.outcome), values, tuple(lines))
+    return Result(Outcome(exact.info.outcome), values, tuple(lines))
 
 
 def _in_top(run: Recording, name: str, position: FloatArray) -> FloatArray:

@@ -15,8 +15,8 @@ from ves_twin.core.types import FloatArray
 from ves_twin.mechanics.gravity.calibration import GravityCalibration
 from ves_twin.plant.plant import Plant
 from ves_twin.procedures.learning_phases import Changes, LearningPhases, poses_at_cycles
-from ves_twin.procedures.learning_report import Iteration, Learned, account_of, write_report
-from ves_twin.procedures.procedure import Account, Procedure, Progress, RunContext, part_of
+from ves_twin.procedures.learning_report import Iteration, Learned, result_of, write_report
+from ves_twin.procedures.procedure import Procedure, Progress, Result, RunContext, part_of
 from ves_twin.scenario.fields import Metres, Seconds, named, si
 from ves_twin.scenario.schema import Scenario
 from ves_twin.simulator.outcome import Outcome
@@ -55,7 +55,7 @@ class LearningMethod(Procedure):
     settled_rotation: Annotated[float, si("rad"), Field(gt=0)] = 1e-3
     seed: Annotated[int, Field(ge=0, lt=2**63)] = 0
 
-    def carry_out(self, conduct: RunContext) -> Account:
+    def carry_out(self, conduct: RunContext) -> Result:
         """Iterate; write `learned_gravity.parquet`, tables and pictures.
 
         An iteration that leaves the workspace ends it with that outcome; what was done is kept.
@@ -100,7 +100,7 @@ class LearningMethod(Procedure):
             model,
         )
         write_report(learned, conduct.folder)
-        return account_of(learned)
+        return result_of(learned)
 
     def phases(self, conduct: RunContext, seed: int) -> LearningPhases:
         """The experiment in the world that counts, with the grades of noise and drift.

@@ -12,7 +12,7 @@ from ves_twin.core.recording.recording import Recording
 from ves_twin.core.types import FloatArray
 from ves_twin.procedures.agreement_picture import write_agreement
 from ves_twin.procedures.number_table import write_table
-from ves_twin.procedures.procedure import Account
+from ves_twin.procedures.procedure import Result
 from ves_twin.report.picture import save_picture
 from ves_twin.simulator.outcome import Outcome
 
@@ -81,7 +81,7 @@ class Learned:
         return 1 + max((k + 1 for k, below in enumerate(small) if not below), default=0)
 
 
-def account_of(learned: Learned) -> Account:
+def result_of(learned: Learned) -> Result:
     """Numbers for the summary and lines for a person."""
     lines = [f"  {'iteration':<11}{'largest change':>24}{'phase A off its path':>26}"]
     lines.append(f"  {'':<11}{'mm':>12}{'mrad':>12}{'mm':>14}{'mrad':>12}")
@@ -112,7 +112,7 @@ def account_of(learned: Learned) -> Account:
     lines.append(f"  {_verdict(learned)}")
     if count:
         lines += _losses(learned, values)
-    return Account(learned.outcome, values, tuple(lines))
+    return Result(learned.outcome, values, tuple(lines))
 
 
 def _verdict(learned: Learned) -> str:

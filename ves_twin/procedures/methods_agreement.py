@@ -15,7 +15,7 @@ from ves_twin.procedures.error_sources import GRAVITY_SOURCES, ErrorSources
 from ves_twin.procedures.learning_method import Guess, LearningMethod
 from ves_twin.procedures.learning_report import AXES
 from ves_twin.procedures.number_table import write_table
-from ves_twin.procedures.procedure import Account, Procedure, Progress, RunContext, part_of
+from ves_twin.procedures.procedure import Procedure, Progress, Result, RunContext, part_of
 from ves_twin.scenario.fields import Seconds
 from ves_twin.simulator.outcome import Outcome
 
@@ -44,7 +44,7 @@ class MethodsAgreement(Procedure):
     draws: Annotated[int, Field(ge=1, le=100)] = 2
     seed: Annotated[int, Field(ge=0, lt=2**62)] = 0
 
-    def carry_out(self, conduct: RunContext) -> Account:
+    def carry_out(self, conduct: RunContext) -> Result:
         """Run; write `agreement.csv`, and what the Learning Method writes.
 
         Raises:
@@ -162,7 +162,7 @@ def _tilted(plant: Plant, seed: int) -> Plant:
     return plant.with_values({LEVEL: level.value + drawn})
 
 
-def _account(table: dict[str, FloatArray]) -> Account:
+def _account(table: dict[str, FloatArray]) -> Result:
     lines = [f"  {'rms [mm, mrad]':<30}" + "".join(f"{axis:>9}" for axis in AXES)]
     for name, row in table.items():
         scale = 1.0 if name == "ratio" else 1e3
@@ -175,4 +175,4 @@ def _account(table: dict[str, FloatArray]) -> Account:
         "ratio": table["ratio"].tolist(),
         "within": [axis not in over for axis in AXES],
     }
-    return Account(Outcome.COMPLETED, values, tuple(lines))
+    return Result(Outcome.COMPLETED, values, tuple(lines))

@@ -14,7 +14,7 @@ from ves_twin.control.leg_loop import FilterPlace
 from ves_twin.core.signals import SIGNALS
 from ves_twin.core.types import FloatArray
 from ves_twin.plant.plant import Plant
-from ves_twin.procedures.procedure import Account, Procedure, RunContext
+from ves_twin.procedures.procedure import Procedure, Result, RunContext
 from ves_twin.report.figure import new_figure
 from ves_twin.report.picture import PICTURE_WIDTH, save_picture
 from ves_twin.scenario.fields import Seconds
@@ -105,7 +105,7 @@ class PositioningErrorTest(Procedure):
         Legs(gain=20.9, filter=FilterPlace.FEEDBACK),
     )
 
-    def carry_out(self, conduct: RunContext) -> Account:
+    def carry_out(self, conduct: RunContext) -> Result:
         """Release, compare, draw."""
         plant = conduct.plant or Plant.load(self.plant)
         releases = compare_releases(plant, self.legs, self.duration, conduct.seed, conduct.progress)
@@ -116,7 +116,7 @@ class PositioningErrorTest(Procedure):
             "axes": list(AXES),
             "releases": _values(releases),
         }
-        return Account(bad[0] if bad else Outcome.COMPLETED, values, _lines(releases))
+        return Result(bad[0] if bad else Outcome.COMPLETED, values, _lines(releases))
 
 
 def _values(releases: Sequence[ReleaseError]) -> JsonValue:

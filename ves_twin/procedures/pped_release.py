@@ -27,7 +27,7 @@ from ves_twin.mechanics.planning.pped import (
 from ves_twin.plant.plant import Plant
 from ves_twin.plant.puma_chain import puma_chain
 from ves_twin.procedures.number_table import write_table
-from ves_twin.procedures.procedure import Account, Procedure, RunContext
+from ves_twin.procedures.procedure import Procedure, Result, RunContext
 from ves_twin.scenario.fields import Joints, Pose, Seconds
 from ves_twin.simulator.outcome import Outcome
 from ves_twin.simulator.zero_gravity import zero_gravity_motion
@@ -146,7 +146,7 @@ class PpedRelease(Procedure):
             joint_peak=np.max(np.abs(motion.q - commands), axis=0),
         )
 
-    def carry_out(self, conduct: RunContext) -> Account:
+    def carry_out(self, conduct: RunContext) -> Result:
         """Search, release, write `release.csv` with translation and energy over time.
 
         Raises:
@@ -174,7 +174,7 @@ class PpedRelease(Procedure):
         values: dict[str, JsonValue] = {
             name: _figures(*release) for name, release in releases.items()
         }
-        return Account(Outcome.COMPLETED, {"zero_g": values}, _lines(releases))
+        return Result(Outcome.COMPLETED, {"zero_g": values}, _lines(releases))
 
     def _search(self, plant: Plant, measure: Measure) -> JointGains:
         build, bounds = self.builder(plant, printed=True), (self.smallest_gain, self.largest_gain)

@@ -22,7 +22,7 @@ from ves_twin.plant.plant import Plant
 from ves_twin.plant.puma_chain import puma_chain
 from ves_twin.procedures.number_table import write_table
 from ves_twin.procedures.pped_release import PpedRelease
-from ves_twin.procedures.procedure import Account, RunContext
+from ves_twin.procedures.procedure import Result, RunContext
 from ves_twin.procedures.rig_energy import RigEnergy, RigOptions
 from ves_twin.simulator.outcome import Outcome
 
@@ -80,7 +80,7 @@ class PpedReleaseEmulated(PpedRelease):
             behind.energy_integral(start, self.duration),
         )
 
-    def carry_out(self, conduct: RunContext) -> Account:
+    def carry_out(self, conduct: RunContext) -> Result:
         """Search, release on the rig, write `release_emulated.csv` with energies over time.
 
         Raises:
@@ -115,7 +115,7 @@ class PpedReleaseEmulated(PpedRelease):
         values["locked"] = {"linear_ideal": locked.ideal, "linear_leg_lag": locked.leg_lag}
         values["less_than_pped"] = _shares(runs, predictions, "energy", "pped")
         values["pped_less_than_high"] = _shares(runs, predictions, "pped", "high")
-        return Account(outcome, {"emulated": values}, _lines(values, tuple(sets)))
+        return Result(outcome, {"emulated": values}, _lines(values, tuple(sets)))
 
 
 def _figures(gains: JointGains, run: RigEnergy, linear: Prediction) -> dict[str, JsonValue]:

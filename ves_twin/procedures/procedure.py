@@ -40,7 +40,7 @@ class RunContext:
 
 
 @dataclass(frozen=True)
-class Account:
+class Result:
     """What a procedure found: how it ended, numbers for `summary.json`, lines for a person."""
 
     outcome: Outcome
@@ -60,7 +60,7 @@ class Procedure(Part, ABC):
     plant: str = "ves2"
 
     @abstractmethod
-    def carry_out(self, conduct: RunContext) -> Account:
+    def carry_out(self, conduct: RunContext) -> Result:
         """Run the experiment; write its files into the folder.
 
         Raises:

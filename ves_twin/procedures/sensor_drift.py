@@ -11,7 +11,7 @@ from ves_twin.core.types import FloatArray
 from ves_twin.mechanics.gravity.sensitivity import AXES
 from ves_twin.mechanics.kinematics.wrenches import top_to_sensor
 from ves_twin.plant.plant import Plant
-from ves_twin.procedures.procedure import Account, Procedure, RunContext
+from ves_twin.procedures.procedure import Procedure, Result, RunContext
 from ves_twin.report.picture import save_picture
 from ves_twin.scenario.fields import Seconds
 from ves_twin.simulator.outcome import Outcome
@@ -31,7 +31,7 @@ class SensorDrift(Procedure):
     average: Annotated[Seconds, Field(ge=1, le=600)] = 10.0
     seed: Annotated[int, Field(ge=0, lt=2**63)] = 0
 
-    def carry_out(self, conduct: RunContext) -> Account:
+    def carry_out(self, conduct: RunContext) -> Result:
         """Run the sensor; write `drift.png`."""
         plant = conduct.plant or Plant.load(self.plant)
         seed = self.seed if conduct.seed is None else conduct.seed
@@ -56,7 +56,7 @@ class SensorDrift(Procedure):
         return result
 
 
-def _account(once: FloatArray, often: FloatArray, every: float) -> Account:
+def _account(once: FloatArray, often: FloatArray, every: float) -> Result:
     rows = {
         "zeroed once: at the end": once[-60:].mean(axis=0),
         "  rms": _rms(once),
@@ -71,7 +71,7 @@ def _account(once: FloatArray, often: FloatArray, every: float) -> Account:
         "zeroed_often_rms": _rms(often).tolist(),
         "zeroed_often_max": np.max(np.abs(often), axis=0).tolist(),
     }
-    return Account(Outcome.COMPLETED, values, tuple(lines))
+    return Result(Outcome.COMPLETED, values, tuple(lines))
 
 
 def _rms(values: FloatArray) -> FloatArray:

@@ -11,17 +11,16 @@ import numpy as np
 from pydantic import Field, JsonValue
 
 from ves_twin.control.leg_loop import FilterPlace
-from ves_twin.core.compiled import cache_folder
+from ves_twin.core.cache_folder import cache_folder
 from ves_twin.core.errors import InvalidInputError, UnknownNameError
 from ves_twin.core.recording.files import load_recording
 from ves_twin.diagnosis.diagnose import diagnose
 from ves_twin.diagnosis.settings import Settings
 from ves_twin.diagnosis.verdict import Verdict
+from ves_twin.machines.diagnose import diagnose as diagnose_machine
 from ves_twin.machines.pendulum.forward import Pendulum
-from ves_twin.machines.ves2.diagnose_rig import diagnose_rig
 from ves_twin.plant.plant import Plant
-from ves_twin.plant.write_plant import write_plant
-from ves_twin.procedures.procedure import Account, Procedure, RunContext
+from ves_twin.procedures.procedure import Procedure, Result, RunContext
 from ves_twin.report.diagnosis.page import diagnosis_page
 from ves_twin.report.diagnosis.words import headline
 from ves_twin.report.page import write_page
@@ -79,7 +78,7 @@ class Showcase(Procedure):
     nulls: Annotated[int, Field(ge=12, le=10000)] = 60
     seed: Annotated[int, Field(ge=0, lt=2**63)] = 0
 
-    def carry_out(self, conduct: RunContext) -> Account:
+    def carry_out(self, conduct: RunContext) -> Result:
         """Record, diagnose, write `verdict.json` and `report.html`, hold against the truth.
 
         Raises:
@@ -133,7 +132,7 @@ class Showcase(Procedure):
         """The verdict on the files, and what became of the extended plant."""
         folder = conduct.folder
         settings = Settings(
-            workers=os.cpu_count() or 1, cache=cache_folder().parent / "banks", nulls=self.nulls
+            workers=os.cpu_count() or 1, cache=cache_folder("diagnosis"), nulls=self.nulls
         )
         record, held_out = load_recording(folder / RECORDING), load_recording(folder / HELD_OUT)
         material: dict[str, Any] = {"held_out": [held_out], "settings": settings}
@@ -141,18 +140,18 @@ class Showcase(Procedure):
         if self.bench == "pendulum":
             material["standstill"] = load_recording(folder / STANDSTILL)
             return diagnose(Pendulum.with_command_delay(), [record], **material), ""
-        found = diagnose_rig([record], Plant.load(self.plant), **material)
+        found = diagnose_machine([record], Plant.load(self.plant), **material)
         for name in ("plant.toml", "plant.candidate.toml"):  # of an earlier run
             (folder / name).unlink(missing_ok=True)
         if found.extended is None:
             return found.verdict, f"No extended plant was written: {found.refused}."
         path = folder / ("plant.candidate.toml" if found.refused else "plant.toml")
-        write_plant(found.extended, path, found.verdict.words)
+        found.extended.save(path, found.verdict.words)
         if found.refused:
             return found.verdict, f"The extended plant is a candidate: {found.refused}."
         return found.verdict, "The extended plant is plant.toml; it passed on held-out recordings."
 
-    def _account(self, verdict: Verdict, folder: Path) -> Account:
+    def _account(self, verdict: Verdict, folder: Path) -> Result:
         labels = [part.label for part in self.hidden]
         if self.deployed_filter is not None:
             labels.append(f"filter_place@{self.deployed_filter.value}")
@@ -181,7 +180,7 @@ class Showcase(Procedure):
             "judged": judged.value,
             "held_out_gain": gain,
         }
-        return Account(Outcome.COMPLETED, values, tuple(lines))
+        return Result(Outcome.COMPLETED, values, tuple(lines))
 
 
 def _size(part: HiddenPart, parameter: str) -> float:

@@ -22,7 +22,7 @@ from ves_twin.mechanics.gravity.sensitivity import AXES
 from ves_twin.plant.droop import frozen_droop
 from ves_twin.plant.plant import Plant
 from ves_twin.procedures.held_poses import HeldPosesProcedure
-from ves_twin.procedures.procedure import Account, RunContext
+from ves_twin.procedures.procedure import Result, RunContext
 from ves_twin.report.diagnosis.page import diagnosis_page
 from ves_twin.report.diagnosis.words import headline
 from ves_twin.report.page import write_page
@@ -49,7 +49,7 @@ class DroopShowcase(HeldPosesProcedure):
     passes: Annotated[int, Field(ge=1, le=50)] = 5
     nulls: Annotated[int, Field(ge=12, le=10000)] = 60
 
-    def carry_out(self, conduct: RunContext) -> Account:
+    def carry_out(self, conduct: RunContext) -> Result:
         """Read, diagnose, calibrate with the angles as taken and as found; write the files."""
         plant, seed = self.world(conduct)
         belief = belief_of(self.scenario)
@@ -130,7 +130,7 @@ def _write_tilts(found: FloatArray, droop: FloatArray, conduct: RunContext) -> N
     write_whole(conduct.folder / "tilts.csv", "\n".join(lines) + "\n")
 
 
-def _account(verdict: Verdict, levels: Levels) -> Account:
+def _account(verdict: Verdict, levels: Levels) -> Result:
     off = levels.found - levels.true
     common = off.mean(axis=0)  # the same at every pose: gains and zero hide it
     hidden, missed = _mrad(levels.true), _mrad(off - common)
@@ -158,7 +158,7 @@ def _account(verdict: Verdict, levels: Levels) -> Account:
         "wrench_rms_after": levels.after.tolist(),
         "wrench_rms_of_true_angles": levels.best.tolist(),
     }
-    return Account(Outcome.COMPLETED, values, tuple(lines))
+    return Result(Outcome.COMPLETED, values, tuple(lines))
 
 
 def _mrad(tilts: FloatArray) -> float:

@@ -17,7 +17,7 @@ from ves_twin.plant.plant import Plant
 from ves_twin.procedures.confirm import Confirmation, confirm_by_run
 from ves_twin.procedures.map_point import MapPoint
 from ves_twin.procedures.one_axis import OneAxis
-from ves_twin.procedures.procedure import Account, Procedure, RunContext
+from ves_twin.procedures.procedure import Procedure, Result, RunContext
 from ves_twin.procedures.stability_bench import StabilityBench
 from ves_twin.scenario.fields import Hertz, PerSecond, Seconds
 from ves_twin.scenario.schema import Scenario
@@ -48,7 +48,7 @@ class StabilityMap(Procedure):
     duration: Annotated[Seconds, Field(ge=5.0, le=600.0)] = 20.0
     workers: Annotated[int, Field(ge=1, le=64)] = 2
 
-    def carry_out(self, conduct: RunContext) -> Account:
+    def carry_out(self, conduct: RunContext) -> Result:
         """Find the limits, confirm some by runs, write the map and its picture."""
         if self.lightest >= self.heaviest:
             raise InvalidInputError(
@@ -72,7 +72,7 @@ class StabilityMap(Procedure):
         text = json_text(content)
         write_whole(conduct.folder / MAP_NAME, text + "\n")
         draw_map(points, plant.name, conduct.folder / FIGURE_NAME)
-        return Account(Outcome.COMPLETED, content, tuple(_table(points)))
+        return Result(Outcome.COMPLETED, content, tuple(_table(points)))
 
 
 def map_point(job: tuple[StabilityMap, Plant, float, FilterPlace]) -> MapPoint:

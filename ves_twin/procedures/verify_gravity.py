@@ -12,7 +12,7 @@ from ves_twin.core.recording.recording import Recording
 from ves_twin.core.types import FloatArray
 from ves_twin.mechanics.kinematics.wrenches import sensor_to_top
 from ves_twin.plant.plant import Plant
-from ves_twin.procedures.procedure import Account, Procedure, RunContext, part_of
+from ves_twin.procedures.procedure import Procedure, Result, RunContext, part_of
 from ves_twin.report.picture import save_picture
 from ves_twin.scenario.fields import PerSecond, Seconds, si
 from ves_twin.scenario.schema import Scenario
@@ -74,7 +74,7 @@ class VerifyGravity(Procedure):
     budget: bool = True
     seed: Annotated[int, Field(ge=0, lt=2**63)] = 0
 
-    def carry_out(self, conduct: RunContext) -> Account:
+    def carry_out(self, conduct: RunContext) -> Result:
         """Run with everything on, then each part alone; write `verification.png`.
 
         Raises:
@@ -144,7 +144,7 @@ def _error_of(run: Recording, plant: Plant) -> _Error:
     return _Error(np.sqrt(np.mean(error**2, axis=0)), np.max(np.abs(error), axis=0))
 
 
-def _account(whole: _Error, parts: dict[str, _Error]) -> Account:
+def _account(whole: _Error, parts: dict[str, _Error]) -> Result:
     share = whole.rms / PRINTED_RMS
     rows: dict[str, FloatArray | tuple[float, ...]] = {
         "rms, everything on": whole.rms,
@@ -167,7 +167,7 @@ def _account(whole: _Error, parts: dict[str, _Error]) -> Account:
         "ratio_of_rms": share.tolist(),
         "budget_rms": {name: error.rms.tolist() for name, error in parts.items()},
     }
-    return Account(Outcome.COMPLETED, values, tuple(lines))
+    return Result(Outcome.COMPLETED, values, tuple(lines))
 
 
 def _row(name: str, values: FloatArray | tuple[float, ...]) -> str:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Sequence
 from pathlib import Path
 
@@ -12,6 +13,12 @@ import pyarrow.parquet
 
 from ves_twin.core.errors import FileAccessError, InvalidInputError, one_line
 from ves_twin.core.types import FloatArray
+
+READERS = {".csv": pa.csv.read_csv, ".parquet": pa.parquet.read_table}
+"""Ending of a file -> what reads it."""
+
+QUOTED_ROW = re.compile(r"(columns, got \d+): .*")
+"""The row that pyarrow quotes: a file that somebody named by mistake is not for the terminal."""
 
 
 def read_columns(
@@ -30,18 +37,21 @@ def read_columns(
 
     Raises:
         FileAccessError: unreadable.
-        InvalidInputError: columns missing, or values that are no finite numbers.
+        InvalidInputError: another ending, columns missing, or values that are no finite numbers.
     """
+    if path.suffix not in READERS:
+        raise InvalidInputError(kind, str(path), f"a file that ends in {' or '.join(READERS)}")
     try:
-        read = pa.parquet.read_table if path.suffix == ".parquet" else pa.csv.read_csv
-        table = read(path)
+        with path.open("rb") as file:  # pyarrow takes names of files in UTF-8 alone
+            table = READERS[path.suffix](file)
         rest = [_group(table, group, path) if _any(table, group) else None for group in optional]
         return _group(table, names, path), rest
     except OSError as error:
         raise FileAccessError(f"{kind} {path}: {one_line(error)}") from None
     except (pa.ArrowException, ValueError, TypeError) as error:
         expected = f"numbers under {', '.join(names)}"
-        raise InvalidInputError(path.name, one_line(error), expected) from None
+        told = QUOTED_ROW.sub(r"\1", one_line(error))
+        raise InvalidInputError(path.name, told, expected) from None
 
 
 def _any(table: pa.Table, names: Sequence[str]) -> bool:

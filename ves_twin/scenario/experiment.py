@@ -13,10 +13,10 @@ from ves_twin.core.recording.recording import Recording
 from ves_twin.core.signals import SIGNALS, Role
 from ves_twin.plant.known_weight import hang_weight
 from ves_twin.plant.plant import Plant
+from ves_twin.scenario.experiment_file import ExperimentFile
 from ves_twin.scenario.fields import Joints, Part, Pose, Seconds, named, si
 from ves_twin.scenario.load import refusal
 from ves_twin.scenario.schema import Scenario
-from ves_twin.scenario.told import Told
 
 DRIVES = ("leg.command", "platform.command", "arm.command", "gravity.estimate")
 """What can be fed into a plant."""
@@ -92,7 +92,7 @@ class Differences(Part):
     window: Window | None = None
 
 
-class Experiment(Told):
+class Experiment(ExperimentFile):
     """How a recording was made, as far as its own metadata do not say.
 
     `scenario` gives clocks, leg gains, belief and the emulated system; `settings` are dotted keys

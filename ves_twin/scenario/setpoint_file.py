@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ves_twin.core.errors import InvalidInputError
+from ves_twin.core.read_only import ReadOnly
 from ves_twin.core.resources import find_resource
 from ves_twin.core.signals import SIGNALS
 from ves_twin.core.types import FloatArray
@@ -21,7 +22,7 @@ FEWEST = 4
 
 
 @dataclass(frozen=True)
-class Setpoints:
+class Setpoints(ReadOnly):
     """What was, or is to be, commanded.
 
     Attributes:

@@ -6,8 +6,8 @@ so runs that differ in one thing see the same noise, and a snapshot needs nothin
 
 from __future__ import annotations
 
-from concurrent.futures import Future, ThreadPoolExecutor
 from dataclasses import dataclass
+from threading import Thread
 
 import numpy as np
 
@@ -34,8 +34,7 @@ class NoiseStreams:
         self._block = -1
         self._fast = np.zeros((2 * BLOCK, FAST_CHANNELS), np.float32)
         self._slow = np.zeros((2 * BLOCK // SLOW, SLOW_CHANNELS), np.float32)
-        self._thread = ThreadPoolExecutor(max_workers=1)
-        self._ahead: Future[_Drawn] | None = None
+        self._ahead: _Ahead | None = None
 
     def window(self, tick: int, count: int) -> tuple[SingleArray, SingleArray]:
         """Numbers of ticks tick ... tick + count - 1, count at most BLOCK.
@@ -68,7 +67,8 @@ class NoiseStreams:
             self._fast[:BLOCK], self._slow[:half] = first.fast, first.slow
             following = _draw(self._seed, block + 1)
         self._fast[BLOCK:], self._slow[half:] = following.fast, following.slow
-        self._ahead = self._thread.submit(_draw, self._seed, block + 2)
+        self._ahead = _Ahead(self._seed, block + 2)
+        self._ahead.start()
         self._block = block
 
 
@@ -78,6 +78,23 @@ class _Drawn:
 
     fast: SingleArray
     slow: SingleArray
+
+
+class _Ahead(Thread):
+    """A block that is drawn in a thread of its own."""
+
+    def __init__(self, seed: int, block: int) -> None:
+        super().__init__(name="noise")
+        self._seed, self._block = seed, block
+        self._drawn: _Drawn | None = None
+
+    def run(self) -> None:
+        self._drawn = _draw(self._seed, self._block)
+
+    def result(self) -> _Drawn:
+        """The block; drawn here in a process that was forked meanwhile: no thread goes with it."""
+        self.join()
+        return self._drawn or _draw(self._seed, self._block)
 
 
 def _draw(seed: int, block: int) -> _Drawn:

@@ -14,7 +14,7 @@ import numpy as np
 import pyarrow.parquet as pq
 
 from ves_twin.control.controller import PlatformController
-from ves_twin.core.errors import FileAccessError
+from ves_twin.core.held_folder import HeldFolder, hold_folder
 from ves_twin.core.json_text import json_text
 from ves_twin.core.recording.recording import Recording, RecordingInfo
 from ves_twin.core.recording.stream import RecordingStream
@@ -103,7 +103,7 @@ def simulate(
 
 def record(
     scenario: Scenario,
-    folder: Path,
+    folder: Path | HeldFolder,
     plant: Plant | None = None,
     seed: int | None = None,
     progress: Progress | None = None,
@@ -115,37 +115,26 @@ def record(
     A `controller` decides the platform's pose in place of the one that the mode names.
 
     Raises:
-        FileAccessError: the folder cannot be written.
+        FileAccessError: the folder cannot be written, or another command writes it.
         VesTwinError: the scenario cannot be built, or a controller failed.
     """
     begin = perf_counter()
     sim = Simulator(plant, scenario, seed, sink=NoSink(), controller=controller)
-    make_folder(folder)
-    for name in (SUMMARY_NAME, "run.rrd"):  # of an earlier run, which this one replaces
-        (folder / name).unlink(missing_ok=True)
-    ready = perf_counter()
-    with RecordingStream(folder, sim.recorder.names, recording_info(sim)) as stream:
-        sim.recorder.sink = stream
-        try:
-            _run(sim, progress)
-        finally:
-            if sim.outcome is None:
-                sim.recorder.flush()
-        path = stream.finish(recording_info(sim))
-    summary = _summary(sim, path, ready - begin, perf_counter() - ready)
-    write_whole(folder / SUMMARY_NAME, summary.to_json() + "\n")
+    with hold_folder(folder) as held:
+        for name in (SUMMARY_NAME, "run.rrd"):  # of an earlier run, which this one replaces
+            (held.path / name).unlink(missing_ok=True)
+        ready = perf_counter()
+        with RecordingStream(held.path, sim.recorder.names, recording_info(sim)) as stream:
+            sim.recorder.sink = stream
+            try:
+                _run(sim, progress)
+            finally:
+                if sim.outcome is None:
+                    sim.recorder.flush()
+            path = stream.finish(recording_info(sim))
+        summary = _summary(sim, path, ready - begin, perf_counter() - ready)
+        write_whole(held.path / SUMMARY_NAME, summary.to_json() + "\n")
     return summary
-
-
-def make_folder(folder: Path) -> None:
-    """Make an output folder, or say in one line why it cannot be written."""
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-        probe = folder / ".ves_twin_probe"
-        probe.touch()
-        probe.unlink()
-    except OSError as error:
-        raise FileAccessError(f"cannot write into folder '{folder}': {error.strerror}") from None
 
 
 def recording_info(sim: Simulator) -> RecordingInfo:
@@ -237,9 +226,10 @@ def _summary(sim: Simulator, recording: Path, prepare: float, run: float) -> Sum
 def _rows(recording: Path, names: Sequence[str]) -> Iterator[list[FloatArray]]:
     """Some signals of a Parquet file, a row group at a time."""
     groups = [SIGNALS[name].columns for name in names]
-    file = pq.ParquetFile(recording)
-    for batch in file.iter_batches(columns=[column for group in groups for column in group]):
-        yield [
-            np.column_stack([batch.column(column).to_numpy() for column in group])
-            for group in groups
-        ]
+    with recording.open("rb") as file:  # pyarrow takes names of files in UTF-8 alone
+        columns = [column for group in groups for column in group]
+        for batch in pq.ParquetFile(file).iter_batches(columns=columns):
+            yield [
+                np.column_stack([batch.column(column).to_numpy() for column in group])
+                for group in groups
+            ]

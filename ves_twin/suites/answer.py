@@ -13,10 +13,10 @@ from ves_twin.core.errors import VesTwinError
 from ves_twin.diagnosis.diagnose import diagnose
 from ves_twin.diagnosis.settings import Settings
 from ves_twin.diagnosis.verdict import Verdict
+from ves_twin.machines.diagnose import diagnose as diagnose_machine
 from ves_twin.machines.pendulum.excitations import pendulum_menu
 from ves_twin.machines.pendulum.forward import Pendulum
 from ves_twin.machines.pendulum.inputs import prepare_pendulum
-from ves_twin.machines.ves2.diagnose_rig import diagnose_rig
 from ves_twin.plant.plant import Plant
 from ves_twin.suites.answers import Answer, read_answers, write_answers
 from ves_twin.suites.material import Material, Use
@@ -89,7 +89,7 @@ def _verdict(
         )
     # no standstill: the legs hunt over a count there, and not in motion
     name = "ves2_pressure_fast" if bench == "ves2_fast" else "ves2_pressure"
-    return diagnose_rig(
+    return diagnose_machine(
         material.recordings,
         Plant.load(name),
         held_out=material.held_out,

@@ -73,14 +73,17 @@ def load_suite(folder: Path) -> Suite:
         raise InvalidInputError(str(path), "no JSON", "what `ves-twin blind make` writes") from None
     if not isinstance(content, dict) or content.get("schema") != SCHEMA:
         raise InvalidInputError(str(path), content, f"a suite of schema {SCHEMA}")
-    excluded = {case: tuple(names) for case, names in content["excluded"].items()}
-    return Suite(
-        str(content["bench"]),
-        tuple(content["cases"]),
-        excluded,
-        int(content.get("commissioned", 0)),
-        bool(content.get("baseline", False)),
-    )
+    try:
+        return Suite(
+            str(content["bench"]),
+            tuple(map(str, content["cases"])),
+            {case: tuple(map(str, names)) for case, names in content["excluded"].items()},
+            int(content.get("commissioned", 0)),
+            bool(content.get("baseline", False)),
+        )
+    except (KeyError, TypeError, ValueError, AttributeError, OverflowError) as error:
+        came = f"{type(error).__name__} at {error}"
+        raise InvalidInputError(str(path), came, "bench, cases, excluded") from None
 
 
 BENCHES = ("pendulum", "ves2", "ves2_fast")

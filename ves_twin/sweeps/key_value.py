@@ -7,7 +7,7 @@ from typing import get_args
 from pydantic import BaseModel
 
 from ves_twin.core.errors import InvalidInputError
-from ves_twin.effects.registry import parse_effects
+from ves_twin.effects.registry import EFFECTS, parse_effects
 from ves_twin.plant.plant import Plant
 from ves_twin.scenario.fields import InUnit
 from ves_twin.scenario.schema import Scenario
@@ -43,9 +43,11 @@ def key_value(scenario: Scenario, world: Plant, key: str) -> tuple[Value, str]:
 
 
 def _of_effect(scenario: Scenario, name: str) -> tuple[Value, str]:
+    kind, _, rest = name.partition(".")
+    kind = EFFECTS[kind].kind if kind in EFFECTS else kind
     for effect in parse_effects(scenario.effects):
-        for magnitude in effect.magnitudes:
-            if name == f"{effect.kind}.{effect.target}.{magnitude.name}":
+        for magnitude in effect.magnitudes_of(effect.target):
+            if f"{kind}.{rest}" == f"{effect.kind}.{effect.target}.{magnitude.name}":
                 return effect.values[magnitude.name], magnitude.unit
     raise InvalidInputError(
         "--vary", f"effects.{name}", "effects.KIND.TARGET.MAGNITUDE, as in valve_null.leg.3.null"

@@ -6,17 +6,17 @@ at most the points that were running.
 
 from __future__ import annotations
 
-import fcntl
 import json
 import os
 from collections.abc import Mapping
+from contextlib import ExitStack
 from io import FileIO
 from pathlib import Path
-from types import TracebackType
 
 from pydantic import ValidationError
 
 from ves_twin.core.errors import FileAccessError, InvalidInputError, VesTwinError
+from ves_twin.core.held_folder import hold_folder
 from ves_twin.core.whole_file import write_whole
 from ves_twin.sweeps.plan import SweepPlan
 from ves_twin.sweeps.result import LOST, PointResult
@@ -40,28 +40,25 @@ class Ledger:
         plan: the sweep.
 
     Raises:
-        OtherSweepError: the folder holds another sweep, or one that is running.
+        OtherSweepError: the folder holds another sweep.
         InvalidInputError: rows that are not of this sweep.
-        FileAccessError: it cannot be read or written.
+        FileAccessError: it cannot be read or written, or another command writes it.
     """
 
     def __init__(self, folder: Path, plan: SweepPlan) -> None:
         self.results: dict[int, PointResult] = {}
         self._ids = [point.run_id for point in plan.points]
         self._path = folder / ROWS_NAME
-        try:
-            folder.mkdir(parents=True, exist_ok=True)
+        with ExitStack() as stack:
+            stack.enter_context(hold_folder(folder))
             check_identity(folder, plan)
-            self._file: FileIO = self._path.open("ab+", buffering=0)
-        except OSError as error:
-            raise FileAccessError(f"cannot write into '{folder}': {error.strerror}") from None
-        try:
-            self._lock(folder)
+            try:
+                self._file: FileIO = stack.enter_context(self._path.open("ab+", buffering=0))
+            except OSError as error:
+                raise FileAccessError(f"cannot write into '{folder}': {error.strerror}") from None
             write_whole(folder / IDENTITY_NAME, json.dumps(plan.identity, indent=2) + "\n")
             self._read()
-        except BaseException:
-            self._file.close()
-            raise
+            self._held = stack.pop_all()
 
     def keep(self, result: PointResult) -> bool:
         """Write a row to the disk; False for a point that is there already.
@@ -89,19 +86,8 @@ class Ledger:
     def __enter__(self) -> Ledger:
         return self
 
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        trace: TracebackType | None,
-    ) -> None:
-        self._file.close()
-
-    def _lock(self, folder: Path) -> None:
-        try:
-            fcntl.flock(self._file, fcntl.LOCK_EX | fcntl.LOCK_NB)
-        except OSError:
-            raise OtherSweepError(f"a sweep is running in '{folder}'; give another --out") from None
+    def __exit__(self, *error: object) -> None:
+        self._held.close()
 
     def _read(self) -> None:
         self._file.seek(0)

@@ -54,8 +54,9 @@ def carry_out_sweep(
         progress: called with the points done.
 
     Raises:
-        OtherSweepError: the folder holds another sweep, or one that is running.
-        FileAccessError: the folder cannot be written; the rows so far are kept.
+        OtherSweepError: the folder holds another sweep.
+        FileAccessError: the folder cannot be written, or another command writes it; the rows so
+            far are kept.
         VesTwinError: a worker that cannot take part; the rows so far are kept.
     """
     total = len(plan.points)

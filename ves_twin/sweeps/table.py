@@ -130,5 +130,5 @@ def _column(
 def _write(path: Path, columns: Sequence[_Column], metadata: Mapping[bytes, bytes]) -> None:
     schema = pa.schema([field for field, _ in columns], metadata=metadata)
     table = pa.Table.from_arrays([array for _, array in columns], schema=schema)
-    with whole_file(path) as partial:
-        pq.write_table(table, partial, compression="zstd")
+    with whole_file(path) as partial, partial.open("wb") as file:
+        pq.write_table(table, file, compression="zstd")

@@ -3,15 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 from enum import StrEnum
 from pathlib import Path
-from typing import Any
+from typing import Annotated
 
-from ves_twin.core.errors import InvalidInputError, UnknownNameError
+from pydantic import Field, ValidationError
+
+from ves_twin.core.errors import InvalidInputError
 from ves_twin.core.resources import find_resource
 from ves_twin.core.toml_file import check_schema, read_toml
-from ves_twin.thesis.tolerance import Comparison, Tolerance
+from ves_twin.scenario.fields import Part, named
+from ves_twin.scenario.load import refusal
+from ves_twin.thesis.tolerance import Numbers, Tolerance
 
 SCHEMA = 1
 
@@ -26,8 +29,10 @@ class Kind(StrEnum):
     RULE = "rule"
 
 
-@dataclass(frozen=True)
-class Claim:
+Text = Annotated[str, Field(min_length=1)]
+
+
+class Claim(Part):
     """One statement and what reproducing it asks.
 
     Attributes:
@@ -48,14 +53,14 @@ class Claim:
     """
 
     id: str
-    where: str
-    chapter: str
-    quantity: str
-    printed: str
-    unit: str
-    kind: Kind
-    value: tuple[float, ...] = ()
-    corrected: tuple[float, ...] = ()
+    where: Text
+    chapter: Text
+    quantity: Text
+    printed: Text
+    unit: Text
+    kind: Annotated[Kind, named("kind of claim", [kind.value for kind in Kind])]
+    value: Numbers = ()
+    corrected: Numbers = ()
     tolerance: Tolerance | None = None
     in_kind: Tolerance | None = None
     errata: tuple[str, ...] = ()
@@ -88,49 +93,10 @@ def load_claims(name_or_path: str = "claims") -> dict[str, Claim]:
     return {name: _claim(name, entry, path) for name, entry in content.items() if name != "schema"}
 
 
-_TEXTS = ("where", "chapter", "quantity", "printed", "unit")
-_KEYS = {
-    *_TEXTS,
-    *("kind", "value", "corrected", "tolerance", "in_kind", "errata", "calibrated_on", "figure"),
-}
-
-
-def _claim(name: str, entry: Any, path: Path) -> Claim:
+def _claim(name: str, entry: object, path: Path) -> Claim:
     if not isinstance(entry, Mapping):
         raise InvalidInputError(f"{path.name}: {name}", entry, "a table")
-    for key in entry:
-        if key not in _KEYS:
-            raise UnknownNameError(f"key of {name}", key, _KEYS)
-    for key in _TEXTS:
-        if not isinstance(entry.get(key), str) or not entry[key]:
-            raise InvalidInputError(f"{path.name}: {name}.{key}", entry.get(key), "a text")
-    if entry.get("kind") not in set(Kind):
-        raise UnknownNameError(f"kind of {name}", str(entry.get("kind")), set(Kind))
-    return Claim(
-        id=name,
-        **{key: entry[key] for key in _TEXTS},
-        kind=Kind(entry["kind"]),
-        value=_numbers(entry.get("value", ()), f"{name}.value"),
-        corrected=_numbers(entry.get("corrected", ()), f"{name}.corrected"),
-        tolerance=_tolerance(entry.get("tolerance"), f"{name}.tolerance"),
-        in_kind=_tolerance(entry.get("in_kind"), f"{name}.in_kind"),
-        errata=tuple(map(str, entry.get("errata", ()))),
-        calibrated_on=str(entry.get("calibrated_on", "")),
-        figure=str(entry.get("figure", "")),
-    )
-
-
-def _tolerance(entry: Any, what: str) -> Tolerance | None:
-    if entry is None:
-        return None
-    if not isinstance(entry, Mapping) or entry.get("kind") not in set(Comparison):
-        raise InvalidInputError(what, entry, f"a table with kind = {', '.join(Comparison)}")
-    bounds = {key: _numbers(entry[key], what)[0] for key in ("low", "high") if key in entry}
-    return Tolerance(Comparison(entry["kind"]), _numbers(entry.get("limit", ()), what), **bounds)
-
-
-def _numbers(value: Any, what: str) -> tuple[float, ...]:
-    items = value if isinstance(value, list | tuple) else [value]
-    if any(isinstance(item, bool) or not isinstance(item, int | float) for item in items):
-        raise InvalidInputError(what, value, "a number or a list of numbers")
-    return tuple(float(item) for item in items)
+    try:
+        return Claim.model_validate({"id": name, **entry})
+    except ValidationError as error:
+        raise refusal(error, f"{path.name}: {name}", Claim) from None

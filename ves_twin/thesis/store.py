@@ -4,12 +4,15 @@ from __future__ import annotations
 
 import hashlib
 import json
+from contextlib import suppress
 from dataclasses import asdict, dataclass
 from functools import lru_cache
 from pathlib import Path
 
-from ves_twin.core.compiled import cache_folder
+from ves_twin.core.cache_folder import cache_folder
+from ves_twin.core.errors import FileAccessError
 from ves_twin.core.resources import resource_folder
+from ves_twin.core.whole_file import write_whole
 from ves_twin.simulator.simulate import versions
 from ves_twin.thesis.context import Context
 from ves_twin.thesis.evaluation import Evaluation
@@ -24,7 +27,7 @@ class Store:
     @staticmethod
     def of_user() -> Store:
         """The user's cache folder of the present code and data."""
-        return Store(cache_folder().parent / f"thesis-{code_hash()}")
+        return Store(cache_folder(f"thesis-{code_hash()}"))
 
     def get(self, context: Context, claim: str) -> Evaluation | None:
         """What was kept for a claim in a context, if anything."""
@@ -42,13 +45,9 @@ class Store:
     def put(self, context: Context, claim: str, found: Evaluation) -> None:
         """Keep an evaluation; a folder that cannot be written is passed over."""
         path = self._path(context, claim)
-        try:
+        with suppress(OSError, FileAccessError):
             path.parent.mkdir(parents=True, exist_ok=True)
-            draft = path.with_suffix(".draft")
-            draft.write_text(json.dumps(asdict(found)), encoding="utf-8")
-            draft.replace(path)
-        except OSError:
-            return
+            write_whole(path, json.dumps(asdict(found)))
 
     def _path(self, context: Context, claim: str) -> Path:
         world = f"{context.plant.hash} {context.plant_name} {context.models} {context.quick}"

@@ -5,8 +5,18 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from enum import StrEnum
+from typing import Annotated
 
 import numpy as np
+from pydantic import BeforeValidator, Field
+
+from ves_twin.scenario.fields import named
+
+Number = Annotated[float, Field(strict=True)]
+Numbers = Annotated[
+    tuple[Number, ...], BeforeValidator(lambda v: v if isinstance(v, list | tuple) else (v,))
+]
+"""Of a file: a number, or a list of numbers."""
 
 ROUND_OFF = 1e-12
 """Relative difference that `exact` leaves to double precision."""
@@ -38,10 +48,10 @@ class Tolerance:
         high: upper end of an interval.
     """
 
-    kind: Comparison
-    limit: tuple[float, ...] = ()
-    low: float = -np.inf
-    high: float = np.inf
+    kind: Annotated[Comparison, named("comparison", [kind.value for kind in Comparison])]
+    limit: Numbers = ()
+    low: Number = -np.inf
+    high: Number = np.inf
 
     def met(self, values: Sequence[float], expected: Sequence[float], holds: bool | None) -> bool:
         """Whether values meet the requirement.

@@ -3,7 +3,10 @@
 import pytest
 
 from ves_twin.core.errors import VesTwinError
-from ves_twin.machines.ves2.tolerance import Tolerance
+from ves_twin.machines.machine import Machine
+from ves_twin.machines.tolerance import Tolerance
+
+SIGNALS = Machine.load("ves2").signals
 
 
 def write(tmp_path, text):
@@ -14,7 +17,7 @@ def write(tmp_path, text):
 
 def test_a_signal_gives_its_limit_to_every_column(tmp_path):
     text = '[rms]\nleg.length = "0.2 mm"\n"arm.q.2" = 1e-3\n[peak]\nsensor.wrench = "2 N"\n'
-    limits = Tolerance.load(write(tmp_path, text)).limits
+    limits = Tolerance.load(write(tmp_path, text), SIGNALS).limits
     assert limits["rms"] == pytest.approx(
         {**{f"leg.length.{i}": 2e-4 for i in range(1, 7)}, "arm.q.2": 1e-3}
     )
@@ -22,7 +25,7 @@ def test_a_signal_gives_its_limit_to_every_column(tmp_path):
 
 
 def test_a_column_that_was_not_compared_keeps_no_limit(tmp_path):
-    tolerance = Tolerance.load(write(tmp_path, '[rms]\n"arm.q.2" = "1 mrad"\n'))
+    tolerance = Tolerance.load(write(tmp_path, '[rms]\n"arm.q.2" = "1 mrad"\n'), SIGNALS)
     (excess,) = tolerance.excesses("run", ())
     assert (excess.channel, excess.found, excess.limit) == ("arm.q.2", None, 1e-3)
 
@@ -41,4 +44,4 @@ def test_a_column_that_was_not_compared_keeps_no_limit(tmp_path):
 )
 def test_a_bad_limit_gets_one_line(tmp_path, text, says):
     with pytest.raises(VesTwinError, match=says):
-        Tolerance.load(write(tmp_path, text))
+        Tolerance.load(write(tmp_path, text), SIGNALS)

@@ -10,9 +10,9 @@ import pytest
 
 from ves_twin.core.errors import InvalidInputError
 from ves_twin.diagnosis.forward import Excitation
+from ves_twin.effects import FrictionBehindGap, StribeckFriction
 from ves_twin.machines.mjcf.description import Mode
 from ves_twin.machines.mjcf.forward import MjcfForward
-from ves_twin.machines.mjcf.friction_effects import FrictionBehindGap, StribeckFriction
 from ves_twin.machines.mjcf.machine import Rig
 
 MODEL = """

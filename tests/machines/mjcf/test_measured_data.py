@@ -7,16 +7,16 @@ import pytest
 
 from ves_twin.diagnosis.settings import Settings
 from ves_twin.diagnosis.verdict import Kind
+from ves_twin.machines.compare import compare
+from ves_twin.machines.data_folder import find_data
+from ves_twin.machines.diagnose import diagnose
 from ves_twin.machines.mjcf.columns import read_rig_recording
-from ves_twin.machines.mjcf.compare_mjcf import compare_mjcf
-from ves_twin.machines.mjcf.data_folder import find_data
 from ves_twin.machines.mjcf.description import Mode
-from ves_twin.machines.mjcf.diagnose_mjcf import diagnose_mjcf
 from ves_twin.machines.mjcf.interleaved_split import alternate
 from ves_twin.machines.mjcf.machine import Rig
 
-pytestmark = [pytest.mark.slow, pytest.mark.timeout(900)]
-"""A minute of processor time each diagnosis, several on a busy machine; one in `make test`."""
+pytestmark = [pytest.mark.nightly, pytest.mark.timeout(900)]
+"""A minute of processor time each diagnosis, several on a busy machine."""
 
 QUICK = Settings(nulls=40)
 """Thresholds matter little where causes stand out by thousands of chi^2."""
@@ -28,7 +28,7 @@ PUBLISHED = {"mass": 95.1089, "damping": 203.5034, "level": 20.3935}
 def recording(name, data_folder):
     rig = Rig.load(name)
     return rig, read_rig_recording(
-        find_data(rig.description.data[0].file, rig, str(data_folder)), rig
+        find_data(rig.description.data[0].file, rig.description.data, str(data_folder)), rig
     )
 
 
@@ -40,7 +40,7 @@ def labels(verdict):
 def emps(data_folder):
     rig, rec = recording("emps", data_folder)
     fitted, held = alternate(rec, rig.description.block)
-    return rec, diagnose_mjcf(fitted, rig, held_out=held, settings=QUICK)
+    return rec, diagnose(fitted, rig, held_out=held, settings=QUICK)
 
 
 def test_emps_has_friction_of_two_kinds_that_depends_on_direction_and_nothing_else(emps):
@@ -73,8 +73,8 @@ def test_emps_position_in_closed_loop_simulation(emps, figure):
     rec, found = emps
 
     def error(rig):
-        (closed,) = [c for c in compare_mjcf([rec], rig) if c.mode is Mode.REFERENCE]
-        return next(c.rms for c in closed.columns if c.channel.name == "axis.position")
+        (closed,) = [c for c in compare([rec], rig).recordings if c.mode == Mode.REFERENCE]
+        return next(c.rms for c in closed.channels if c.name == "axis.position")
 
     assert error(Rig.load("emps")) == pytest.approx(27.6e-6, rel=0.02)  # reference simulation
     figure(
@@ -85,13 +85,12 @@ def test_emps_position_in_closed_loop_simulation(emps, figure):
     )
 
 
-@pytest.mark.nightly
 def test_emps_without_friction_in_the_library_names_neither_mass_delay_nor_backlash(data_folder):
     rig, rec = recording("emps", data_folder)
     fitted, held = alternate(rec, rig.description.block)
     friction = ["viscous_friction", "coulomb_friction", "viscous_asymmetry"]
     friction += ["coulomb_asymmetry", "force_offset"]
-    found = diagnose_mjcf(fitted, rig, held_out=held, exclude=friction, settings=QUICK)
+    found = diagnose(fitted, rig, held_out=held, exclude=friction, settings=QUICK)
     assert found.verdict.verdict is Kind.UNKNOWN
     assert found.extended is None
 
@@ -100,16 +99,15 @@ def test_emps_without_friction_in_the_library_names_neither_mass_delay_nor_backl
 def wrist(request, data_folder):
     rig, rec = recording("ft_wrist", data_folder)
     fitted, held = alternate(rec, request.param[0])
-    return request.param, diagnose_mjcf(fitted, rig, held_out=held, settings=QUICK)
+    return request.param, diagnose(fitted, rig, held_out=held, settings=QUICK)
 
 
-@pytest.mark.nightly
 def test_the_wrist_drifts_along_z_and_has_neither_another_tool_nor_another_gain(wrist, figure):
     (block, limit), found = wrist
     verdict = found.verdict
     assert verdict.verdict in (Kind.SEVERAL, Kind.PARTIAL, Kind.NAMED)
-    assert "sensor_drift@wrist.force.3" in labels(verdict)
-    assert {c.effect for c in verdict.causes} == {"sensor_drift"}
+    assert "sensor_wander@wrist.force.3" in labels(verdict)
+    assert {c.effect for c in verdict.causes} == {"sensor_wander"}
     force = [c.target for c in verdict.causes if c.target.startswith("wrist.force")]
     assert force == ["wrist.force.3"]
     after = [verdict.gain.errors[f"wrist.force.{i}"][1] for i in (1, 2, 3)]
@@ -117,7 +115,6 @@ def test_the_wrist_drifts_along_z_and_has_neither_another_tool_nor_another_gain(
     figure(f"Wrist sensor: held-out force error, blocks of {block} poses", rms, limit, "N")
 
 
-@pytest.mark.nightly
 def test_drift_of_the_wrist_cannot_be_carried_on_and_the_verdict_says_so(wrist):
     found = wrist[1]
     before, after = found.verdict.forecast.errors["wrist.force.3"]
@@ -127,11 +124,10 @@ def test_drift_of_the_wrist_cannot_be_carried_on_and_the_verdict_says_so(wrist):
     assert "not beyond their end" in found.refused
 
 
-@pytest.mark.nightly
 def test_without_drift_in_the_library_neither_trap_is_stepped_into(data_folder):
     """Tool mass +5.5 % and z gain +8 % are what least squares would say."""
     rig, rec = recording("ft_wrist", data_folder)
     fitted, held = alternate(rec, 10)
-    found = diagnose_mjcf(fitted, rig, held_out=held, exclude=["sensor_drift"], settings=QUICK)
+    found = diagnose(fitted, rig, held_out=held, exclude=["sensor_wander"], settings=QUICK)
     assert found.verdict.verdict is Kind.UNKNOWN
     assert found.extended is None

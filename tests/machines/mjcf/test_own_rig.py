@@ -66,7 +66,7 @@ def test_the_page_names_the_hidden_friction_of_a_rig_that_is_not_ours(tmp_path, 
     assert holds(level)
 
 
-@pytest.mark.slow
+@pytest.mark.nightly
 def test_a_log_of_another_shape_goes_through_map_and_experiment_to_the_same_friction(
     tmp_path, monkeypatch
 ):

@@ -14,12 +14,14 @@ from ves_twin.core.errors import VesTwinError
 from ves_twin.core.recording.recording import Recording, RecordingInfo
 from ves_twin.data.import_map import ImportMap
 from ves_twin.diagnosis.forward import Excitation
+from ves_twin.machines.machine import Material, Named
+from ves_twin.machines.mjcf.applied import applied, rig_of
 from ves_twin.machines.mjcf.description import Mode
-from ves_twin.machines.mjcf.experiment import RigExperiment
+from ves_twin.machines.mjcf.experiment import MjcfExperiment
 from ves_twin.machines.mjcf.forward import MjcfForward
 from ves_twin.machines.mjcf.machine import Rig
+from ves_twin.machines.mjcf.mjcf_machine import MjcfMachine
 from ves_twin.machines.mjcf.read import read_recording
-from ves_twin.machines.mjcf.tell import rig_of, tell
 
 MAP = """
 schema = 1
@@ -121,7 +123,7 @@ def test_a_gap_is_left_out_of_what_is_compared(lab, capsys):
 
 def test_a_payload_is_a_point_mass_of_the_body(rig):
     """Against MuJoCo's own composition: the same ball, small, as a geom of the arm."""
-    told = RigExperiment(payload={"body": "arm", "mass": "0.5 kg", "at": [0.0, 0.05, -0.3]})
+    told = MjcfExperiment(payload={"body": "arm", "mass": "0.5 kg", "at": [0.0, 0.05, -0.3]})
     found = rig_of(told, rig).model
     spec = mujoco.MjSpec.from_string(MODEL)
     spec.body("arm").add_geom(pos=[0.0, 0.05, -0.3], size=[1e-4, 0, 0], mass=0.5)
@@ -138,7 +140,7 @@ def test_a_payload_is_a_point_mass_of_the_body(rig):
 
 
 def test_parameters_mode_start_and_window_are_those_of_the_experiment(rig, moved):
-    told = RigExperiment(
+    told = MjcfExperiment(
         drive=("cart.set",),
         parameters={"cart.mass": "3.3 kg", "rail.damping": 9},
         start={"state": "given", "joints": {"swing": {"position": "10 deg", "sd": 0.01}}},
@@ -153,7 +155,8 @@ def test_parameters_mode_start_and_window_are_those_of_the_experiment(rig, moved
     assert "start@swing:position" in starts
     sets = {**moved.signals, "cart.set": programme().drive["cart.set"]}
     told = told.model_copy(update={"start": type(told.start)()})
-    ready = tell({"a": Recording(TIME, sets, moved.info)}, told, rig).recordings[0]
+    ready, _, start = applied("a", Recording(TIME, sets, moved.info), told, rig)
+    assert start == 1.0
     assert ready.time[-1] < 3.0
     assert np.isnan(ready["cart.position"][ready.time < 1.0]).all()
     assert np.isfinite(ready["cart.set"]).all()
@@ -164,7 +167,7 @@ def test_a_start_in_motion_is_read_from_the_first_rows(rig, moved):
     late = moved.window(1.0, 4.0)
     error = {}
     for state in ("settled", "estimated"):
-        made = tell({"a": late}, RigExperiment(start={"state": state}), rig).rig
+        _, made, _ = applied("a", late, MjcfExperiment(start={"state": state}), rig)
         forward = MjcfForward.of(made)
         rows = forward.simulate(Excitation.of(late, forward.drive), {})
         at = [c.name for c in forward.channels].index("cart.position")
@@ -175,11 +178,11 @@ def test_a_start_in_motion_is_read_from_the_first_rows(rig, moved):
 
 
 def test_recordings_of_one_diagnosis_are_of_one_rig(rig, moved):
-    told = RigExperiment(recordings={"b": {"parameters": {"cart.mass": 4.0}}})
-    both = tell({"a": moved, "b": moved}, told, rig)
-    assert both.rigs[0].identity != both.rigs[1].identity
+    told = MjcfExperiment(recordings={"b": {"parameters": {"cart.mass": 4.0}}})
+    one, other = (applied(name, moved, told, rig)[1] for name in "ab")
+    assert one.identity != other.identity
     with pytest.raises(VesTwinError, match="one rig in all recordings"):
-        _ = both.rig
+        MjcfMachine(rig).prepare(Material((Named("a", moved), Named("b", moved))), told)
 
 
 @pytest.mark.parametrize(
@@ -237,8 +240,3 @@ def test_mm_taken_for_m_is_suspected_by_the_typical_travel(lab, capsys):
     assert main(words) == 0
     suspected = json.loads(capsys.readouterr().out)["suspected"]
     assert any("cart.position" in one and "mm taken for m" in one for one in suspected)
-
-
-def test_options_of_rigs_are_refused_for_ves_ii(tmp_path, capsys):
-    assert main(["diagnose", "x.parquet", "--map", "m.toml", "--plant", "ves2"]) == 2
-    assert "--map" in capsys.readouterr().err

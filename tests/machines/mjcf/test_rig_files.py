@@ -12,9 +12,10 @@ from two_link import programme, write_files
 from ves_twin.cli.main import main
 from ves_twin.core.errors import VesTwinError
 from ves_twin.core.recording.recording import POSES
+from ves_twin.core.resources import resource_folder
 from ves_twin.diagnosis.verdict import Basis, Cause, Estimate, Kind, Statistics, Verdict
+from ves_twin.machines.data_folder import find_data
 from ves_twin.machines.mjcf.columns import read_rig_recording
-from ves_twin.machines.mjcf.data_folder import find_data
 from ves_twin.machines.mjcf.description import is_rig, shipped_rigs
 from ves_twin.machines.mjcf.extend import extended, write_rig
 from ves_twin.machines.mjcf.forward import MjcfForward
@@ -124,14 +125,6 @@ def test_dry_friction_of_a_given_motion_asks_for_the_typical_speed_when_the_rig_
     assert np.isfinite(MjcfForward.of(Rig.load(str(path))).simulate(programme(), {})).all()
 
 
-def test_options_that_a_rig_does_not_have_are_refused(tmp_path, capsys):
-    path = write_files(tmp_path)
-    (tmp_path / "log.csv").write_text(LOG)
-    options = ["--plant", str(path), "--tolerance", "limits.toml"]
-    assert main(["compare", str(tmp_path / "log.csv"), *options]) == 2
-    assert "--tolerance" in capsys.readouterr().err
-
-
 def test_a_rig_is_told_from_a_form_of_ves_ii(tmp_path):
     assert is_rig(str(write_files(tmp_path)))
     assert shipped_rigs() == ["emps", "ft_wrist"]
@@ -185,7 +178,7 @@ def test_stretches_alternate_and_poses_keep_their_order(tmp_path):
 def test_an_extended_rig_is_written_as_a_file_that_loads_as_the_same_rig(tmp_path):
     rig = Rig.load(str(write_files(tmp_path)))
     sizes = {"coulomb_friction@rail:level": 1.25, "mass_centre@arm.x:shift": 0.06}
-    sizes |= {f"sensor_drift@load.force.3:p{k}": 0.1 * k for k in (1, 2, 3)}
+    sizes |= {f"sensor_wander@load.force.3:p{k}": 0.1 * k for k in (1, 2, 3)}
     sizes |= {"backlash@swing:gap": 0.01}
     causes = tuple(
         Cause(
@@ -218,8 +211,17 @@ def test_public_data_are_found_by_folder_and_checked_by_content(tmp_path, monkey
     rig = Rig.load("emps")
     monkeypatch.delenv("VES_TWIN_DATA", raising=False)
     with pytest.raises(VesTwinError, match="Janot"):
-        find_data("emps/emps_train.csv", rig)
+        find_data("emps/emps_train.csv", rig.description.data)
     (tmp_path / "emps").mkdir()
     Path(tmp_path, "emps", "emps_train.csv").write_text("t_s\n0\n")
     with pytest.raises(VesTwinError, match="another checksum"):
-        find_data("emps/emps_train.csv", rig, str(tmp_path))
+        find_data("emps/emps_train.csv", rig.description.data, str(tmp_path))
+
+
+def test_a_model_that_mujoco_cannot_move_is_refused_in_one_line(tmp_path):
+    for name in ("emps.toml", "emps.xml"):
+        text = (resource_folder("models/rigs") / name).read_text()
+        (tmp_path / name).write_text(text.replace('mass="90"', f'mass="1{40 * "0"}"'))
+    with pytest.raises(VesTwinError, match="a model that can move") as caught:
+        Rig.load(str(tmp_path / "emps.toml"))
+    assert "\n" not in str(caught.value)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import copy
 from dataclasses import dataclass, replace
-from typing import ClassVar, final
+from typing import final
 
 import numpy as np
 import pytest
@@ -12,17 +12,17 @@ from two_link import TIME, programme, rig, write_files
 
 from ves_twin.core.recording.recording import Recording, RecordingInfo
 from ves_twin.diagnosis.forward import Excitation
+from ves_twin.effects import ActuatorDelay, Backlash, Effect
+from ves_twin.effects.element import Element
+from ves_twin.effects.row import Anywhere
 from ves_twin.machines.mjcf import inverse
+from ves_twin.machines.mjcf.applied import applied
 from ves_twin.machines.mjcf.description import Mode
-from ves_twin.machines.mjcf.effect import RigEffect, play
-from ves_twin.machines.mjcf.element import Element
-from ves_twin.machines.mjcf.experiment import RigExperiment
+from ves_twin.machines.mjcf.experiment import MjcfExperiment
 from ves_twin.machines.mjcf.forward import MjcfForward
 from ves_twin.machines.mjcf.inverse import efforts_of_motion
 from ves_twin.machines.mjcf.machine import Rig
-from ves_twin.machines.mjcf.part_effects import ActuatorDelay
 from ves_twin.machines.mjcf.stepping import motion_of_drive
-from ves_twin.machines.mjcf.tell import tell
 from ves_twin.machines.mjcf.work import Work
 
 INNER = slice(200, -200)
@@ -100,13 +100,13 @@ def test_halving_the_step_changes_little_and_the_difference_falls_with_it(machin
 
 @final
 @dataclass(frozen=True)
-class LongerArm(RigEffect):
+class LongerArm(Effect):
     """An effect of another package: the arm hangs lower on its cart."""
 
     shift: float = 0.0
 
-    kind: ClassVar[str] = "longer_arm"
-    element: ClassVar[Element] = Element.BODY
+    kind = "longer_arm"
+    anywhere = Anywhere(Element.BODY, 0.5)
 
     def edit_model(self, model):
         model.jnt_pos[model.joint("swing").id, 2] += self.shift
@@ -127,13 +127,13 @@ def test_an_effect_that_edits_any_number_of_the_model_changes_the_efforts(machin
 
 @final
 @dataclass(frozen=True)
-class Limit(RigEffect):
+class Limit(Effect):
     """An effect of another package: an amplifier gives no more than this."""
 
     most: float = 0.0
 
-    kind: ClassVar[str] = "limit"
-    element: ClassVar[Element] = Element.ACTUATOR
+    kind = "limit"
+    anywhere = Anywhere(Element.ACTUATOR, 100.0)
 
     def edit_command(self, command, time):
         return np.clip(command, -self.most, self.most)
@@ -159,7 +159,7 @@ def test_an_effect_on_an_actuator_is_at_work_in_closed_loop_too(machine):
     assert np.array_equal(cart(machine, limit), cart(limited))
     assert np.array_equal(cart(machine, limit, late), cart(limited, late))
     # the delay's own short way against what every effect has
-    general = RigEffect.edit_row(late, np.sin(TIME), TIME, 700)
+    general = Effect.edit_row(late, np.sin(TIME), TIME, 700)
     assert late.edit_row(np.sin(TIME), TIME, 700) == pytest.approx(general, abs=1e-12)
 
 
@@ -185,7 +185,7 @@ def test_a_measured_start_is_the_first_row_also_of_a_signal_that_reads_the_other
     fed = {**programme().drive, "cart.position": (0.3 + 0.2 * TIME)[:, None]}
     if state == "estimated":
         moved = Recording(TIME, fed, RecordingInfo("measured", scenario="a"))
-        machine = tell({"a": moved}, RigExperiment(start={"state": state}), machine).rig
+        _, machine, _ = applied("a", moved, MjcfExperiment(start={"state": state}), machine)
     forward = MjcfForward.of(machine)
     rows = forward.simulate(Excitation("backwards", TIME, fed), {})
     x = rows[:, [c.name for c in forward.channels].index("cart.position")]
@@ -196,8 +196,8 @@ def test_a_measured_start_is_the_first_row_also_of_a_signal_that_reads_the_other
 
 def test_a_gap_is_crossed_before_the_driven_side_follows():
     x = np.concatenate([np.linspace(0.0, 1.0, 101), np.linspace(1.0, 0.0, 101)])
-    y = play(x, 0.2)
+    y = Backlash("swing", gap=0.2).edit_position(x)
     assert y[100] == pytest.approx(0.9)
     assert np.all(y[101:121] == y[100])
     assert y[-1] == pytest.approx(0.1)
-    assert play(x, 0.0) is x
+    assert Backlash("swing").edit_position(x) is x

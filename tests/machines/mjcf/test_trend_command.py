@@ -81,8 +81,8 @@ def test_two_carriages_in_one_folder_are_told_and_one_in_order_is_left_in_peace(
 @pytest.mark.parametrize(
     ("more", "words"),
     [
-        (["--plant", "ves2"], "VES II is not followed"),
-        ([], "VES II is not followed"),
+        (["--plant", "ves2"], "`ves-twin import` makes one of a log"),
+        ([], "`ves-twin import` makes one of a log"),
         (["--plant", "{rig}", "--cause", "coulomb_fricton@rail"], "did you mean 'coulomb_friction"),
         (["--plant", "{rig}", "--false-alarm", "2"], "0.0001 to 0.2"),
         (["--plant", "{rig}", "--false-alram", "2"], "did you mean '--false-alarm'"),

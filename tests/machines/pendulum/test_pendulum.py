@@ -98,10 +98,9 @@ def test_five_causes_are_named_and_nothing_in_the_null(name, settings):
 
 
 @pytest.mark.slow
-def test_rigs_in_order_are_left_in_peace(settings, cases):
-    count = cases(12)
-    said = [diagnose(PLANT, [blind_record(s)], settings=settings) for s in range(count)]
-    assert sum(v.verdict is not Kind.NOTHING for v in said) <= count // 12
+def test_rigs_in_order_are_left_in_peace(settings):
+    said = [diagnose(PLANT, [blind_record(s)], settings=settings) for s in range(12)]
+    assert sum(v.verdict is not Kind.NOTHING for v in said) <= 1
 
 
 @pytest.mark.slow

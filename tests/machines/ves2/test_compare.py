@@ -9,8 +9,9 @@ import pytest
 import ves_twin as vt
 from ves_twin.core.errors import InvalidInputError, UnknownNameError
 from ves_twin.data.quality.check import Grade
-from ves_twin.machines.ves2.compare import Named, compare
-from ves_twin.machines.ves2.comparison_result import Basis
+from ves_twin.machines.compare import compare
+from ves_twin.machines.comparison import Basis
+from ves_twin.machines.machine import Named
 from ves_twin.report.comparison.page import comparison_page
 from ves_twin.report.comparison.words import gap_sentence, place_sentence, trust_sentence
 from ves_twin.scenario.experiment import Experiment

@@ -8,9 +8,10 @@ from ves_twin.control.leg_loop import FilterPlace
 from ves_twin.diagnosis.forward import Excitation, check_forward
 from ves_twin.diagnosis.runs import Runs
 from ves_twin.diagnosis.verdict import Basis, Cause, Kind, Statistics, Verdict
-from ves_twin.machines.ves2.diagnose_rig import effects_of, one_step
+from ves_twin.machines.ves2.effects_of import effects_of
 from ves_twin.machines.ves2.filter_place import WithFilterPlaces
 from ves_twin.machines.ves2.forward import DRIVE, RigForward
+from ves_twin.machines.ves2.inputs import one_step
 from ves_twin.scenario.schema import Scenario
 from ves_twin.simulator.replay import replay_scenario
 from ves_twin.suites.bench import BlindRig

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from ves_twin.control.leg_loop import FilterPlace
-from ves_twin.effects.force_sensor import SensorLag
+from ves_twin.effects import SensorLag
 from ves_twin.plant.plant import Plant
 from ves_twin.simulator.linear.admittance_loop import AxisModel, admittance_loop, payload_mass
 from ves_twin.simulator.linear.leg_settings import LegSettings

@@ -3,8 +3,7 @@
 import numpy as np
 import pytest
 
-from ves_twin.effects.cylinder import OilAir
-from ves_twin.effects.valve import ValveGain
+from ves_twin.effects import OilAir, ValveGain
 from ves_twin.plant.hydraulics import chamber_stiffness, fill_chambers
 from ves_twin.plant.physics import chambers
 from ves_twin.plant.plant import Plant

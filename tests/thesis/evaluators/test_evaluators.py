@@ -96,7 +96,7 @@ def test_what_a_short_run_would_answer_otherwise_is_left_to_the_full_one(claims,
         assert "only the full run" in found.reason
 
 
-@pytest.mark.slow
+@pytest.mark.nightly
 def test_random_wrench_errors_of_a_newton_cost_in_proportion(claims, nominal, monkeypatch):
     """A linear emulation of 20 s: twice the noise with the same seed moves it twice as far, 3 %."""
     one = ANSWERS["C023"](Context(nominal, quick=True), claims["C023"])

@@ -9,7 +9,8 @@ import pyarrow.parquet as pq
 
 from ves_twin.core.errors import FileAccessError, InvalidInputError
 from ves_twin.core.recording.recording import Recording
-from ves_twin.core.recording.stream import FILE_NAME, ROW_GROUP, STREAM_NAME, stream_batches
+from ves_twin.core.recording.stream import FILE_NAME, ROW_GROUP, STREAM_NAME
+from ves_twin.core.recording.stream_batches import stream_batches
 from ves_twin.core.recording.table import KEY, batch_of, recording_of, schema_of
 from ves_twin.core.whole_file import whole_file
 
@@ -52,7 +53,8 @@ def is_recording(path: str | Path) -> bool:
     if file.suffix != ".parquet" or not file.is_file():
         return False
     try:
-        return KEY in (pq.read_schema(file).metadata or {})
+        with file.open("rb") as opened:
+            return KEY in (pq.read_schema(opened).metadata or {})
     except (pa.ArrowInvalid, OSError):
         return False  # whoever reads it says what is wrong
 
@@ -61,18 +63,23 @@ def save_recording(recording: Recording, path: Path) -> None:
     """Write a recording to a Parquet file; the file appears when it is whole."""
     schema = schema_of(recording.signals, recording.info)
     table = pa.Table.from_batches([batch_of(schema, recording.time, recording.signals)])
-    with whole_file(path) as partial:
-        pq.write_table(table, partial, compression="zstd", row_group_size=ROW_GROUP)
+    with whole_file(path) as partial, partial.open("wb") as file:
+        pq.write_table(table, file, compression="zstd", row_group_size=ROW_GROUP)
 
 
 def _table(file: Path) -> pa.Table:
     if file.suffix == ".arrows":
-        batches = list(stream_batches(file))
+        try:
+            with file.open("rb") as opened:
+                batches = list(stream_batches(opened, file))
+        except OSError as error:
+            raise FileAccessError(f"recording {file}: {error.strerror}") from None
         if not batches:
             raise FileAccessError(f"recording {file} holds no whole batch of rows")
         return pa.Table.from_batches(batches)
     try:
-        return pq.read_table(file)
+        with file.open("rb") as opened:  # pyarrow takes names of files in UTF-8 alone
+            return pq.read_table(opened)
     except (pa.ArrowInvalid, OSError) as error:
         reason = str(error).split("\n", 1)[0]
         wanted = "a Parquet recording; `ves-twin import` makes one of a log"

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ves_twin.core.errors import InvalidInputError, UnknownNameError
+from ves_twin.core.read_only import ReadOnly
 from ves_twin.core.signals import SIGNALS, Role, Signal
 from ves_twin.core.types import FloatArray
 
@@ -118,7 +119,7 @@ def _signal(content: Mapping[str, Any]) -> Signal:
 
 
 @dataclass(frozen=True)
-class Recording:
+class Recording(ReadOnly):
     """Named signals on one clock.
 
     Attributes:
@@ -135,6 +136,7 @@ class Recording:
     info: RecordingInfo
 
     def __post_init__(self) -> None:
+        super().__post_init__()
         if not np.all(np.isfinite(self.time)) or np.any(np.diff(self.time) <= 0):
             raise InvalidInputError(
                 "recording time", "a step back or a gap", "strictly increasing times"

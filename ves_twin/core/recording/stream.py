@@ -9,7 +9,6 @@ import os
 from collections.abc import Iterator, Mapping
 from contextlib import suppress
 from pathlib import Path
-from types import TracebackType
 
 import pyarrow as pa
 import pyarrow.ipc as ipc
@@ -17,8 +16,10 @@ import pyarrow.parquet as pq
 
 from ves_twin.core.errors import FileAccessError
 from ves_twin.core.recording.recording import RecordingInfo
+from ves_twin.core.recording.stream_batches import CHECKSUM, batch_checksum, stream_batches
 from ves_twin.core.recording.table import batch_of, schema_of, with_info
 from ves_twin.core.types import FloatArray
+from ves_twin.core.whole_file import whole_file
 
 STREAM_NAME = "recording.arrows"
 FILE_NAME = "recording.parquet"
@@ -35,7 +36,7 @@ class RecordingStream:
         try:
             if self._path.exists():  # rows of a run that was killed are not ours to drop
                 self._path.rename(_free(folder, f"previous-{STREAM_NAME}"))
-            self._file = self._path.open("wb")
+            self._file = self._path.open("w+b")
         except OSError as error:
             raise FileAccessError(f"cannot write {self._path}: {error.strerror}") from None
         try:
@@ -50,7 +51,8 @@ class RecordingStream:
     def write(self, time: FloatArray, signals: Mapping[str, FloatArray]) -> None:
         """Append rows and hand them to the operating system."""
         try:
-            self._writer.write_batch(batch_of(self._schema, time, signals))
+            batch = batch_of(self._schema, time, signals)
+            self._writer.write_batch(batch, {CHECKSUM: batch_checksum(batch)})
             self._file.flush()
         except OSError as error:
             raise FileAccessError(
@@ -58,7 +60,9 @@ class RecordingStream:
             ) from None
 
     def finish(self, info: RecordingInfo) -> Path:
-        """Close the stream, write `recording.parquet` batch by batch, remove the stream.
+        """End the stream, write `recording.parquet` batch by batch, remove the stream.
+
+        It reads the file that it opened, whatever has that name by now.
 
         Args:
             info: the final account of the run, with outcome and events.
@@ -66,22 +70,23 @@ class RecordingStream:
         Returns:
             Path of the Parquet file.
         """
-        self.close()
+        self._end()
         target = self._folder / FILE_NAME
-        partial = target.with_suffix(".parquet.partial")
         schema = with_info(self._schema, info)
         try:
-            with pq.ParquetWriter(partial, schema, compression="zstd") as writer:
-                for table in _grouped(stream_batches(self._path), schema):
+            with (
+                whole_file(target) as partial,
+                partial.open("wb") as file,  # pyarrow takes names of files in UTF-8 alone
+                pq.ParquetWriter(file, schema, compression="zstd") as writer,
+            ):
+                for table in _grouped(stream_batches(self._file, self._path), schema):
                     writer.write_table(table)
-            os.replace(partial, target)
-        except OSError as error:
-            raise FileAccessError(
-                f"cannot write {target}: {error}; rows kept in {self._path}"
-            ) from None
-        finally:
-            partial.unlink(missing_ok=True)
-        self._path.unlink()
+        except FileAccessError as error:
+            raise FileAccessError(f"{error}; rows kept in {self._path}") from None
+        with suppress(OSError):
+            if os.path.samestat(os.fstat(self._file.fileno()), self._path.stat()):
+                self._path.unlink()
+        self._file.close()
         return target
 
     def close(self) -> None:
@@ -89,25 +94,25 @@ class RecordingStream:
         if self._file.closed:
             return
         try:
-            self._writer.close()
-            self._file.close()
-        except OSError as error:
-            raise FileAccessError(
-                f"cannot write {self._path}: {error.strerror or error}; the rows before are kept"
-            ) from None
+            self._end()
         finally:
             with suppress(OSError):
                 self._file.close()
 
+    def _end(self) -> None:
+        """Write what ends the stream."""
+        try:
+            self._writer.close()
+            self._file.flush()
+        except OSError as error:
+            raise FileAccessError(
+                f"cannot write {self._path}: {error.strerror or error}; the rows before are kept"
+            ) from None
+
     def __enter__(self) -> RecordingStream:
         return self
 
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        trace: TracebackType | None,
-    ) -> None:
+    def __exit__(self, *error: object) -> None:
         self.close()
 
 
@@ -118,26 +123,6 @@ def _free(folder: Path, name: str) -> Path:
         number += 1
         path = folder / f"{Path(name).stem}-{number}{Path(name).suffix}"
     return path
-
-
-def stream_batches(path: Path) -> Iterator[pa.RecordBatch]:
-    """The whole batches of a stream file; a batch that was cut ends the iteration.
-
-    Raises:
-        FileAccessError: missing file, or cut before its first batch.
-    """
-    try:
-        with path.open("rb") as file:
-            reader = ipc.open_stream(file)
-            while True:
-                try:
-                    yield reader.read_next_batch()
-                except (StopIteration, pa.ArrowInvalid, OSError):
-                    return
-    except OSError as error:
-        raise FileAccessError(f"recording {path}: {error.strerror}") from None
-    except pa.ArrowInvalid:
-        raise FileAccessError(f"recording {path} was cut before its first row") from None
 
 
 ROW_GROUP = 20_000

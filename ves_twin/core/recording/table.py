@@ -58,7 +58,11 @@ def recording_of(table: pa.Table, where: object) -> Recording:
         InvalidInputError: no column t, or columns that are not signals of ours.
     """
     metadata = table.schema.metadata or {}
-    if "t" not in table.column_names or KEY not in metadata:
+    try:
+        names = table.column_names
+    except UnicodeDecodeError:
+        names = []
+    if "t" not in names or KEY not in metadata:
         raise InvalidInputError(str(where), "a table", "a recording written by ves-twin")
     try:
         info = RecordingInfo.from_dict(json.loads(metadata[KEY]))

@@ -6,7 +6,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ves_twin.core.types import FloatArray
+from ves_twin.core.types import BoolArray, FloatArray
+from ves_twin.diagnosis.grid import AnalysisGrid
 from ves_twin.diagnosis.residuals.cells import Cell, bands, blocks, regimes
 from ves_twin.diagnosis.residuals.coherence import Coherence, Companions
 from ves_twin.diagnosis.residuals.lag import Lag, find_lag
@@ -41,11 +42,13 @@ class ChannelComparison:
     Attributes:
         name: column, numbered from 1.
         signal: its signal.
+        column: its place in that signal, from 0.
         axis: what it is, for instance "leg 3".
         unit: SI unit of rms, peak, mean and sigma.
-        sigma: sd of the noise of one row.
+        sigma: sd of the noise of one row; zero where nobody tells it.
         noise: who says so.
         rms: of measured less simulated.
+        rms_slow: of that on the analysis grid, where no hole reaches.
         peak: its largest size.
         mean: of it.
         mean_score: mean over the sd that noise and zeroing give it.
@@ -61,11 +64,13 @@ class ChannelComparison:
 
     name: str
     signal: str
+    column: int
     axis: str
     unit: str
     sigma: float
     noise: NoiseSource
     rms: float
+    rms_slow: float
     peak: float
     mean: float
     mean_score: float
@@ -80,8 +85,13 @@ class ChannelComparison:
 
     @property
     def rms_sigma(self) -> float:
-        """Rms in sigma."""
-        return self.rms / self.sigma
+        """Rms in sigma; NaN where nobody tells the noise."""
+        return self._in_sigma(self.rms)
+
+    @property
+    def loudness(self) -> float:
+        """Rms in sigma, to sort by: zero where nobody tells the noise."""
+        return self.rms_sigma if self.sigma > 0.0 else 0.0
 
     @property
     def loudest(self) -> Cell | None:
@@ -102,23 +112,32 @@ class ChannelComparison:
         return {
             **asdict(self),
             "rms_sigma": self.rms_sigma,
-            "peak_sigma": self.peak / self.sigma,
-            "mean_sigma": self.mean / self.sigma,
+            "peak_sigma": self._in_sigma(self.peak),
+            "mean_sigma": self._in_sigma(self.mean),
             "white": self.whiteness.white if self.whiteness else None,
             "beyond_noise": self.beyond_noise,
             "loudest": asdict(top) if top else None,
         }
 
+    def _in_sigma(self, value: float) -> float:
+        return value / self.sigma if self.sigma > 0.0 else float("nan")
+
 
 @dataclass(frozen=True)
 class Column:
-    """A column that is compared: its names, noise, and the drive column that leads it."""
+    """A column that is compared: its names, noise, grid, and the input column that leads it.
+
+    `rate` is that of the analysis grid [Hz]; None for poses at rest, which have neither
+    frequencies nor lags.
+    """
 
     name: str
     signal: str
+    index: int
     axis: str
     unit: str
     noise: Noise
+    rate: float | None
     leader: tuple[str, FloatArray] | None = None
 
 
@@ -154,9 +173,10 @@ def compare_column(
     kept, noise = residual[good], column.noise
     mean = float(np.mean(kept))
     filled = np.where(good, residual - mean, 0.0)  # filled rows add no power
-    power = Power(filled, noise, period, share)
-    white = power.whiteness()
-    coherence = companions.of(filled)
+    told, moves = noise.sd > 0.0, column.rate is not None
+    power = Power(filled, noise, period, share) if told and moves else None
+    white = power.whiteness() if power else None
+    coherence = companions.of(filled) if moves else None
     leader = column.leader
     if leader is None and coherence is not None and coherence.told:
         leader = (coherence.column, drive[coherence.column])
@@ -166,20 +186,35 @@ def compare_column(
     return ChannelComparison(
         name=column.name,
         signal=column.signal,
+        column=column.index,
         axis=column.axis,
         unit=column.unit,
         sigma=noise.sd,
         noise=noise.source,
         rms=float(np.sqrt(np.mean(kept**2))),
+        rms_slow=_slow(residual, good, period, column.rate),
         peak=float(np.max(np.abs(kept))),
         mean=mean,
-        mean_score=mean / noise.mean_sd(len(kept)),
+        mean_score=mean / noise.mean_sd(len(kept)) if told else 0.0,
         unexplained=float(np.var(kept)) / moved if moved > 4.0 * noise.sd**2 else None,
         missing=1.0 - share,
         whiteness=Whiteness(*white) if white else None,
-        lag=find_lag(whole, np.where(np.isfinite(expected), expected, whole), period),
+        lag=find_lag(whole, np.where(np.isfinite(expected), expected, whole), period)
+        if moves
+        else None,
         coherence=coherence,
-        bands=bands(power),
-        blocks=blocks(time, residual, noise),
-        regimes=regimes(residual, noise, leader, load),
+        bands=bands(power) if power else (),
+        blocks=blocks(time, residual, noise) if told else (),
+        regimes=regimes(residual, noise, leader, load) if told else (),
     )
+
+
+def _slow(residual: FloatArray, good: BoolArray, period: float, rate: float | None) -> float:
+    """Rms on the analysis grid, without the rows that a hole goes into."""
+    grid = AnalysisGrid(period, 1) if rate is None else AnalysisGrid.of(period, rate)
+    at = np.arange(len(residual))
+    filled = np.where(good, residual, np.interp(at, at[good], residual[good]))
+    slow = grid.reduce(filled[:, None])[:, 0]
+    touched = grid.touched(~good[:, None])[:, 0]
+    kept = slow if touched.all() or good.all() else slow[~touched]
+    return float(np.sqrt(np.mean(np.square(kept, dtype=float)))) if len(kept) else float("nan")

@@ -14,6 +14,9 @@ CLEAR = 1.5
 PIECES = 15
 """Overlapping pieces of a record: half of each with the next."""
 
+SHORTEST = 16
+"""Rows of a piece below which a spectrum means nothing."""
+
 
 @dataclass(frozen=True)
 class Coherence:
@@ -47,11 +50,14 @@ class Companions:
         moving = np.ptp(drive, axis=0) > 0.0
         self._names = tuple(np.array(names)[moving])
         self._length = 2 * (len(drive) // (PIECES + 1))
-        self._pieces = self._spectra(drive[:, moving])
+        self._told = bool(moving.any()) and self._length >= SHORTEST
+        self._pieces = (
+            self._spectra(drive[:, moving]) if self._told else np.zeros((0, 0, 0), complex)
+        )
 
     def of(self, residual: FloatArray) -> Coherence | None:
         """The drive column that a residual (n,) goes along with most; None if nothing moves."""
-        if not self._names or self._length < 16:
+        if not self._told:
             return None
         pieces = self._spectra(residual[:, None])
         values = self._shares(pieces, 0)

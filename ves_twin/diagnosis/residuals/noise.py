@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass, replace
 from enum import StrEnum
 
@@ -30,6 +31,7 @@ class NoiseSource(StrEnum):
     STILL = "still"
     STANDSTILL = "standstill"
     DECLARED = "declared"
+    NOBODY = "nobody"
 
 
 @dataclass(frozen=True)
@@ -90,7 +92,12 @@ def noise_of_difference(one: Noise, other: Noise) -> Noise:
     Args:
         one: of one recording.
         other: of the other, at rows of the same rate, independent.
+
+    Returns:
+        Nothing told where one of them is told by nobody.
     """
+    if not (one.sd > 0.0 and other.sd > 0.0):
+        return one if not one.sd > 0.0 else other
     share = one.sd**2 / (one.sd**2 + other.sd**2)
     lags = max(len(one.colour), len(other.colour))
     padded = [np.pad(np.array(n.colour, float), (0, lags - len(n.colour))) for n in (one, other)]
@@ -110,17 +117,16 @@ def noise_of_difference(one: Noise, other: Noise) -> Noise:
     return replace(both, louder=tuple(map(float, (power[0] + power[1]) / power[2])))
 
 
-def standing_rows(recording: Recording, drive: tuple[str, ...]) -> slice | None:
+def standing_rows(recording: Recording, setpoints: Iterable[str]) -> slice | None:
     """The longest stretch in which no set-point changes, less REST at its begin; None if short.
 
     Args:
         recording: on an even clock.
-        drive: set-points; the gravity estimate, which is none, is passed over.
+        setpoints: inputs that do not answer to the run.
     """
     moved = np.zeros(len(recording), dtype=bool)
-    for name in drive:
-        if name != "gravity.estimate":
-            moved[1:] |= np.any(np.diff(recording[name], axis=0) != 0.0, axis=1)
+    for name in setpoints:
+        moved[1:] |= np.any(np.diff(recording[name], axis=0) != 0.0, axis=1)
     period = float(np.median(np.diff(recording.time)))
     edges = np.concatenate([[0], np.flatnonzero(moved), [len(recording)]])
     longest = int(np.argmax(np.diff(edges)))

@@ -24,13 +24,18 @@ SPREADS = 4.0
 """A colour so many spreads from that of the noise is another one."""
 
 
-def score(ratio: float, degrees: float) -> float:
+def score(ratio: float, degrees: float, known: float = KNOWN) -> float:
     """Standard normal score of a mean square over its expectation (Wilson and Hilferty 1931).
 
-    The expectation itself counts as known to KNOWN.
+    (chi^2 / m)^(1/3) is nearly normal with mean 1 - 2 / (9 m) and variance 2 / (9 m).
+
+    Args:
+        ratio: of the two.
+        degrees: of freedom.
+        known: share to which the expectation itself is known.
     """
     spread = 2.0 / (9.0 * degrees)
-    return float((np.cbrt(ratio) - (1.0 - spread)) / np.sqrt(spread + (KNOWN / 3.0) ** 2))
+    return float((np.cbrt(ratio) - (1.0 - spread)) / np.sqrt(spread + (known / 3.0) ** 2))
 
 
 @dataclass(frozen=True)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from contextlib import ExitStack
 from pathlib import Path
 from typing import Any, final
 
@@ -9,12 +10,13 @@ import gymnasium as gym
 from gymnasium.utils import RecordConstructorArgs
 
 from ves_twin.core.errors import InvalidInputError
+from ves_twin.core.held_folder import hold_folder
 from ves_twin.core.recording.files import save_recording
 from ves_twin.core.recording.recording import Recording
 from ves_twin.core.types import FloatArray
 from ves_twin.envs.rig_env import rig_env
 from ves_twin.simulator.recorder import MemorySink
-from ves_twin.simulator.simulate import make_folder, recording_info
+from ves_twin.simulator.simulate import recording_info
 
 
 @final
@@ -27,7 +29,7 @@ class RecordEpisodes(
 
     Args:
         env: an environment of this room.
-        folder: where to; made if it is missing.
+        folder: where to; made if it is missing, and no other program's until `close`.
         every: write each of so many episodes, from the first one on.
         rrd: whether to write rerun files too.
     """
@@ -44,7 +46,8 @@ class RecordEpisodes(
         if every < 1:
             raise InvalidInputError("every", every, "1 or more")
         self._inner, self._folder, self._every, self._rrd = rig_env(env), Path(folder), every, rrd
-        make_folder(self._folder)
+        self._held = ExitStack()
+        self._held.enter_context(hold_folder(self._folder))
         self._count, self._sink = 0, None
 
     _sink: MemorySink | None
@@ -71,6 +74,7 @@ class RecordEpisodes(
         """Write what was left unfinished."""
         self._write()
         self._inner.sink = None
+        self._held.close()
         super().close()
 
     def _write(self) -> None:

@@ -16,6 +16,7 @@ from ves_twin.core.types import FloatArray
 from ves_twin.machines.mjcf.description import Column
 from ves_twin.machines.mjcf.machine import Rig
 from ves_twin.machines.mjcf.turned import turned
+from ves_twin.scenario.columns import QUOTED_ROW
 
 UNEVEN = 0.01
 """Largest departure of a time step from the mean that passes as an even clock."""
@@ -59,11 +60,10 @@ def _even(time: FloatArray) -> FloatArray:
 
 def _table(path: Path) -> pa.Table:
     try:
-        if path.suffix == ".parquet":
-            return pq.read_table(path)
-        return pacsv.read_csv(path)
+        with path.open("rb") as file:  # pyarrow takes names of files in UTF-8 alone
+            return pq.read_table(file) if path.suffix == ".parquet" else pacsv.read_csv(file)
     except (pa.ArrowInvalid, OSError, csv.Error) as error:
-        reason = str(error).split("\n", 1)[0]
+        reason = QUOTED_ROW.sub(r"\1", str(error).split("\n", 1)[0])
         raise InvalidInputError(str(path), reason, "a CSV file with a header, or Parquet") from None
 
 

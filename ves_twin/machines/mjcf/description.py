@@ -13,7 +13,7 @@ from ves_twin.core.resources import find_resource, resource_folder
 from ves_twin.core.toml_file import check_schema, read_toml
 from ves_twin.core.units import SI_UNITS
 from ves_twin.diagnosis.grid import RATE
-from ves_twin.machines.mjcf.element import Element
+from ves_twin.effects.element import Element
 from ves_twin.scenario.fields import Hertz, Part, Seconds, named
 from ves_twin.scenario.load import refusal
 
@@ -234,7 +234,7 @@ class RigDescription(Part):
 
 
 def is_rig(name_or_path: str) -> bool:
-    """Whether a --plant option means a rig of two files rather than a form of VES II."""
+    """Whether a --plant option means an MJCF machine rather than a plant of VES II."""
     path = Path(name_or_path)
     if not path.suffix and len(path.parts) == 1:
         return name_or_path in shipped_rigs()

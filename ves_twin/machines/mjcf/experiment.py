@@ -1,4 +1,4 @@
-"""RigExperiment: how recordings of a rig of two files were made, validated from TOML."""
+"""MjcfExperiment: how recordings of an MJCF machine were made, validated from TOML."""
 
 from __future__ import annotations
 
@@ -8,8 +8,8 @@ from pydantic import Field, field_validator, model_validator
 
 from ves_twin.machines.mjcf.description import Number, Start
 from ves_twin.scenario.experiment import StartState, Window
+from ves_twin.scenario.experiment_file import ExperimentFile
 from ves_twin.scenario.fields import Part, Seconds, named, si
-from ves_twin.scenario.told import Told
 
 OF_VES_II = ("scenario", "settings")
 """Keys of an experiment with VES II that a rig has nothing for."""
@@ -23,7 +23,7 @@ class Load(Part):
     at: tuple[float, float, float] = (0.0, 0.0, 0.0)
 
 
-class RigStart(Part):
+class MjcfStart(Part):
     """Initial state: as the rig's file has it, given here by joint, or estimated.
 
     SETTLED: what the rig's file says. GIVEN: `joints` in place of it. ESTIMATED: in motion; the
@@ -44,17 +44,17 @@ class RigStart(Part):
         return self
 
 
-class RigDifferences(Part):
+class MjcfDifferences(Part):
     """What one recording has of its own: what is not said is as the experiment says."""
 
     parameters: dict[str, Number] = Field(default_factory=dict)
     payload: Load | None = None
     noise: str | None = None
-    start: RigStart | None = None
+    start: MjcfStart | None = None
     window: Window | None = None
 
 
-class RigExperiment(Told):
+class MjcfExperiment(ExperimentFile):
     """How a recording was made, as far as the rig's file does not say.
 
     `drive` are the signals that were fed in, and so tells the mode; `compare` those that are
@@ -69,9 +69,9 @@ class RigExperiment(Told):
     parameters: dict[str, Number] = Field(default_factory=dict)
     payload: Load | None = None
     noise: str = "declared"
-    start: RigStart = RigStart()
+    start: MjcfStart = MjcfStart()
     window: Window = Window()
-    recordings: dict[str, RigDifferences] = Field(default_factory=dict)
+    recordings: dict[str, MjcfDifferences] = Field(default_factory=dict)
 
     @model_validator(mode="before")
     @classmethod

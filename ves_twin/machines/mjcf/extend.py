@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-import json
 import os
 from pathlib import Path
 
-from ves_twin.core.whole_file import write_whole
+from ves_twin.core.toml_file import write_toml
 from ves_twin.diagnosis.verdict import Verdict
 from ves_twin.machines.mjcf.description import KIND, SCHEMA, Setting, load_description, shipped_rigs
 from ves_twin.machines.mjcf.machine import Entry, Rig
@@ -19,7 +18,8 @@ def extended(rig: Rig, verdict: Verdict) -> Rig:
     """
     values = {name: e.value for name, e in verdict.tuned.items()}
     for cause in verdict.causes:
-        values |= {name: e.value for name, e in cause.parameters.items()}
+        at = f"{cause.effect}@{cause.target}"
+        values |= {f"{at}:{n.rpartition(':')[2]}": e.value for n, e in cause.parameters.items()}
     settings = {_place(s): s for s in rig.description.parameters}
     present = {kind: dict(t) for kind, t in rig.description.present.items()}
     for entry in rig.entries:
@@ -59,18 +59,10 @@ def write_rig(rig: Rig, path: Path, note: str = "") -> None:
     before = load_description(rig.file)[0]
     shipped = rig.file in shipped_rigs()
     base = rig.file if shipped else os.path.relpath(Path(rig.file), path.parent)
-    lines = [f"# {line}" for line in note.splitlines()]
-    lines += [f"schema = {SCHEMA}", f'kind = "{KIND}"', f"base = {json.dumps(base)}"]
-    for setting in rig.description.parameters:
-        if setting not in before.parameters:
-            content = setting.model_dump(exclude_defaults=True)
-            lines += ["", "[[parameters]]", *(f"{k} = {_toml(v)}" for k, v in content.items())]
-    for kind, targets in rig.description.present.items():
-        for target, sizes in targets.items():
-            lines += ["", f"[present.{kind}.{json.dumps(target)}]"]
-            lines += [f"{name} = {value!r}" for name, value in sizes.items()]
-    write_whole(path, "\n".join(lines) + "\n")
-
-
-def _toml(value: object) -> str:
-    return json.dumps(value, ensure_ascii=False) if isinstance(value, str) else repr(value)
+    content: dict[str, object] = {"schema": SCHEMA, "kind": KIND, "base": base}
+    changed = [s for s in rig.description.parameters if s not in before.parameters]
+    if changed:
+        content["parameters"] = [s.model_dump(mode="json", exclude_defaults=True) for s in changed]
+    if rig.description.present:
+        content["present"] = rig.description.present
+    write_toml(path, content, note)

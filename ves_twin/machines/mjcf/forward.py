@@ -1,4 +1,4 @@
-"""MjcfForward: any rig of two files as the diagnosis sees it."""
+"""MjcfForward: an MJCF machine as the diagnosis sees it."""
 
 from __future__ import annotations
 
@@ -42,24 +42,49 @@ class MjcfForward:
         """Changes with files, mode, library and versions."""
         return f"{self.rig.identity}-{self.mode}"
 
+    @property
+    def fed(self) -> tuple[str, ...]:
+        """Signals that are fed in."""
+        told = self.rig.description
+        if self.mode is Mode.MOTION:
+            names = list(told.drive.joints.values())
+        elif self.mode is Mode.CONTROL:
+            names = list(told.drive.actuators.values())
+        else:
+            names = [c.reference for c in told.controllers.values()]
+        return tuple(dict.fromkeys(names))
+
     @cached_property
     def drive(self) -> tuple[str, ...]:
         """Signals that are fed in, and those that the start is read from."""
         told = self.rig.description
         if self.mode is Mode.MOTION:
-            return tuple(dict.fromkeys(told.drive.joints.values()))
-        fed = list(told.drive.actuators.values())
-        if self.mode is Mode.REFERENCE:
-            fed = [c.reference for c in told.controllers.values()]
+            return self.fed
         measured = [j for j, start in told.start.items() if start.position == "measured"]
-        positions = [
-            next(
-                (n for n, c in told.compare.items() if c.joint == j and c.of == "position"),
-                told.drive.joints.get(j, ""),
-            )
-            for j in measured
-        ]
-        return tuple(dict.fromkeys([*fed, *filter(None, positions)]))
+        return tuple(dict.fromkeys([*self.fed, *filter(None, map(self.position_of, measured))]))
+
+    def position_of(self, joint: str) -> str:
+        """The signal that a joint's position is read from; empty if there is none."""
+        told = self.rig.description
+        compared = (n for n, c in told.compare.items() if c.joint == joint and c.of == "position")
+        return next(compared, told.drive.joints.get(joint, ""))
+
+    @cached_property
+    def leaders(self) -> dict[str, str]:
+        """Compared signal -> the signal fed in for its own joint, where there is one."""
+        told, model = self.rig.description, self.rig.model
+        of_joint = dict(told.drive.joints) if self.mode is Mode.MOTION else {}
+        if self.mode is Mode.REFERENCE:
+            of_joint = {c.joint: c.reference for c in told.controllers.values()}
+        found = {}
+        for name, one in self.compared.items():
+            joint = one.joint
+            if one.actuator:
+                joint = model.joint(int(model.actuator(one.actuator).trnid[0])).name
+            leader = of_joint.get(joint, "")
+            if leader and len(told.signals[leader].columns) == 1:
+                found[name] = leader
+        return found
 
     @cached_property
     def compared(self) -> dict[str, Compared]:

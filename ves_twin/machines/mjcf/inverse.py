@@ -13,8 +13,8 @@ import numpy as np
 from scipy.signal import butter, filtfilt
 
 from ves_twin.core.types import FloatArray
+from ves_twin.effects.shifted import shifted
 from ves_twin.machines.mjcf.description import Compared
-from ves_twin.machines.mjcf.effect import shifted
 from ves_twin.machines.mjcf.work import Work, sensor_rows
 
 ORDER = 4

@@ -13,14 +13,14 @@ import mujoco
 from ves_twin.core.errors import FileAccessError, InvalidInputError, UnknownNameError, one_line
 from ves_twin.core.units import to_si
 from ves_twin.diagnosis.forward import Hypothesis, Parameter
+from ves_twin.effects.effect import Effect
 from ves_twin.effects.magnitude import Magnitude, Sign
+from ves_twin.effects.place import Place
+from ves_twin.effects.registry import EFFECTS, attributes, build_anywhere, kind_anywhere
 from ves_twin.machines.mjcf.check_description import check_description
 from ves_twin.machines.mjcf.description import Allowed, RigDescription, Setting, load_description
-from ves_twin.machines.mjcf.effect import RigEffect
-from ves_twin.machines.mjcf.element import Element
-from ves_twin.machines.mjcf.place import Place
-from ves_twin.machines.mjcf.places import place_of
-from ves_twin.machines.mjcf.registry import RIG_EFFECTS, build_rig_effect
+from ves_twin.machines.mjcf.places import anywhere, place_of
+from ves_twin.machines.mjcf.stiff_friction import stiff_friction
 
 
 @dataclass(frozen=True)
@@ -37,7 +37,7 @@ class Entry:
         source: of the sizes.
     """
 
-    effect: RigEffect
+    effect: Effect
     place: Place
     magnitudes: tuple[Magnitude, ...]
     nominal: tuple[float, ...]
@@ -54,7 +54,7 @@ class Entry:
         """Of a parameter: kind@target:magnitude."""
         return f"{self.effect.kind}@{self.effect.target}:{magnitude.name}"
 
-    def at(self, values: Mapping[str, float]) -> RigEffect:
+    def at(self, values: Mapping[str, float]) -> Effect:
         """The effect where its parameters have values; those left out are nominal."""
         sizes = {}
         native = bool(self.effect.attribute)
@@ -104,17 +104,21 @@ class Rig:
             raise FileAccessError(f"model file '{path}' of rig {self.description.name} is missing")
         try:
             model = self._loaded(path) if self.payloads else mujoco.MjModel.from_xml_path(str(path))
-        except ValueError as error:
+        except (ValueError, mujoco.FatalError) as error:
             raise InvalidInputError(str(path), one_line(error), "a MuJoCo model") from None
+        stiff_friction(model)
         for setting in self.description.parameters:
             if setting.value is not None:
                 effect, place = self._effect_of(setting, model)
-                (magnitude,) = effect.magnitudes(place)
+                (magnitude,) = effect.magnitudes_at(place)
                 change = {
                     magnitude.name: _value(setting, effect, magnitude) - effect.present(model)
                 }
                 effect.sized(change).edit_model(model)
-        mujoco.mj_setConst(model, mujoco.MjData(model))
+        try:
+            mujoco.mj_setConst(model, mujoco.MjData(model))
+        except mujoco.FatalError as error:
+            raise InvalidInputError(str(path), one_line(error), "a model that can move") from None
         return model
 
     @cached_property
@@ -123,19 +127,19 @@ class Rig:
         found: dict[tuple[str, str], Entry] = {}
         settings = {self._key(s): s for s in self.description.parameters}
         for allowed in self.description.effects:
+            kind = kind_anywhere(allowed.kind).kind
             for target in allowed.on:
-                entry = self._entry(allowed, target, settings.get((allowed.kind, target)))
-                found[allowed.kind, target] = entry
+                found[kind, target] = self._entry(allowed, target, settings.get((kind, target)))
         for (kind, target), setting in settings.items():
             if (kind, target) not in found:
                 only = Allowed(kind=kind, on=(target,), cause=False)
                 found[kind, target] = self._entry(only, target, setting)
-        for kind, targets in self.description.present.items():
+        for kind, targets in self._present.items():
             for target in targets:
                 if (kind, target) not in found:
                     only = Allowed(kind=kind, on=(target,), cause=False)
                     found[kind, target] = self._entry(only, target, None)
-        order = list(RIG_EFFECTS)
+        order = list(EFFECTS)
         return tuple(sorted(found.values(), key=lambda e: order.index(e.effect.kind)))
 
     @cached_property
@@ -169,8 +173,8 @@ class Rig:
                     largest=tuple(m.largest for m in entry.magnitudes),
                     signs=(1,) if one_sided else (-1, 1),
                     source=entry.source,
-                    linear=entry.effect.linear and len(entry.magnitudes) == 1,
-                    transient=entry.effect.transient,
+                    linear=anywhere(entry.effect).linear and len(entry.magnitudes) == 1,
+                    transient=anywhere(entry.effect).transient,
                     starts=entry.effect.starts(entry.place),
                 )
             )
@@ -184,7 +188,7 @@ class Rig:
         digest.update((self.folder / self.description.model).read_bytes())
         return digest.hexdigest()[:16]
 
-    def effects_at(self, values: Mapping[str, float]) -> Iterator[tuple[RigEffect, Place]]:
+    def effects_at(self, values: Mapping[str, float]) -> Iterator[tuple[Effect, Place]]:
         """Effects that are at work where parameters have values."""
         for entry in self.entries:
             effect = entry.at(values)
@@ -209,21 +213,18 @@ class Rig:
         return spec.compile()
 
     def _entry(self, allowed: Allowed, target: str, setting: Setting | None) -> Entry:
-        if allowed.kind not in RIG_EFFECTS:
-            raise UnknownNameError("effect", allowed.kind, RIG_EFFECTS)
-        effect = build_rig_effect(allowed.kind, target, {})
-        place = place_of(effect.element, target, self.description, self.model, effect.kind)
-        told = self.description.present.get(allowed.kind, {}).get(target, {})
+        effect = build_anywhere(allowed.kind, target, {})
+        place = place_of(effect, self.description, self.model)
+        told = self._present.get(effect.kind, {}).get(target, {})
         if told and effect.attribute:
             name, attribute = effect.setting
             expected = f'[[parameters]] with {effect.element} = "{name}", attribute = "{attribute}"'
-            came = f"present.{allowed.kind}.{target}"
+            came = f"present.{effect.kind}.{target}"
             raise InvalidInputError(came, told, f"{expected} and value")
-        if set(told) - set(effect.sizes):
-            build_rig_effect(allowed.kind, target, told)
+        build_anywhere(effect.kind, target, told)
         magnitudes = tuple(
-            _sized(m, allowed, setting, f"{allowed.kind}@{target}")
-            for m in effect.magnitudes(place)
+            _sized(m, allowed, setting, f"{effect.kind}@{target}")
+            for m in effect.magnitudes_at(place)
         )
         if effect.attribute:
             nominal: tuple[float, ...] = (effect.present(self.model),)
@@ -231,34 +232,33 @@ class Rig:
             nominal = tuple(float(told.get(m.name, 0.0)) for m in magnitudes)
             for m, value in zip(magnitudes, nominal, strict=True):
                 if value < effect.least(0.0):
-                    what = f"present.{allowed.kind}.{target}.{m.name}"
+                    what = f"present.{effect.kind}.{target}.{m.name}"
                     raise InvalidInputError(what, value, f"at least {effect.least(0.0):g}")
-        source = allowed.source or (setting.source if setting else "") or effect.source
+        source = allowed.source or (setting.source if setting else "") or anywhere(effect).source
         return Entry(
             effect, place, magnitudes, nominal, allowed.cause, allowed.per_recording, source
         )
 
-    def _effect_of(self, setting: Setting, model: mujoco.MjModel) -> tuple[RigEffect, Place]:
+    def _effect_of(self, setting: Setting, model: mujoco.MjModel) -> tuple[Effect, Place]:
         kind, target = self._key(setting)
-        effect = build_rig_effect(kind, target, {})
-        return effect, place_of(effect.element, target, self.description, model, kind)
+        effect = build_anywhere(kind, target, {})
+        return effect, place_of(effect, self.description, model)
+
+    @property
+    def _present(self) -> dict[str, dict[str, dict[str, float]]]:
+        """What is at work by the file, kinds by their names of today."""
+        return {kind_anywhere(k).kind: told for k, told in self.description.present.items()}
 
     @staticmethod
     def _key(setting: Setting) -> tuple[str, str]:
         """Kind and target of the effect that changes an attribute."""
         element, name = setting.element
         attribute = setting.attribute
-        if element is Element.BODY and attribute[:-1] == "centre_" and attribute[-1] in "xyz":
-            return "mass_centre", f"{name}.{attribute[-1]}"
-        known = {
-            k.attribute: k.kind
-            for k in map(RIG_EFFECTS.__getitem__, RIG_EFFECTS.built_in)
-            if k.attribute and k.element is element and k.attribute != "centre"
-        }
+        known = {found: kind for (on, found), kind in attributes().items() if on is element}
         if attribute not in known:
-            centres = {f"centre_{axis}" for axis in "xyz"} if element is Element.BODY else set()
-            raise UnknownNameError(f"attribute of {element} {name}", attribute, {*known, *centres})
-        return known[attribute], name
+            raise UnknownNameError(f"attribute of {element} {name}", attribute, known)
+        axis = attribute.removeprefix("centre_")
+        return known[attribute].kind, name if axis == attribute else f"{name}.{axis}"
 
 
 def _bounds(
@@ -279,7 +279,7 @@ def _bounds(
     return min(max(low, least), nominal), high
 
 
-def _value(setting: Setting, effect: RigEffect, m: Magnitude) -> float:
+def _value(setting: Setting, effect: Effect, m: Magnitude) -> float:
     """What a setting makes of its attribute: a mass above zero, friction and springs not below."""
     what = f"{setting.attribute} of {effect.target}"
     value = to_si(setting.value, m.unit, what)

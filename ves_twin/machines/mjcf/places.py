@@ -2,38 +2,38 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import mujoco
 
 from ves_twin.core.errors import InvalidInputError, UnknownNameError
 from ves_twin.core.units import to_si
+from ves_twin.effects.effect import Effect
+from ves_twin.effects.element import Element
+from ves_twin.effects.place import Place
+from ves_twin.effects.row import Anywhere
 from ves_twin.machines.mjcf.description import RigDescription, Span
-from ves_twin.machines.mjcf.element import Element
 from ves_twin.machines.mjcf.joint_units import joint_units
-from ves_twin.machines.mjcf.place import Place
 
 SINGLE = (int(mujoco.mjtJoint.mjJNT_HINGE), int(mujoco.mjtJoint.mjJNT_SLIDE))
 """Joints that effects of joints are made for."""
 
-COLUMNS = {"sensor_delay": 0, "cross_talk": 2}
-"""Numbers at the end of a target that is a signal, where not one."""
 
-
-def place_of(
-    element: Element, target: str, told: RigDescription, model: mujoco.MjModel, kind: str
-) -> Place:
-    """The place of a target.
+def place_of(effect: Effect, told: RigDescription, model: mujoco.MjModel) -> Place:
+    """The place of an effect of a kind that a machine of an MJCF model can have.
 
     Raises:
         UnknownNameError: no such part or signal; says the nearest one.
         InvalidInputError: a joint that neither turns nor slides, or no typical sizes.
     """
+    kind, target, on = effect.kind, effect.target, anywhere(effect)
+    element = on.element
     if element is Element.SIGNAL:
-        return _signal(target, told, kind)
+        return _signal(kind, target, on, told)
     if element is Element.BODY:
-        axis = target.rpartition(".") if kind == "mass_centre" else (target, "", "")
-        if kind == "mass_centre" and axis[2] not in tuple("xyz"):
+        name, _, axis = target.rpartition(".") if on.axis else (target, "", "")
+        if on.axis and axis not in tuple("xyz"):
             raise InvalidInputError(f"target of {kind}", target, "a body and an axis, as tool.x")
-        name = axis[0]
         _known("body", name, {model.body(i).name for i in range(1, model.nbody)})
         return Place(element, target, mass=float(model.body_mass[model.body(name).id]))
     if element is Element.ACTUATOR:
@@ -41,21 +41,18 @@ def place_of(
         return Place(element, target)
     if element is Element.TENDON:
         return _tendon(target, told, model)
-    _known("joint", target, {model.joint(i).name for i in range(model.njnt)})
-    found = int(model.jnt_type[model.joint(target).id])
-    if found not in SINGLE:
-        raise InvalidInputError(f"joint {target}", "a free or ball joint", "a hinge or a slide")
-    hinge = found == SINGLE[0]
-    span = told.typical.joint.get(target, Span())
-    what = f"typical.joint.{target}"
-    return Place(
-        element,
-        target,
-        hinge=hinge,
-        effort=_positive(span.effort, "N*m" if hinge else "N", f"{what}.effort"),
-        speed=typical_speed(target, told, model),
-        travel=_positive(span.travel, "rad" if hinge else "m", f"{what}.travel"),
-    )
+    return _joint(target, told, model)
+
+
+def anywhere(effect: Effect) -> Anywhere:
+    """What an effect's kind is on any machine.
+
+    Raises:
+        InvalidInputError: a kind of VES II alone.
+    """
+    if effect.anywhere is None:
+        raise InvalidInputError(effect.kind, effect.target, "a kind that any machine can have")
+    return effect.anywhere
 
 
 def typical_speed(joint: str, told: RigDescription, model: mujoco.MjModel) -> float:
@@ -69,11 +66,29 @@ def typical_speed(joint: str, told: RigDescription, model: mujoco.MjModel) -> fl
     return _positive(span.speed, unit, f"typical.joint.{joint}.speed")
 
 
+def _joint(target: str, told: RigDescription, model: mujoco.MjModel) -> Place:
+    _known("joint", target, {model.joint(i).name for i in range(model.njnt)})
+    found = int(model.jnt_type[model.joint(target).id])
+    if found not in SINGLE:
+        raise InvalidInputError(f"joint {target}", "a free or ball joint", "a hinge or a slide")
+    hinge = found == SINGLE[0]
+    span = told.typical.joint.get(target, Span())
+    what = f"typical.joint.{target}"
+    return Place(
+        Element.JOINT,
+        target,
+        hinge=hinge,
+        effort=_positive(span.effort, "N*m" if hinge else "N", f"{what}.effort"),
+        speed=typical_speed(target, told, model),
+        travel=_positive(span.travel, "rad" if hinge else "m", f"{what}.travel"),
+    )
+
+
 def _tendon(target: str, told: RigDescription, model: mujoco.MjModel) -> Place:
     """What is typical of a sum of joints: the least effort, the sums of speeds and travels."""
     _known("tendon", target, {model.tendon(i).name for i in range(model.ntendon)})
     parts = tendon_joints(model, target)
-    places = [place_of(Element.JOINT, joint, told, model, "") for joint, _ in parts]
+    places = [_joint(joint, told, model) for joint, _ in parts]
     if not places or len({p.hinge for p in places}) > 1:
         expected = "a fixed tendon over joints that all turn, or all slide"
         raise InvalidInputError(f"tendon {target}", [joint for joint, _ in parts], expected)
@@ -98,9 +113,8 @@ def tendon_joints(model: mujoco.MjModel, tendon: str) -> list[tuple[str, float]]
     return [(model.joint(int(model.wrap_objid[k])).name, float(model.wrap_prm[k])) for k in rows]
 
 
-def _signal(target: str, told: RigDescription, kind: str) -> Place:
-    count = COLUMNS.get(kind, 1)
-    parts = target.split(".")
+def _signal(kind: str, target: str, on: Anywhere, told: RigDescription) -> Place:
+    count, parts = on.columns, target.split(".")
     name = ".".join(parts[:-count] if count else parts)
     _known("signal", name, told.signals)
     column = told.signals[name]
@@ -112,20 +126,12 @@ def _signal(target: str, told: RigDescription, kind: str) -> Place:
     told_span = told.typical.signal.get(name, Span()).span
     span = _positive(told_span, column.unit, f"typical.signal.{name}.span")
     place = Place(Element.SIGNAL, target, unit=column.unit, span=span)
-    if kind != "sensor_drift":
+    if not on.transient:
         return place
     if told.drift is None:
         raise InvalidInputError("drift", None, "a table with the end of the stretch it spans")
     drift = told.drift
-    return Place(
-        Element.SIGNAL,
-        target,
-        unit=column.unit,
-        span=span,
-        begin=drift.begin,
-        end=drift.end,
-        terms=drift.terms,
-    )
+    return replace(place, begin=drift.begin, end=drift.end, terms=drift.terms)
 
 
 def _known(what: str, name: str, there: object) -> None:

@@ -6,11 +6,12 @@ import mujoco
 import numpy as np
 from mujoco import rollout
 
+from ves_twin.core.engine_log import log_engine
 from ves_twin.core.types import FloatArray
 from ves_twin.core.units import to_si
+from ves_twin.effects.effect import Effect
+from ves_twin.effects.element import Element
 from ves_twin.machines.mjcf.description import Controller, Mode
-from ves_twin.machines.mjcf.effect import RigEffect
-from ves_twin.machines.mjcf.element import Element
 from ves_twin.machines.mjcf.inverse import smoothed
 from ves_twin.machines.mjcf.joint_units import joint_units
 from ves_twin.machines.mjcf.work import Work, sensor_rows
@@ -38,6 +39,7 @@ def motion_of_drive(work: Work, mode: Mode, refined: bool = False) -> dict[str, 
     Returns:
         Signals; NaN throughout where the motion diverged and MuJoCo had to start it anew.
     """
+    log_engine()
     model, period = work.model, work.programme.period
     steps = max(1, round(period / model.opt.timestep)) * (2 if refined else 1)
     model.opt.timestep = period / steps
@@ -93,7 +95,7 @@ def position_signal(work: Work, joint: str) -> tuple[str, int]:
 
 def _resisted(work: Work) -> bool:
     """Whether an effect depends on speed or place in a way that the model itself lacks."""
-    plain = (RigEffect.resist, RigEffect.hold)
+    plain = (Effect.resist, Effect.hold)
     return any((type(e).resist, type(e).hold) != plain for e, _ in work.effects)
 
 

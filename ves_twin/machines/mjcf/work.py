@@ -11,12 +11,12 @@ import numpy as np
 
 from ves_twin.core.types import FloatArray
 from ves_twin.diagnosis.forward import Excitation
+from ves_twin.effects.effect import Effect
+from ves_twin.effects.element import Element
+from ves_twin.effects.joints import CoulombFriction
+from ves_twin.effects.place import Place
 from ves_twin.machines.mjcf.description import Compared
-from ves_twin.machines.mjcf.effect import RigEffect
-from ves_twin.machines.mjcf.element import Element
-from ves_twin.machines.mjcf.joint_effects import CoulombFriction
 from ves_twin.machines.mjcf.machine import Rig
-from ves_twin.machines.mjcf.place import Place
 from ves_twin.machines.mjcf.places import tendon_joints, typical_speed
 
 SMOOTH = 0.0005
@@ -39,7 +39,7 @@ class Work:
     rig: Rig
     programme: Excitation
     model: mujoco.MjModel
-    effects: tuple[tuple[RigEffect, Place], ...]
+    effects: tuple[tuple[Effect, Place], ...]
     values: Mapping[str, float]
 
     @staticmethod
@@ -53,7 +53,7 @@ class Work:
             mujoco.mj_setConst(model, mujoco.MjData(model))
         return Work(rig, programme, model, effects, values)
 
-    def at(self, element: Element, name: str) -> list[tuple[RigEffect, Place]]:
+    def at(self, element: Element, name: str) -> list[tuple[Effect, Place]]:
         """Effects on one target."""
         return [(e, p) for e, p in self.effects if e.element is element and e.target == name]
 

@@ -5,18 +5,28 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
-from ves_twin.core.errors import VesTwinError
+from ves_twin.core.errors import InvalidInputError, VesTwinError
 from ves_twin.core.recording.even_clock import even_clock
 from ves_twin.core.recording.recording import Recording
 from ves_twin.data.quality.check import Check
 from ves_twin.data.quality.gate import quality_gate
-from ves_twin.machines.ves2.declared_load import LOAD, loads_of
+from ves_twin.machines.ves2.declared_load import LOAD
 from ves_twin.machines.ves2.forward import DRIVE
 from ves_twin.plant.plant import Plant
+from ves_twin.scenario.schema import Scenario
+from ves_twin.simulator.replay import replay_scenario
 
 REFUSED = frozenset({"wiring", "sign", "units", "frame"})
 """Checks whose failure makes any cause that is named a wrong one: the recording is not what it says
 it is."""
+
+SORTS = {
+    "measured": "recording",
+    "held_out": "held-out recording",
+    "commissioning": "commissioning recording",
+    "baseline": "baseline recording",
+}
+"""What recordings are for -> what they are called in messages."""
 
 
 @dataclass(frozen=True)
@@ -25,10 +35,6 @@ class Inputs:
 
     recordings: tuple[Recording, ...]
     flaws: tuple[Check, ...]
-
-    def with_loads(self) -> Inputs:
-        """The same, every recording saying what hung on the arm: nothing where it did not."""
-        return replace(self, recordings=loads_of(self.recordings))
 
 
 def prepare_inputs(recordings: Sequence[Recording], plant: Plant, word: str) -> Inputs:
@@ -62,3 +68,21 @@ def prepare_inputs(recordings: Sequence[Recording], plant: Plant, word: str) -> 
         fed = (*DRIVE, LOAD.name) if LOAD.name in recording.signals else DRIVE
         even.append(even_clock(recording, fed))
     return Inputs(tuple(even), tuple(flaws))
+
+
+def one_step(scenario: Scenario) -> Scenario:
+    """A scenario with the model's own step, whatever a recording was made with."""
+    return scenario.model_copy(update={"run": scenario.run.model_copy(update={"substeps": 1})})
+
+
+def check_settings(recordings: Sequence[Recording], first: Scenario) -> None:
+    """Raise InvalidInputError where a recording was made with other rates or leg settings."""
+    for number, recording in enumerate(recordings, 1):
+        other = replay_scenario(recording)
+        for what, here, there in (
+            ("platform.rate", other.platform.rate, first.platform.rate),
+            ("legs", other.legs, first.legs),
+        ):
+            if here != there:
+                where = f"recording {number}: {what}"
+                raise InvalidInputError(where, here, f"{there}, as in the first one")

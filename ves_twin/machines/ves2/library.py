@@ -18,11 +18,6 @@ from ves_twin.plant.hydraulics import Hydraulics
 from ves_twin.plant.plant import Plant
 from ves_twin.scenario.schema import Scenario
 
-PRESSURE_ONLY = frozenset(
-    {"cylinder_viscous", "piston_leakage", "oil_air", "supply_pressure", "supply_droop"}
-)
-"""Kinds that act on chambers or the manifold, which the linear form lacks."""
-
 UNSEEN = frozenset({"model_mass", "stale_gravity"})
 """Kinds that act on the admittance computer, above where a replay cuts the loop."""
 
@@ -40,31 +35,6 @@ OPEN_NUMBERS = (
 )
 """Numbers of the whole rig that commissioning leaves open, with the sd of the plant's table."""
 
-BENT = frozenset(
-    {
-        "base_tilt",
-        "command_limit",
-        "coulomb_friction",
-        "drive_delay",
-        "filter_edge",
-        "hose_stiffness",
-        "joint_friction",
-        "leg_bending",
-        "leg_gain",
-        "leg_rate_gain",
-        "oil_air",
-        "sensor_delay",
-        "sensor_lag",
-        "servo_gain",
-        "supply_droop",
-        "transducer_delay",
-        "valve_deadband",
-        "valve_delay",
-        "valve_lag",
-    }
-)
-"""Kinds whose trace is not proportional to their size; the others are checked to be."""
-
 SIGNS = {Sign.BOTH: (-1, 1), Sign.POSITIVE: (1,), Sign.NEGATIVE: (-1,)}
 
 AXES = ("fx", "fy", "fz", "mx", "my", "mz")
@@ -76,15 +46,16 @@ WANDER = "wander@sensor."
 
 
 def places(plant: Plant) -> Iterator[tuple[type[Effect], str]]:
-    """Every kind of effect that a plant can have, on every target."""
-    for kind in EFFECTS.values():
+    """Every kind of effect that a plant can have, on every target, part by part."""
+    rows = [(kind, row) for kind in EFFECTS.values() for row in kind.rows]
+    for kind, row in sorted(rows, key=lambda place: place[1].part):
         if kind.kind in UNSEEN:
             continue
         if plant.fidelity is Fidelity.FAST and kind.kind in ABSENT_EFFECTS:
             continue
-        if plant.hydraulics is Hydraulics.LINEAR and kind.kind in PRESSURE_ONLY:
+        if plant.hydraulics is Hydraulics.LINEAR and row.pressure:
             continue
-        for target in kind.targets:
+        for target in row.targets:
             yield kind, target
 
 
@@ -99,7 +70,7 @@ def parameters_of(plant: Plant) -> tuple[Parameter, ...]:
     present = {(e.kind, e.target): e.values for e in plant.effects}
     found = []
     for kind, target in places(plant):
-        for m in kind.magnitudes:
+        for m in kind.magnitudes_of(target):
             nominal = present.get((kind.kind, target), {}).get(m.name, 0.0)
             name = _name(kind.kind, target, m.name)
             # a nuisance moves to both sides of a one-sided bound only as far as it has room
@@ -146,9 +117,10 @@ def hypotheses_of(plant: Plant, exclude: frozenset[str] = frozenset()) -> tuple[
     for kind, target in places(plant):
         if kind.kind in exclude:
             continue
-        groups: list[tuple[Magnitude, ...]] = [(m,) for m in kind.magnitudes]
+        row, sizes = kind.row_of(target), kind.magnitudes_of(target)
+        groups: list[tuple[Magnitude, ...]] = [(m,) for m in sizes]
         if kind.kind == "base_tilt":
-            groups = [kind.magnitudes]
+            groups = [sizes]
         for group in groups:
             found.append(
                 Hypothesis(
@@ -158,8 +130,8 @@ def hypotheses_of(plant: Plant, exclude: frozenset[str] = frozenset()) -> tuple[
                     smallest=tuple(m.smallest for m in group),
                     largest=tuple(m.largest for m in group),
                     signs=SIGNS[group[0].sign],
-                    source=kind.source,
-                    linear=kind.kind not in BENT,
+                    source=row.source,
+                    linear=kind.proportional,
                 )
             )
     return tuple(found)

@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-import json
 from pathlib import Path
 
 import numpy as np
 
-from ves_twin.core.whole_file import write_whole
+from ves_twin.core.toml_file import write_toml
 from ves_twin.diagnosis.forward import Excitation
 from ves_twin.machines.ves2.excitations import write_setpoints
 from ves_twin.plant.plant import Plant
@@ -36,33 +35,28 @@ def write_next_experiment(
         FileAccessError: not writable.
     """
     write_setpoints(programme, folder / SETPOINTS)
-    write_whole(folder / SCENARIO, _text(programme, scenario, plant))
+    note = f"Which of the causes that look alike is it? Programme: {programme.name}"
+    write_toml(folder / SCENARIO, _content(programme, scenario, plant), note)
 
 
-def _text(programme: Excitation, scenario: Scenario, plant: Plant) -> str:
+def _content(programme: Excitation, scenario: Scenario, plant: Plant) -> dict[str, object]:
     first = np.ascontiguousarray(programme.drive["leg.command"][:1])
     start = poses_of(first, np.zeros(6), belief_of(scenario).geometry)[0]
     # round-off of the inverse kinematics, which would show as a start beside home
     start = np.where(np.abs(start) < 1e-9, 0.0, start)
     legs, gravity = scenario.legs, scenario.gravity
-    tables = {
+    return {
+        "plant": plant.base,
+        "belief": scenario.belief,
         "run": {"duration": float(programme.time[-1] + 0.5 * programme.period)},
         "platform": {
             "mode": "position",
             "rate": scenario.platform.rate,
             "start": start.tolist(),
+            "motion": {"kind": "setpoints", "file": SETPOINTS},
         },
-        "platform.motion": {"kind": "setpoints", "file": SETPOINTS},
         "gravity": {"zero": gravity.zero}
         | ({"method": "model", "file": gravity.file} if gravity.file else {}),
         "legs": legs.model_dump(mode="json"),
         "arm": {"start": programme.drive["arm.command"][0].tolist()},
     }
-    lines = [
-        f"# Which of the causes that look alike is it? Programme: {programme.name}",
-        f"plant = {json.dumps(plant.base)}",
-        f"belief = {json.dumps(scenario.belief)}",
-    ]
-    for name, values in tables.items():
-        lines += ["", f"[{name}]", *(f"{key} = {json.dumps(v)}" for key, v in values.items())]
-    return "\n".join(lines) + "\n"

@@ -8,11 +8,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from ves_twin.core.types import Block, FloatArray
-from ves_twin.effects.force_sensor import SensorCrossTalk, SensorGain
+from ves_twin.effects.sensors import CrossTalk, SensorGain
 from ves_twin.plant.plant import Plant
 from ves_twin.simulator.blocks import PARAMETERS, fill_sensor
 
-KINDS = frozenset({SensorGain.kind, SensorCrossTalk.kind})
+KINDS = frozenset({SensorGain.kind, CrossTalk.kind})
 """Kinds that change the reading and nothing else, as long as no loop is closed over the sensor."""
 
 

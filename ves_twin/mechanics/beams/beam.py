@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ves_twin.core.errors import InvalidInputError
+from ves_twin.core.read_only import ReadOnly
 from ves_twin.core.types import FloatArray
 from ves_twin.mechanics.beams.damping import modal_damping, product_root, square_root
 from ves_twin.mechanics.beams.formulas import (
@@ -29,7 +30,7 @@ TORSIONAL_INERTIA_IN_DAMPING = 0.143
 
 
 @dataclass(frozen=True)
-class BeamMatrices:
+class BeamMatrices(ReadOnly):
     """M Y'' + B Y' + K Y = W at the free end, Y = (X, Y, Z, phiX, phiY, phiZ).
 
     Attributes:

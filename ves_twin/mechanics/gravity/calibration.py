@@ -10,6 +10,7 @@ from pathlib import Path
 import numpy as np
 
 from ves_twin.core.errors import InvalidInputError, UnknownNameError
+from ves_twin.core.read_only import ReadOnly
 from ves_twin.core.resources import find_resource
 from ves_twin.core.toml_file import check_schema, read_toml
 from ves_twin.core.types import FloatArray
@@ -23,7 +24,7 @@ _KEYS = {"schema", "name", "source", "sensor", "arm", "model"}
 
 
 @dataclass(frozen=True)
-class GravityCalibration:
+class GravityCalibration(ReadOnly):
     """What the computers load before an experiment (thesis Appendix E, step 8).
 
     Attributes:

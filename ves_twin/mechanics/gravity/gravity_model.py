@@ -6,13 +6,14 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ves_twin.core.read_only import ReadOnly
 from ves_twin.core.types import FloatArray
 from ves_twin.mechanics.gravity.first_moments import FirstMoments
 from ves_twin.mechanics.kinematics.dh_chain import DhChain
 
 
 @dataclass(frozen=True)
-class GravityModel:
+class GravityModel(ReadOnly):
     """F_g = M_total g, M_g = G(q, g) P, about the origin of the platform top frame t.
 
     Attributes:

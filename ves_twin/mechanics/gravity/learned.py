@@ -11,6 +11,7 @@ import pyarrow as pa
 import pyarrow.parquet as pq
 
 from ves_twin.core.errors import FileAccessError, InvalidInputError, VersionError, one_line
+from ves_twin.core.read_only import ReadOnly
 from ves_twin.core.types import FloatArray
 from ves_twin.core.whole_file import whole_file
 
@@ -27,7 +28,7 @@ JOINTS = ("q1", "q2", "q3")
 
 
 @dataclass(frozen=True)
-class PlannedExperiment:
+class PlannedExperiment(ReadOnly):
     """What W_g belongs to: it holds for these commands on this emulated system and no other.
 
     Attributes:
@@ -46,7 +47,7 @@ class PlannedExperiment:
 
 
 @dataclass(frozen=True)
-class LearnedGravity:
+class LearnedGravity(ReadOnly):
     """W_g(s) of the Learning Method in sensor axes, in the time of the full-speed motion.
 
     Attributes:
@@ -71,7 +72,8 @@ class LearnedGravity:
             VersionError: another version of the format.
         """
         try:
-            table = pq.read_table(path)
+            with open(path, "rb") as file:  # pyarrow takes names of files in UTF-8 alone
+                table = pq.read_table(file)
         except OSError as error:
             raise FileAccessError(f"gravity.file {path}: {one_line(error)}") from None
         except pa.ArrowException as error:
@@ -105,8 +107,8 @@ class LearnedGravity:
         columns |= dict(zip(WRENCH, self.wrenches.T, strict=True))
         columns |= dict(zip(JOINTS, self.experiment.commands.T, strict=True))
         table = pa.table({name: pa.array(values) for name, values in columns.items()})
-        with whole_file(path) as partial:
-            pq.write_table(table.replace_schema_metadata({KEY: json.dumps(head)}), partial)
+        with whole_file(path) as partial, partial.open("wb") as file:
+            pq.write_table(table.replace_schema_metadata({KEY: json.dumps(head)}), file)
 
     def check(self, planned: PlannedExperiment) -> None:
         """Raise InvalidInputError unless it was learned for this experiment."""

@@ -8,6 +8,7 @@ import numpy as np
 
 from ves_twin.core.compiled import compiled
 from ves_twin.core.errors import UnreachableError
+from ves_twin.core.read_only import ReadOnly
 from ves_twin.core.types import FloatArray
 from ves_twin.mechanics.kinematics.rotations import matrix_from_angles, rate_matrix
 
@@ -142,7 +143,7 @@ def track_poses(
 
 
 @dataclass(frozen=True)
-class StewartGeometry:
+class StewartGeometry(ReadOnly):
     """Joint positions of a six-leg platform.
 
     Attributes:

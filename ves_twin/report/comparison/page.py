@@ -5,14 +5,16 @@ from __future__ import annotations
 from ves_twin.core.quantity import UNSURE, digits, percent, quantity
 from ves_twin.data.quality.check import Grade
 from ves_twin.diagnosis.residuals.channel import ChannelComparison
-from ves_twin.machines.ves2.comparison_result import Basis, Comparison, RecordingComparison
+from ves_twin.machines.comparison import Basis, Comparison, RecordingComparison
 from ves_twin.report.comparison.pictures import (
     cells_figure,
+    cells_of,
     channel_figure,
     levels_figure,
     residuals_figure,
 )
 from ves_twin.report.comparison.words import (
+    FED_IN,
     HELD_AGAINST,
     cost_sentence,
     excess_words,
@@ -53,10 +55,14 @@ def _head(comparison: Comparison) -> Html:
 
 def _answer(recording: RecordingComparison, several: bool) -> Html:
     made = f", recorded from plant {recording.made_by}" if recording.made_by else ""
+    span = (
+        f"{recording.stop - recording.start + 1:g} poses"
+        if recording.poses
+        else f"{recording.start:.2f} to {recording.stop:.2f} s at {recording.rate:.2f} Hz"
+    )
     what = (
-        f"{recording.name}: {recording.start:.2f} to {recording.stop:.2f} s at"
-        f" {recording.rate:.2f} Hz{made}, against {HELD_AGAINST[recording.basis]};"
-        f" plant {recording.plant} ({recording.plant_hash})."
+        f"{recording.name}: {span}{made}, against {HELD_AGAINST[recording.basis]};"
+        f" {FED_IN[recording.mode]}; plant {recording.plant} ({recording.plant_hash})."
     )
     loud = bool(recording.beyond_noise)
     parts = [
@@ -84,25 +90,22 @@ def _tolerance(comparison: Comparison) -> Html:
 def _details(recording: RecordingComparison, name: str, several: bool) -> list[Html]:
     title = f": {recording.name}" if several else ""
     other = "simulated" if recording.basis is Basis.PLANT else "other recording"
-    loud = sorted(recording.channels, key=lambda c: (not c.beyond_noise, -c.rms_sigma))[:SHOWN]
+    loud = sorted(recording.channels, key=lambda c: (not c.beyond_noise, -c.loudness))[:SHOWN]
     if not recording.channels:
         return []
     return [
-        section(
-            f"How large{title}", levels_figure(recording, name), _channel_table(recording.channels)
-        ),
+        section(f"How large{title}", levels_figure(recording, name), _channel_table(recording)),
         section(
             f"Where it lives{title}",
-            cells_figure(recording, "band", name),
-            cells_figure(recording, "time", name),
+            *(cells_figure(recording, kind, name) for kind in _mapped(recording)),
             folded("Regimes: velocity, position, load", _regime_table(recording.channels)),
         ),
         section(
             f"The loudest columns{title}",
-            *(channel_figure(c, recording.traces, other, name) for c in loud),
+            *(channel_figure(c, recording, other, name) for c in loud),
             folded(
                 "Residuals of all columns",
-                residuals_figure(recording.channels, recording.traces, name),
+                residuals_figure(recording, name),
             ),
         ),
         section(
@@ -116,12 +119,19 @@ def _details(recording: RecordingComparison, name: str, several: bool) -> list[H
     ]
 
 
-def _channel_table(channels: tuple[ChannelComparison, ...]) -> Html:
+def _mapped(recording: RecordingComparison) -> tuple[str, ...]:
+    """Kinds of cells that some column has: poses have no bands, without noise there are none."""
+    kinds = ("band", "time")
+    return tuple(k for k in kinds if any(cells_of(c, k) for c in recording.channels))
+
+
+def _channel_table(recording: RecordingComparison) -> Html:
+    slow = "rms" if recording.poses else f"rms below {recording.slow_below:g} Hz"
     head = (
-        *("column (* beyond noise)", "rms", "sigma", "rms / sigma", "peak", "mean"),
+        *("column (* beyond noise)", "rms", slow, "sigma", "rms / sigma", "peak", "mean"),
         *("unexplained", "lag-one (noise)", "white", "lag, ms", "coherence (chance)"),
     )
-    return table(head, [_row(c) for c in channels])
+    return table(head, [_row(c) for c in recording.channels])
 
 
 def _row(c: ChannelComparison) -> tuple[str, ...]:
@@ -129,7 +139,8 @@ def _row(c: ChannelComparison) -> tuple[str, ...]:
     return (
         f"{c.name}{' *' if c.beyond_noise else ''}",
         quantity(c.rms, c.unit),
-        quantity(c.sigma, c.unit),
+        quantity(c.rms_slow, c.unit),
+        quantity(c.sigma or None, c.unit),
         digits(c.rms_sigma),
         quantity(c.peak, c.unit),
         quantity(c.mean, c.unit),

@@ -2,14 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-
 import numpy as np
 
-from ves_twin.core.signals import SIGNALS
 from ves_twin.diagnosis.residuals.cells import Cell
 from ves_twin.diagnosis.residuals.channel import ChannelComparison
-from ves_twin.machines.ves2.comparison_result import RecordingComparison, Traces
+from ves_twin.machines.comparison import RecordingComparison
 from ves_twin.report.figure import new_figure, svg
 from ves_twin.report.html import Html
 from ves_twin.report.plots import (
@@ -32,11 +29,14 @@ def levels_figure(recording: RecordingComparison, name: str) -> Html:
     return svg(figure, f"{name}-levels", "Residual of each column; red: its noise.")
 
 
+def cells_of(channel: ChannelComparison, kind: str) -> tuple[Cell, ...]:
+    """Bands ("band") or stretches ("time")."""
+    return channel.bands if kind == "band" else channel.blocks
+
+
 def cells_figure(recording: RecordingComparison, kind: str, name: str) -> Html:
     """Map of columns against bands ("band") or stretches ("time")."""
-    cells: list[tuple[Cell, ...]] = [
-        c.bands if kind == "band" else c.blocks for c in recording.channels
-    ]
+    cells = [cells_of(c, kind) for c in recording.channels]
     columns = list(dict.fromkeys(cell.label for row in cells for cell in row))
     values = np.full((len(cells), len(columns)), np.nan)
     for i, row in enumerate(cells):
@@ -48,11 +48,13 @@ def cells_figure(recording: RecordingComparison, kind: str, name: str) -> Html:
     return svg(figure, f"{name}-{kind}", caption)
 
 
-def channel_figure(channel: ChannelComparison, traces: Traces, other: str, name: str) -> Html:
+def channel_figure(
+    channel: ChannelComparison, recording: RecordingComparison, other: str, name: str
+) -> Html:
     """One column: measured and expected above, their difference below."""
-    column = SIGNALS[channel.signal].columns.index(channel.name)
-    measured = traces.measured[channel.signal][:, column]
-    expected = traces.expected[channel.signal][:, column]
+    traces = recording.traces
+    measured = traces.measured[channel.signal][:, channel.column]
+    expected = traces.expected[channel.signal][:, channel.column]
     figure = new_figure(3.4)
     above, below = figure.subplots(2, 1, sharex=True)
     lines = [Trace("measured", measured, MEASURED), Trace(other, expected, SIMULATED)]
@@ -60,20 +62,24 @@ def channel_figure(channel: ChannelComparison, traces: Traces, other: str, name:
     draw_traces(above, traces.time, lines, unit)
     residual = [Trace("residual", measured - expected, RESIDUAL)]
     draw_traces(below, traces.time, residual, f"residual, {unit}", 2.0 * channel.sigma)
-    below.set_xlabel("t, s", fontsize=8)
+    below.set_xlabel(_clock(recording), fontsize=8)
     caption = f"{channel.name} ({channel.axis}). Grey: two sigma of noise."
     return svg(figure, f"{name}-{channel.name}", caption)
 
 
-def residuals_figure(channels: Sequence[ChannelComparison], traces: Traces, name: str) -> Html:
+def residuals_figure(recording: RecordingComparison, name: str) -> Html:
     """Residuals of many columns, in sigma, one above the other."""
+    channels, traces = recording.channels, recording.traces
     figure = new_figure(0.5 + 0.75 * len(channels))
     axes = np.atleast_1d(figure.subplots(len(channels), 1, sharex=True))
     for one, channel in zip(axes, channels, strict=True):
-        column = SIGNALS[channel.signal].columns.index(channel.name)
         gap = traces.measured[channel.signal] - traces.expected[channel.signal]
-        line = Trace(channel.name, gap[:, column] / channel.sigma, RESIDUAL)
+        line = Trace(channel.name, gap[:, channel.column] / (channel.sigma or 1.0), RESIDUAL)
         draw_traces(one, traces.time, [line], channel.name, 2.0)
         one.yaxis.label.set(rotation=0, ha="right", va="center")
-    axes[-1].set_xlabel("t, s", fontsize=8)
+    axes[-1].set_xlabel(_clock(recording), fontsize=8)
     return svg(figure, f"{name}-residuals", "Residuals in sigma. Grey: two sigma.")
+
+
+def _clock(recording: RecordingComparison) -> str:
+    return "number of the pose" if recording.poses else "t, s"

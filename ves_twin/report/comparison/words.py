@@ -6,8 +6,8 @@ from ves_twin.core.quantity import digits, quantity
 from ves_twin.data.quality.check import Grade
 from ves_twin.diagnosis.residuals.cells import Cell
 from ves_twin.diagnosis.residuals.channel import FAR, LOUD, ChannelComparison
-from ves_twin.machines.ves2.comparison_result import Basis, Comparison, RecordingComparison
-from ves_twin.machines.ves2.tolerance import Excess
+from ves_twin.machines.comparison import Basis, Comparison, RecordingComparison
+from ves_twin.machines.tolerance import Excess
 
 NAMED = 3
 """Channels named in a sentence."""
@@ -22,11 +22,21 @@ HELD_AGAINST = {
 }
 
 
+FED_IN = {
+    "motion": "joints moved as recorded (inverse dynamics)",
+    "control": "efforts fed in as recorded (open loop)",
+    "reference": "set-points fed into the controllers (closed loop)",
+}
+"""How the simulation was fed, by mode."""
+
+
 def trust_sentence(recording: RecordingComparison) -> str:
     """Whether the data can be trusted."""
     failed = [c for c in recording.checks if c.grade is Grade.FAILED]
     doubts = [c for c in recording.checks if c.grade is Grade.UNKNOWN]
     asked = len(recording.checks)
+    if not asked:
+        return "Data: poses at rest; the checks are for records in time."
     if failed:
         return (
             f"Data: {len(failed)} of {asked} quality checks failed. What follows may come from the"
@@ -41,7 +51,7 @@ def gap_sentence(recording: RecordingComparison) -> str:
     """How large the gap is, in words, SI and sigma."""
     loud, count = recording.beyond_noise, len(recording.channels)
     if not loud:
-        top = max(recording.channels, key=lambda c: c.rms_sigma, default=None)
+        top = max(recording.channels, key=lambda c: c.loudness, default=None)
         most = f" (largest: {top.name} {size(top)})" if top else ""
         return f"Gap: none beyond noise in any of {count} columns{most}."
     names = ", ".join(f"{c.name} {size(c)}" for c in loud[:NAMED])

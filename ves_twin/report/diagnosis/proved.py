@@ -52,6 +52,15 @@ def standing_words(one: Proved) -> str:
     return "acts like it: what is left follows the same motion, or a tolerance explains it"
 
 
+def proved_line(one: Proved) -> str:
+    """An extension in one line of a terminal."""
+    sizes = ", ".join(
+        f"{quantity(s.value, s.unit)} ({quantity(s.low, s.unit)} to {quantity(s.high, s.unit)})"
+        for s in one.parameters.values()
+    )
+    return f"  {one.label:<36}{sizes}; {standing_words(one)}"
+
+
 def inseparable_sentences(verdict: Verdict) -> list[str]:
     """Each combination by the names that take part in it."""
     return [

@@ -11,7 +11,7 @@ import numpy as np
 
 from ves_twin.mechanics.gravity.gravity_model import gravity_in_top
 from ves_twin.plant.plant import Plant
-from ves_twin.procedures.procedure import Account, RunContext
+from ves_twin.procedures.procedure import Result, RunContext
 from ves_twin.procedures.registry import load_procedure
 from ves_twin.simulator.outcome import Outcome
 from ves_twin.thesis.claim import Claim
@@ -26,10 +26,10 @@ FAST = {"plant": "ves2_crosstalk_fast"}
 """Quick: the same rig with straight legs without bodies; its figures agree to some per cent."""
 
 
-def _carried_out(context: Context, name: str, changes: Mapping[str, Any]) -> tuple[Account, str]:
+def _carried_out(context: Context, name: str, changes: Mapping[str, Any]) -> tuple[Result, str]:
     """A procedure in a folder that is thrown away, once, and the command that repeats it."""
 
-    def make() -> Account:
+    def make() -> Result:
         procedure = load_procedure(name, changes)
         assert procedure is not None  # noqa: S101  (the shipped file names one)
         plant = _retuned(context, changes.get("plant", procedure.plant))
@@ -37,7 +37,7 @@ def _carried_out(context: Context, name: str, changes: Mapping[str, Any]) -> tup
             return procedure.carry_out(RunContext(Path(folder), plant=plant))
 
     command = " ".join([f"ves-twin run {name}", *(f"--set {k}={v}" for k, v in changes.items())])
-    account: Account = context.once(command, make)
+    account: Result = context.once(command, make)
     return account, command
 
 

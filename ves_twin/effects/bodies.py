@@ -1,0 +1,162 @@
+"""Effects of a body: a point mass on it, its mass, centre of mass and inertia."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, final
+
+from ves_twin.effects import change
+from ves_twin.effects.effect import Effect
+from ves_twin.effects.element import Element
+from ves_twin.effects.magnitude import Sign
+from ves_twin.effects.row import LINKS, Anywhere, Part, Row
+from ves_twin.effects.size import Size
+
+if TYPE_CHECKING:
+    import mujoco
+    import numpy as np
+
+LEFT = 0.01
+"""Share of a body's mass and inertia that is left at least: MuJoCo takes neither at zero or below,
+and a body next to nothing needs steps next to nothing."""
+
+WEIGHED = ("sensor.wrench", "arm.torque")
+
+
+@final
+@dataclass(frozen=True)
+class PayloadMass(Effect):
+    """A point mass that nobody declared sits at the tool."""
+
+    mass: float = 0.0
+
+    kind = "payload_mass"
+    sizes = (Size("mass", "kg", Sign.POSITIVE),)
+    source = "assumed; tools and cables on the wrist"
+    rows = (Row(("arm.tool",), (0.02, 0.05, 4.0), WEIGHED, part=Part.PAYLOAD),)
+
+    def edit_arm(self, arm: mujoco.MjSpec) -> None:
+        """Join the point mass to link 3, with centre of mass and inertia by the parallel axes."""
+        if self.neutral:
+            return
+        import numpy as np
+
+        _add_mass(arm, "link3", self.mass, np.asarray(arm.site("tip").pos))
+
+
+@final
+@dataclass(frozen=True)
+class BodyMass(Effect):
+    """A body is heavier than assumed, its centre of mass unchanged, its inertia in proportion."""
+
+    mass: float = 0.0
+
+    kind = "body_mass"
+    sizes = (Size("mass", "kg"),)
+    source = "Appendix B gives masses to three digits"
+    rows = (Row(LINKS, (0.05, 0.1, 4.0), WEIGHED, part=Part.PAYLOAD),)
+    anywhere = Anywhere(
+        Element.BODY,
+        lambda p: 0.5 * p.mass,
+        lambda p: 0.001 * p.mass,
+        change.MASS,
+        source="assumed: up to half of the body",
+    )
+
+    def least(self, nominal: float) -> float:
+        """A hundredth of the body."""
+        return LEFT * nominal
+
+    def edit_arm(self, arm: mujoco.MjSpec) -> None:
+        """Scale mass and inertia of the link."""
+        body = arm.body(self.target.removeprefix("arm."))
+        share = 1.0 + self.mass / float(body.mass)
+        body.mass = float(body.mass) * share
+        body.inertia = _possible([share * value for value in body.inertia])
+
+    def edit_model(self, model: mujoco.MjModel) -> None:
+        """Scale the inertia, if the body has any mass, and add to the mass."""
+        before = self.present(model)
+        if before > 0.0:
+            model.body_inertia[model.body(self.target).id] *= 1.0 + self.mass / before
+        super().edit_model(model)
+
+
+@final
+@dataclass(frozen=True)
+class MassCentre(Effect):
+    """The centre of mass of a body lies off along one of its axes; target "tool.x"."""
+
+    shift: float = 0.0
+
+    kind = "mass_centre"
+    sizes = (Size("shift", "m"),)
+    source = "Appendix B gives centres of mass to the millimetre"
+    rows = (
+        Row(
+            tuple(f"{link}.{axis}" for link in LINKS for axis in "xyz"),
+            (2e-3, 4e-3, 0.1),
+            WEIGHED,
+            part=Part.PAYLOAD,
+        ),
+    )
+    anywhere = Anywhere(
+        Element.BODY, 0.2, 2e-4, change.CENTRE, axis=True, source="assumed: up to 0.2 m"
+    )
+
+    def edit_arm(self, arm: mujoco.MjSpec) -> None:
+        """Shift the centre of mass."""
+        link, axis = divmod(self.index, 3)
+        body = arm.body(f"link{link + 1}")
+        centre = list(body.ipos)
+        centre[axis] += self.shift
+        body.ipos = centre
+
+
+@final
+@dataclass(frozen=True)
+class BodyInertia(Effect):
+    """A body turns harder than assumed, its mass unchanged: mass farther out."""
+
+    share: float = 0.0
+
+    kind = "body_inertia"
+    sizes = (Size("share", "1"),)
+    anywhere = Anywhere(Element.BODY, 0.5, 0.002, source="assumed: up to half")
+
+    def least(self, nominal: float) -> float:
+        """All but a hundredth of the inertia gone."""
+        return LEFT - 1.0
+
+    def edit_model(self, model: mujoco.MjModel) -> None:
+        """Scale the inertia about the centre of mass."""
+        model.body_inertia[model.body(self.target).id] *= 1.0 + self.share
+
+
+def _add_mass(arm: mujoco.MjSpec, name: str, mass: float, at: np.ndarray) -> None:
+    import mujoco
+    import numpy as np
+
+    body = arm.body(name)
+    before = float(body.mass)
+    centre = (before * np.asarray(body.ipos) + mass * at) / (before + mass)
+    full = np.diag(np.asarray(body.inertia))
+    for m, place in ((before, np.asarray(body.ipos)), (mass, at)):
+        r = place - centre
+        full = full + m * (r @ r * np.eye(3) - np.outer(r, r))
+    principal, axes, quat = np.zeros(3), np.zeros(9), np.zeros(4)
+    mujoco.mju_eig3(principal, axes, quat, full.ravel())
+    body.mass = before + mass
+    body.ipos, body.iquat, body.inertia = centre, quat, _possible(list(principal))
+
+
+def _possible(inertia: list[float]) -> list[float]:
+    """Principal inertias with the largest no more than the sum of the others, but for round-off.
+
+    Link 3 is a plate to the last digit, A + B = C, which round-off alone would break.
+    """
+    largest = max(range(3), key=inertia.__getitem__)
+    others = sum(value for i, value in enumerate(inertia) if i != largest)
+    if others <= inertia[largest] < others * (1.0 + 1e-9):
+        inertia[largest] = others * (1.0 - 1e-12)
+    return inertia

@@ -1,0 +1,40 @@
+"""Place: a target of an effect with the typical sizes that sizes of effects follow from."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from ves_twin.effects.element import Element
+
+
+@dataclass(frozen=True)
+class Place:
+    """A target with the typical sizes that sizes of effects follow from.
+
+    Attributes:
+        element: what it is.
+        name: as the file has it: "axis", "motor", "tool.x", "wrist.force.3".
+        hinge: whether a joint turns rather than slides.
+        effort, speed, travel: typical at a joint [N or N m, m/s or rad/s, m or rad].
+        unit: of a signal.
+        span: typical range of a signal [its unit].
+        mass: of a body [kg].
+        begin, end, terms: stretch that drift shapes span, and their count.
+    """
+
+    element: Element
+    name: str
+    hinge: bool = False
+    effort: float = 0.0
+    speed: float = 0.0
+    travel: float = 0.0
+    unit: str = "1"
+    span: float = 0.0
+    mass: float = 0.0
+    begin: float = 0.0
+    end: float = 1.0
+    terms: int = 4
+
+    def pick(self, slide: str, hinge: str) -> str:
+        """One of two units, by the kind of joint."""
+        return hinge if self.hinge else slide

@@ -1,0 +1,148 @@
+"""diagnose: recordings of a machine to a verdict and, where it names causes, an extended one."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+
+from ves_twin.core.errors import InvalidInputError
+from ves_twin.core.recording.recording import Recording
+from ves_twin.diagnosis import diagnose as core
+from ves_twin.diagnosis.forward import Excitation
+from ves_twin.diagnosis.runs import Progress, silent
+from ves_twin.diagnosis.settings import Settings
+from ves_twin.diagnosis.verdict import Verdict
+from ves_twin.machines.load import Given, machine_of, named
+from ves_twin.machines.machine import Machine, Material, Named, Prepared
+from ves_twin.scenario.experiment_file import ExperimentFile
+
+
+@dataclass(frozen=True)
+class Diagnosis:
+    """What was found, and the machine that has it.
+
+    Attributes:
+        verdict: with the magnitudes of the effects as the names of its parameters.
+        machine: that was tried, as the experiment has it.
+        extended: it with the causes; None where no causes are named.
+        refused: why the extension is only a candidate; empty where it passed on held-out data.
+        excitation: that should part the causes, where they cannot be told apart.
+        nearest: it with what comes nearest, where no causes are named; None if nothing does.
+    """
+
+    verdict: Verdict
+    machine: Machine
+    extended: Machine | None
+    refused: str
+    excitation: Excitation | None = None
+    nearest: Machine | None = None
+
+
+def diagnose(
+    recordings: Sequence[Recording | Named],
+    plant: Given = None,
+    *,
+    held_out: Sequence[Recording | Named] = (),
+    commissioning: Sequence[Recording | Named] = (),
+    standstill: Recording | None = None,
+    baseline: Sequence[Recording | Named] = (),
+    exclude: Sequence[str] = (),
+    experiment: ExperimentFile | None = None,
+    alternate: float | None = None,
+    settings: Settings | None = None,
+    progress: Progress = silent,
+) -> Diagnosis:
+    """Name what the simulation of a machine gets wrong in recordings of it.
+
+    Args:
+        recordings: what was measured; together one record.
+        plant: the nominal machine, with the tolerances that commissioning left, or its name or
+            file; VES II as it was recorded if left out.
+        held_out: other recordings of the same machine, on which an extension must prove itself;
+            beyond two causes each must prove itself there.
+        commissioning: recordings of healthy machines, or of this one mounted anew.
+        standstill: the machine standing still, which tells the noise. Legs that hunt over a count
+            while they stand make more of it than in motion; then the declared noise is better.
+        baseline: of this machine in order, with the same inputs; see `ves_twin.diagnosis`.
+        exclude: causes that are not considered, by kind or kind@target.
+        experiment: how they were made, as far as they do not say so themselves.
+        alternate: hold out every second stretch of so many s, or poses; 0: the machine's own.
+        settings: how sure, how many, where banks are kept; the machine may set what its size asks.
+        progress: told what is being done.
+
+    Raises:
+        VesTwinError: recordings whose columns look swapped, turned or in other units.
+        InvalidInputError: no recording, or recordings that cannot be of one machine.
+        UnknownNameError: an unknown cause in `exclude`, or an input that is not recorded.
+    """
+    given = Material(
+        named(recordings, "recording"),
+        named(held_out, "held-out recording"),
+        named(baseline, "baseline recording"),
+        named(commissioning, "commissioning recording"),
+        standstill,
+    )
+    prepared = prepare(machine_of(plant), given, experiment)
+    if alternate is not None:
+        prepared = prepared.split(alternate)
+    machine, material = prepared.machine, prepared.material
+    measured = [one.recording for one in material.measured]
+    offered: list[Excitation] = []
+
+    def menu() -> list[Excitation]:
+        offered.extend(machine.excitations(measured[0]))
+        return offered
+
+    verdict = core.diagnose(
+        machine.forward,
+        measured,
+        held_out=[one.recording for one in material.held_out],
+        commissioning=[one.recording for one in material.commissioning],
+        standstill=material.standstill,
+        baseline=[one.recording for one in material.baseline],
+        next_programmes=menu,
+        exclude=machine.causes(exclude),
+        settings=settings_of(machine, settings, measured[0]),
+        progress=progress,
+    )
+    causes = tuple(cause.shortened for cause in verdict.causes)
+    near = tuple(cause.shortened for cause in verdict.nearest)
+    verdict = replace(verdict, causes=causes, nearest=near, quality=prepared.flaws)
+    if verdict.verdict.names_a_plant:
+        new = machine.extended(verdict)
+        return Diagnosis(verdict, machine, new, machine.refusal(verdict))
+    best = verdict.next_experiment[0].programme if verdict.next_experiment else ""
+    chosen = next((one for one in offered if one.name == best), None)
+    why = f"the verdict is {verdict.verdict.value}"
+    nearest = machine.extended(replace(verdict, causes=near)) if near else None
+    return Diagnosis(verdict, machine, None, why, chosen, nearest)
+
+
+def prepare(
+    machine: Machine, material: Material, experiment: ExperimentFile | None = None
+) -> Prepared:
+    """`Machine.prepare` of at least one recording.
+
+    Raises:
+        InvalidInputError: no recording.
+    """
+    if not material.measured:
+        raise InvalidInputError("recordings", "none", "at least one")
+    return machine.prepare(material, experiment)
+
+
+def settings_of(machine: Machine, settings: Settings | None, recording: Recording) -> Settings:
+    """Settings as the machine has them for a recording."""
+    fed = Excitation.of(recording, machine.forward.drive)
+    return machine.settings(settings or Settings(), fed)
+
+
+def verdict_on(
+    recordings: Sequence[Recording | Named], plant: Given = None, **material: Any
+) -> Verdict:
+    """The verdict of `diagnose` alone, as `ves_twin.diagnose`; the same arguments.
+
+    An extended plant of VES II is `plant.extended(*effects_of(verdict))`.
+    """
+    return diagnose(recordings, plant, **material).verdict

@@ -1,0 +1,153 @@
+"""MjcfCase: a recording held against an MJCF machine in one mode."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from ves_twin.core.errors import InvalidInputError, UnknownNameError
+from ves_twin.core.recording.recording import POSES, Recording
+from ves_twin.core.signals import Signal
+from ves_twin.core.types import FloatArray
+from ves_twin.data.quality.gate import quality_gate
+from ves_twin.diagnosis.forward import Excitation
+from ves_twin.diagnosis.residuals.noise import Noise, NoiseSource
+from ves_twin.machines.case import Case, Traces
+from ves_twin.machines.mjcf.applied import applied
+from ves_twin.machines.mjcf.description import Mode
+from ves_twin.machines.mjcf.experiment import MjcfExperiment
+from ves_twin.machines.mjcf.forward import MjcfForward
+from ves_twin.machines.mjcf.machine import Rig
+from ves_twin.machines.mjcf.signals import rig_signals
+
+FORGET = 1.0
+"""Time [s] at the begin that is not compared in forward simulation: a start is read from noisy
+rows, and a controller's memory is empty."""
+
+SAME = 1e-6
+"""Share of a set-point's span by which two recordings of one programme may differ: the digits that
+a log is written with."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class MjcfCase(Case):
+    """By the forward of one mode."""
+
+    forward: MjcfForward
+
+    @property
+    def machine(self) -> str:
+        """Of the machine's file."""
+        return self.forward.rig.description.name
+
+    @property
+    def identity(self) -> str:
+        """Of both files."""
+        return self.forward.rig.identity
+
+    @property
+    def mode(self) -> str:
+        """Of the forward."""
+        return self.forward.mode.value
+
+    @cached_property
+    def signals(self) -> Mapping[str, Signal]:
+        """Those of the machine's file."""
+        return {signal.name: signal for signal in rig_signals(self.forward.rig)}
+
+    @property
+    def same(self) -> Mapping[str, FloatArray]:
+        """What is fed in, without the signals that only tell a start."""
+        return {name: SAME * np.ptp(self.recording[name], axis=0) for name in self.forward.fed}
+
+    @property
+    def leaders(self) -> Mapping[str, str]:
+        """Set-point or motion of the joint that an output belongs to."""
+        return self.forward.leaders
+
+    @property
+    def rate(self) -> float:
+        """Of the machine's file."""
+        return self.forward.rig.description.rate
+
+    def simulated(self) -> Traces:
+        """All that this mode predicts.
+
+        Raises:
+            InvalidInputError: a simulation that diverges.
+        """
+        forward = self.forward
+        rows = forward.simulate(Excitation.of(self.recording, forward.drive, rate=self.rate), {})
+        if not np.all(np.isfinite(rows)):
+            came = f"a simulation of {self.name} ({self.mode}) that diverges"
+            expected = "a finite motion; try a smaller timestep"
+            raise InvalidInputError(forward.rig.description.model, came, expected)
+        columns = enumerate(forward.channels)
+        found: dict[str, list[int]] = {}
+        for c, channel in columns:
+            found.setdefault(channel.signal, []).append(c)
+        return {name: rows[:, at] for name, at in found.items()}
+
+    def declared_noise(self) -> dict[str, Noise]:
+        """White, as the machine's file declares it."""
+        sources = {True: NoiseSource.DECLARED, False: NoiseSource.NOBODY}
+        return {
+            c.name: Noise(c.sd, (), 0.0, 1.0, 0.0, sources[c.sd > 0.0])
+            for c in self.forward.channels
+        }
+
+
+def mjcf_cases(
+    name: str,
+    recording: Recording,
+    experiment: MjcfExperiment,
+    rig: Rig,
+    standstill: Recording | None,
+) -> tuple[MjcfCase, ...]:
+    """A recording in the mode of the machine's file, and closed loop where it has controllers.
+
+    Raises:
+        UnknownNameError: none of the signals that a mode predicts is recorded.
+        VesTwinError: an experiment that does not fit the machine or the recording.
+    """
+    ready, own, start = applied(name, recording, experiment, rig)
+    checks = () if ready.info.log == POSES else quality_gate(recording).checks
+    found = []
+    for mode in modes_of(own, ready):
+        forward = MjcfForward.of(own, mode)
+        outputs = tuple(n for n in forward.compared if n in ready.signals)
+        if not outputs:
+            wanted = forward.channels[0].signal
+            raise UnknownNameError("signal in the recording", wanted, ready.signals)
+        forget = 0.0 if mode is Mode.MOTION or ready.info.log == POSES else FORGET
+        time = ready.time - ready.time[0]
+        first = int(np.searchsorted(time, max(start, forget) - 1e-9))
+        found.append(
+            MjcfCase(
+                name=name,
+                recording=ready,
+                forward=forward,
+                inputs=forward.drive,
+                outputs=outputs,
+                absent=tuple(n for n in forward.compared if n not in ready.signals),
+                checks=checks,
+                notes=(f"the first {forget:g} s are not compared",) if forget else (),
+                rows=slice(first, len(time)),
+                offset=0.0,
+                standstill=standstill,
+            )
+        )
+    return tuple(found)
+
+
+def modes_of(rig: Rig, recording: Recording) -> tuple[Mode, ...]:
+    """The mode of a machine's file, and closed loop where set-points were recorded."""
+    told = rig.description
+    own = told.drive.mode
+    if not told.controllers or own is Mode.REFERENCE:
+        return (own,)
+    fed = MjcfForward.of(rig, Mode.REFERENCE).drive
+    return (own, Mode.REFERENCE) if all(n in recording.signals for n in fed) else (own,)

@@ -1,0 +1,234 @@
+"""offered: multisines that an MJCF machine could be fed next, within its typical sizes."""
+
+from __future__ import annotations
+
+import csv
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from io import StringIO
+from pathlib import Path
+
+import numpy as np
+
+from ves_twin.core.recording.recording import Recording
+from ves_twin.core.types import FloatArray
+from ves_twin.core.units import to_si
+from ves_twin.core.whole_file import write_whole
+from ves_twin.diagnosis.forward import Excitation
+from ves_twin.machines.machine import SETPOINTS
+from ves_twin.machines.mjcf.description import Mode, Span
+from ves_twin.machines.mjcf.forward import MjcfForward
+from ves_twin.machines.mjcf.joint_units import joint_units
+
+SECONDS = 10.0
+"""Length of an excitation [s]."""
+
+TONES = 5
+"""Of a multisine."""
+
+FADE = 0.1
+"""Share of the length in which it fades in: machines begin at rest."""
+
+ROWS = 5.0
+"""Rows for each of the analysis grid, where no recording gives a clock."""
+
+BANDS: Mapping[str, tuple[float, float]] = {
+    "multisine": (1.0, 3.0),
+    "slow multisine": (0.3, 1.0),
+    "quick multisine": (3.0, 10.0),
+}
+"""Name -> band, in units of the frequency at which typical travel needs typical speed."""
+
+HIGHEST = 0.4
+"""No tone is above this share of the analysis rate."""
+
+BORNE = 1.5
+"""Times typical speed and travel that a joint may reach: what is typical is not the most."""
+
+HALVINGS = 6
+"""Times that an effort is halved until its motion keeps within travel and speed."""
+
+
+@dataclass(frozen=True)
+class _Input:
+    """What is fed in at a joint: typical effort, speed and travel, where it begins."""
+
+    signal: str
+    joint: str
+    effort: float
+    speed: float
+    travel: float
+    start: float
+
+    @property
+    def corner(self) -> float:
+        """Frequency [Hz] of the sine that has both typical travel and typical speed."""
+        return self.speed / (np.pi * self.travel)
+
+
+def offered(
+    forward: MjcfForward, like: Recording | None = None, seconds: float = SECONDS
+) -> tuple[Excitation, ...]:
+    """Multisines of every band, at all inputs and at each alone, that the nominal machine bears.
+
+    Set-points and motions keep half the typical travel and the typical speed, efforts the typical
+    effort; they are halved until every joint stays within BORNE of its travel and speed.
+
+    Args:
+        forward: in the mode in which it is fed.
+        like: gives clock and start; typical sizes and the model's if None.
+        seconds: length.
+
+    Returns:
+        None where a joint has no typical sizes, cannot be watched, or is neither hinge nor slide.
+    """
+    inputs = _inputs(forward, like)
+    rate = forward.rig.description.rate
+    if not inputs or forward.rig.description.clock.poses:
+        return ()
+    period = 1.0 / (ROWS * rate)
+    if like is not None and len(like) > 1:
+        period = float(like.time[-1] - like.time[0]) / (len(like) - 1)
+    time = np.asarray(period * np.arange(round(seconds / period)), float)
+    made = (
+        _borne(forward, Excitation(name, time, _drive(forward, rows, like), rate=rate), inputs)
+        for name, rows in _menu(inputs, time, rate, forward.mode is Mode.CONTROL)
+    )
+    return tuple(one for one in made if one is not None)
+
+
+def write_inputs(forward: MjcfForward, excitation: Excitation, folder: Path) -> None:
+    """Write what is fed in as SETPOINTS, by the names and in the units of the machine's log.
+
+    Raises:
+        FileAccessError: not writable.
+    """
+    told = forward.rig.description
+    names, columns = [told.clock.column], [excitation.time / told.clock.scale]
+    for signal in forward.fed:
+        column = told.signals[signal]
+        names += column.columns
+        columns += list(((excitation.drive[signal] - column.offset) / column.scale).T)
+    text = StringIO()
+    writer = csv.writer(text, lineterminator="\n")
+    writer.writerow(names)
+    writer.writerows([f"{value:.12g}" for value in row] for row in np.column_stack(columns))
+    write_whole(folder / SETPOINTS, text.getvalue())
+
+
+def _inputs(forward: MjcfForward, like: Recording | None) -> list[_Input]:
+    """One for each signal fed in; none at all where one of them cannot be bounded."""
+    told, model = forward.rig.description, forward.rig.model
+    places = {
+        Mode.MOTION: [(s, j) for j, s in told.drive.joints.items()],
+        Mode.CONTROL: [
+            (s, model.joint(int(model.actuator(a).trnid[0])).name)
+            for a, s in told.drive.actuators.items()
+        ],
+        Mode.REFERENCE: [(c.reference, c.joint) for c in told.controllers.values()],
+    }[forward.mode]
+    found = []
+    for signal, joint in places:
+        effort, speed, travel = _sizes(forward, joint)
+        needed = (effort, speed, travel) if forward.mode is Mode.CONTROL else (speed, travel)
+        watched = forward.mode is Mode.MOTION or forward.position_of(joint) in forward.compared
+        if min(needed) <= 0.0 or not watched or len(told.signals[signal].columns) != 1:
+            return []
+        first = float(model.qpos0[model.jnt_qposadr[model.joint(joint).id]])
+        known = forward.position_of(joint)
+        if like is not None and known in like.signals:
+            first = float(like[known][0, 0])
+        found.append(_Input(signal, joint, effort, speed, travel, first))
+    return found
+
+
+def _sizes(forward: MjcfForward, joint: str) -> tuple[float, float, float]:
+    """Typical effort, speed and travel of a joint, SI; zero where the file says none."""
+    span = forward.rig.description.typical.joint.get(joint, Span())
+    place, speed = joint_units(forward.rig.model, joint)
+    units = ("N*m" if place == "rad" else "N", speed, place)
+    given = (span.effort, span.speed, span.travel)
+    pairs = zip(given, units, strict=True)
+    effort, fastest, travel = (
+        to_si(value, unit, f"typical.joint.{joint}") for value, unit in pairs
+    )
+    return effort, fastest, travel
+
+
+def _menu(
+    inputs: list[_Input], time: FloatArray, rate: float, efforts: bool
+) -> Iterator[tuple[str, dict[str, FloatArray]]]:
+    """Name and rows (n, 1) by signal."""
+    still = {one.signal: np.full((len(time), 1), 0.0 if efforts else one.start) for one in inputs}
+    for k, (name, (low, high)) in enumerate(BANDS.items()):
+        rng = np.random.default_rng([11, k])
+        rows = {}
+        for one in inputs:
+            band = np.minimum([low * one.corner, high * one.corner], HIGHEST * rate)
+            shape = _multisine(time, (float(band[0]), float(band[1])), rng)
+            size = one.effort
+            if not efforts:
+                fastest = float(np.max(np.abs(np.gradient(shape, time))))
+                size = min(0.5 * one.travel, one.speed / fastest)
+            rows[one.signal] = still[one.signal] + size * shape[:, None]
+        yield name, rows
+        if len(inputs) > 1:
+            for one in inputs:
+                yield f"{name} at {one.joint} alone", {**still, one.signal: rows[one.signal]}
+
+
+def _multisine(time: FloatArray, band: tuple[float, float], rng: np.random.Generator) -> FloatArray:
+    """Tones evenly over a band [Hz] with random phases, fading in, of peak 1 (n,)."""
+    tones = np.linspace(*band, TONES)
+    phases = rng.uniform(0.0, 2.0 * np.pi, TONES)
+    shape = np.sin(2.0 * np.pi * np.outer(time, tones) + phases).sum(axis=1)
+    shape = shape * np.minimum(time / (FADE * time[-1]), 1.0) ** 2
+    return np.asarray(shape / np.max(np.abs(shape)))
+
+
+def _drive(
+    forward: MjcfForward, rows: Mapping[str, FloatArray], like: Recording | None
+) -> dict[str, FloatArray]:
+    """What is fed in, and the start of each joint whose start is measured, held."""
+    found = dict(rows)
+    count = len(next(iter(rows.values())))
+    for name in forward.drive:
+        if name not in found:
+            width = len(forward.rig.description.signals[name].columns)
+            known = like is not None and name in like.signals
+            first = like[name][0] if like is not None and known else np.zeros(width)
+            found[name] = np.tile(first, (count, 1))
+    return found
+
+
+def _borne(
+    forward: MjcfForward, excitation: Excitation, inputs: Sequence[_Input]
+) -> Excitation | None:
+    """The excitation as large as the nominal machine bears it; None if it bears it at no size."""
+    if forward.mode is Mode.MOTION:
+        return excitation
+    drive, zero = dict(excitation.drive), forward.mode is Mode.CONTROL
+    for _ in range(HALVINGS):
+        made = Excitation(excitation.name, excitation.time, drive, rate=excitation.rate)
+        if _bears(forward, made):
+            return made
+        for one in inputs:
+            rest = 0.0 if zero else one.start
+            drive[one.signal] = rest + 0.5 * (drive[one.signal] - rest)
+    return None
+
+
+def _bears(forward: MjcfForward, excitation: Excitation) -> bool:
+    """Whether every joint with typical sizes keeps them."""
+    names = [channel.name for channel in forward.channels]
+    moved = forward.simulate(excitation, {})
+    for joint in forward.rig.description.typical.joint:
+        known = forward.position_of(joint)
+        _, speed, travel = _sizes(forward, joint)
+        if known in names and speed > 0.0 and travel > 0.0:
+            path = moved[:, names.index(known)]
+            fastest = np.max(np.abs(np.gradient(path, excitation.time)))
+            widest = np.max(np.abs(path - path[0]))
+            if not (widest <= BORNE * travel and fastest <= BORNE * speed):  # NaN: no
+                return False
+    return bool(np.all(np.isfinite(moved)))
