@@ -36,13 +36,16 @@ def report_of(halves: Halves, proof: Proof, ends: tuple[FloatArray, FloatArray])
     others = stand_ins(proof)
     ranked = sorted(proof.proved, key=lambda n: proof.differences[n].p)
     trials = regression.trials
+    together = inseparable(proof, others)
+    shared = {name for one in together for name in one.names}
+    proved = [_proved(bench, proof, n, others[n], laws, left) for n in ranked]
     return BuildUp(
-        proved=tuple(_proved(bench, proof, n, others[n], laws, left) for n in ranked),
+        proved=tuple(replace(p, firm=p.firm and p.label not in shared) for p in proved),
         tested=proof.tested,
         false_discovery_rate=FALSE_SHARE,
         dropped={trials[n].cause.label: p for n, p in proof.dropped.items()},
         left=_left(bench, left, laws),
-        inseparable=inseparable(proof, others),
+        inseparable=together,
     )
 
 

@@ -29,8 +29,9 @@ class Proved:
         blocks: stretches of time that the improvement was compared on.
         takes: rms error of each channel on held-out data without and with it, of the channels
             where it acts.
-        firm: whether the name is the mechanism: no other cause does as well in its place, what is
-            left shows no law of the same motion, and no commissioning error explains it.
+        firm: whether the name is the mechanism: no other cause does as well in its place, it is
+            known apart from the others, what is left shows no law of the same motion, and no
+            commissioning error explains it.
         acts_like: causes that do as well in its place on held-out data.
     """
 

@@ -49,7 +49,7 @@ def standing_words(one: Proved) -> str:
         return "firm"
     if one.acts_like:
         return f"acts like it, or like {' or '.join(map(spoken, one.acts_like))}"
-    return "acts like it: what is left follows the same motion, or a tolerance explains it"
+    return "acts like it: what is left, a tolerance or another extension follows the same motion"
 
 
 def proved_line(one: Proved) -> str:
