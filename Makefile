@@ -6,7 +6,7 @@ PYTHON ?= $(shell for p in python3.12 python3.11 python3 python; do \
 BIN := .venv/bin
 PIP := $(BIN)/python -m pip install --quiet --disable-pip-version-check
 
-.PHONY: demo demo-diagnosis test nightly check fast fuzz attack mutation types lint layers bench figures fidelity scorecard diagnosis-scorecard picture docs clean
+.PHONY: demo demo-diagnosis test nightly check fast fuzz attack mutation types lint layers bench figures fidelity real scorecard diagnosis-scorecard picture docs clean
 
 demo: .venv/.run
 	$(BIN)/ves-twin run beam_horizontal_truth --out runs/demo
@@ -84,6 +84,10 @@ diagnosis-scorecard: .venv/.run
 figures: .venv/.dev
 	$(BIN)/python -m pytest -n 0 --figures docs/figures.md \
 		tests/mechanics/kinematics/test_stewart.py tests/plant tests/simulator
+
+# measured machines; the data are looked for in ../shared/data or VES_TWIN_DATA
+real: .venv/.dev
+	$(BIN)/python benchmarks/real_machines.py
 
 fidelity: .venv/.dev
 	$(BIN)/python benchmarks/fidelity.py docs/fidelity.md

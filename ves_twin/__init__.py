@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 __version__ = "0.1.0"
 
 if TYPE_CHECKING:
+    from ves_twin.core.errors import VesTwinError
     from ves_twin.core.recording.files import load_recording
     from ves_twin.core.recording.recording import Recording
     from ves_twin.machines.compare import compare
@@ -33,6 +34,7 @@ _HOMES = {
     "Recording": "ves_twin.core.recording.recording",
     "Scenario": "ves_twin.scenario.schema",
     "Simulator": "ves_twin.simulator.simulator",
+    "VesTwinError": "ves_twin.core.errors",
     "compare": "ves_twin.machines.compare",
     "diagnose": "ves_twin.machines.diagnose:verdict_on",
     "effects_of": "ves_twin.machines.ves2.effects_of",
@@ -51,6 +53,7 @@ __all__ = [
     "Recording",
     "Scenario",
     "Simulator",
+    "VesTwinError",
     "compare",
     "diagnose",
     "effects_of",

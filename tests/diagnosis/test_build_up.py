@@ -14,6 +14,7 @@ from ves_twin.diagnosis.forward import Excitation, Hypothesis
 from ves_twin.diagnosis.runs import Runs
 from ves_twin.diagnosis.verdict import Kind
 from ves_twin.diagnosis.whitening import whitening_declared
+from ves_twin.report.diagnosis.words import basis_sentences
 
 PLANT = Toy().without("ripple")
 HIDDEN = {"friction.size": 0.3, "drift.size": 0.4, "lag.size": 0.3}
@@ -55,9 +56,19 @@ def test_a_cause_that_held_out_recordings_do_not_show_is_not_named():
 
 
 @pytest.mark.slow
-def test_without_held_out_recordings_a_background_leaves_it_unknown():
+def test_without_held_out_recordings_stretches_of_the_record_itself_prove():
     verdict = diagnose(PLANT, [measured(1)], settings=FOUR)
-    assert verdict.verdict is Kind.UNKNOWN
+    assert verdict.basis.held_out == "split"
+    assert verdict.verdict is Kind.PARTIAL
+    assert {"friction", "lag"} <= named(verdict)
+    assert any("cut into stretches" in said for said in basis_sentences(verdict))
+
+
+@pytest.mark.slow
+def test_where_no_more_than_two_causes_are_asked_for_nothing_is_built_up():
+    verdict = diagnose(PLANT, [measured(1)], held_out=[measured(2)], settings=QUICK)
+    assert verdict.put_to_proof is None
+    assert verdict.proved == ()
 
 
 def test_shapes_of_many_terms_enter_the_bank_one_at_a_time():

@@ -240,6 +240,7 @@ def test_an_earlier_name_of_a_cause_left_out_means_what_it_meant():
     asked = ["joint_viscous", "valve_null", "link_mass@arm.link2"]
     joints = [f"viscous_friction@arm.q{i}" for i in (1, 2, 3)]
     assert causes_of_today(asked) == [*joints, "valve_null", "body_mass@arm.link2"]
+    assert causes_of_today(["link_mass@link"]) == ["link_mass@link"]  # of another machine
     assert causes_anywhere(["sensor_drift@load.3"]) == ["sensor_wander@load.3"]
 
 

@@ -9,6 +9,8 @@ from rerun.chunk import RrdReader
 from toy import Toy, programme, record
 
 from ves_twin.core.errors import InvalidInputError
+from ves_twin.core.quantity import shares
+from ves_twin.diagnosis.build_up.result import Inseparable, Left, Proved, Size
 from ves_twin.diagnosis.diagnose import diagnose
 from ves_twin.diagnosis.evidence import Evidence
 from ves_twin.diagnosis.gain import Gain
@@ -65,7 +67,7 @@ def test_the_first_screen_has_verdict_cause_size_interval_gain_and_basis(proven)
     )
     numbers = [float(number) for number in re.findall(r"-?\d+\.\d+", top)]
     assert any(number == pytest.approx(size.value, abs=width / 20) for number in numbers)
-    assert f"{100 * proven.gain.share:.0f} % of the error beyond noise" in top
+    assert f"{shares(proven.gain.share, proven.gain.low, proven.gain.high)[0]} of the error" in top
     assert "declared, not measured" in top
     assert "plant.toml" in top
 
@@ -293,3 +295,62 @@ def test_the_menu_is_ranked_by_few_commissioning_errors_where_there_are_many(mon
 )
 def test_a_cause_is_said_so_that_its_place_can_be_found(label, said):
     assert spoken(label) == said
+
+
+def proof_of(verdict, firm):
+    """The same verdict, as one cause of three that was proved."""
+    one = Proved(
+        effect="friction",
+        target="plant",
+        parameters={"size": Size(0.1, 0.09, 0.11, "1", 0.0)},
+        p=1e-5,
+        blocks=20,
+        takes={"out.0": (0.08, 0.02)},
+        firm=firm,
+        acts_like=() if firm else ("lag@plant",),
+    )
+    return replace(
+        verdict,
+        verdict=Kind.PARTIAL,
+        proved=(one,),
+        put_to_proof=3,
+        false_discovery_rate=0.05,
+        left={"out.0": Left(0.02, 0.08, "1", 0.01, 0.3, {"out.1": 0.7}, {"drive.u": 0.2})},
+        inseparable=(Inseparable(("friction@plant", "lag@plant"), 14.0),),
+    )
+
+
+def test_a_proved_extension_that_is_not_firm_acts_like_its_name_and_its_stand_ins(proven):
+    verdict = proof_of(proven, firm=False)
+    assert "Acting like: friction at plant" in headline(verdict)
+    assert "Firm" not in headline(verdict)
+    assert "Acts like: friction at plant" in verdict.words
+    assert "or lag@plant" in verdict.words
+    page = diagnosis_page(verdict)
+    assert "acts like it, or like lag at plant" in page
+    assert "Firm: friction at plant" in headline(proof_of(proven, firm=True))
+
+
+def test_the_page_tells_how_many_were_tried_what_is_left_and_what_is_not_separated(proven):
+    page = diagnosis_page(proof_of(proven, firm=True))
+    said = re.sub(r"<[^>]*>", " ", page)
+    assert "3 extensions were put to proof" in said
+    assert "1 predict better, at a false-discovery rate of 5 %" in said
+    assert "out.1 (+0.70)" in said
+    assert "drive.u (20 %)" in said
+    assert "friction at plant, lag at plant: only a combination of them is known" in said
+    assert "14 times worse" in said
+
+
+def test_what_is_proved_stands_in_the_verdict_file(proven):
+    told = proof_of(proven, firm=True).to_dict()
+    assert told["proved"][0]["takes"] == {"out.0": (0.08, 0.02)}
+    assert told["false_discovery_rate"] == 0.05
+    assert told["left"]["out.0"]["rms"] == 0.02
+
+
+def test_no_loud_cell_is_said_beside_the_threshold_and_not_as_noise(proven):
+    quiet = replace(proven, leftover=replace(proven.leftover, loud=()))
+    page = diagnosis_page(quiet)
+    assert "beyond noise." not in page[page.index("What is left") :]
+    assert "the most that rigs in order leave" in page

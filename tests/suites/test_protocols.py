@@ -258,3 +258,16 @@ def test_a_suite_that_is_not_what_was_written_is_refused_in_one_line(changed, tm
     with pytest.raises(InvalidInputError, match="expected bench, cases, excluded") as caught:
         load_suite(tmp_path)
     assert "\n" not in str(caught.value)
+
+
+def test_a_truth_sealed_under_an_earlier_name_of_an_effect_is_read_by_todays():
+    name = "link_mass@arm.link2:mass"
+    earlier = HiddenCause("link_mass", "arm.link2", {name: 0.4}, 20.0)
+    pendulum = HiddenCause("link_mass", "link", {"link.mass": 0.1}, 20.0)
+    sealed = Truth("case-01", Hidden.PAIR, (earlier, pendulum), values={name: 0.4})
+    read = Truth.from_json(sealed.to_json())
+    today = "body_mass@arm.link2:mass"
+    one, other = read.causes
+    assert one == HiddenCause("body_mass", "arm.link2", {today: 0.4}, 20.0)
+    assert other == HiddenCause("body_mass", "link", {"body_mass@link:mass": 0.1}, 20.0)
+    assert read.values == {today: 0.4}

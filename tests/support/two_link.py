@@ -53,6 +53,7 @@ TARGETS = {
     "coupling_coulomb": ["belt"],
     "actuator_gain": ["drive"],
     "actuator_delay": ["drive"],
+    "actuator_deadband": ["drive"],
     "body_mass": ["cart", "arm"],
     "mass_centre": ["arm.x", "arm.z"],
     "body_inertia": ["arm"],

@@ -101,6 +101,9 @@ def _write(found: Diagnosis, folder: Path, names: str) -> None:
         found.extended.save(path, f"{note}\nOnly a candidate: {found.refused}.")
     elif found.extended is not None:
         found.extended.save(folder / "plant.toml", note)
+    elif found.nearest is not None:
+        path = folder / "plant.candidate.toml"
+        found.nearest.save(path, f"{note}\nThe nearest, not accepted: {found.refused}.")
     if found.excitation is not None:
         found.machine.save_excitation(found.excitation, folder)
 
@@ -109,6 +112,11 @@ def _plant_sentence(found: Diagnosis) -> str:
     """What became of the extended plant."""
     if found.extended is None and found.verdict.causes:
         return f"No extended plant was written: {found.refused}."
+    if found.nearest is not None:
+        return (
+            "plant.candidate.toml has what comes nearest, with its sizes. It was not accepted: no"
+            " cause is named."
+        )
     if found.extended is None:
         return "No extended plant was written: no cause is named."
     if found.refused:
@@ -117,23 +125,30 @@ def _plant_sentence(found: Diagnosis) -> str:
 
 
 def _text(found: Diagnosis, folder: Path) -> str:
-    from ves_twin.report.diagnosis.words import ambiguity_sentences
+    from ves_twin.core.quantity import shares
+    from ves_twin.report.diagnosis.proved import (
+        inseparable_sentences,
+        proof_sentence,
+        proved_line,
+    )
+    from ves_twin.report.diagnosis.words import ambiguity_sentences, headline
 
     verdict = found.verdict
     basis = verdict.basis
     lines = [
         f"verdict   {verdict.verdict.value}",
-        f"          {verdict.words}",
+        f"          {headline(verdict) if verdict.proved else verdict.words}",
         *(f"          {text}" for text in ambiguity_sentences(verdict)),
         f"basis     noise {basis.noise}, tolerances {basis.tolerances},"
         f" held-out recordings {basis.held_out}, baseline {basis.baseline}",
     ]
     if verdict.gain is not None and verdict.gain.share is not None:
         gain = verdict.gain
-        lines.append(
-            f"gain      {gain.share:.0%} of the excess on held-out recordings"
-            f" ({gain.low:.0%} to {gain.high:.0%})"
-        )
+        share, low, high = shares(gain.share, gain.low, gain.high)
+        lines.append(f"gain      {share} of the excess on held-out recordings ({low} to {high})")
+    if verdict.put_to_proof is not None:
+        lines += ["", f"  {proof_sentence(verdict)}", *map(proved_line, verdict.proved)]
+        lines += [f"  not separated: {text}" for text in inseparable_sentences(verdict)]
     lines += ["", "  channel             before     after   (rms, in the channel's unit)"]
     for name, error in verdict.residuals.items():
         lines.append(f"  {name:<18}{error.before_si:10.3g}{error.after_si:10.3g}   {error.unit}")

@@ -51,5 +51,20 @@ def percent(share: float | None) -> str:
     return f"{100.0 * share:.2g} %" if abs(share) >= 1e-4 else "< 0.01 %"
 
 
+def shares(*values: float | None) -> list[str]:
+    """Shares as percent, all with as many decimals as tell them from one another and from one."""
+    there = [v for v in values if v is not None and math.isfinite(v)]
+    for decimals in range(4):
+        told = [f"{100.0 * v:.{decimals}f}" for v in there]
+        clear = len(set(told)) == len({round(v, 5) for v in there})
+        whole = f"{100:.{decimals}f}"
+        if clear and all(t != whole or v >= 1.0 for t, v in zip(told, there, strict=True)):
+            break
+    return [
+        UNSURE if v is None or not math.isfinite(v) else f"{100.0 * v:.{decimals}f} %"
+        for v in values
+    ]
+
+
 def _shown(unit: str) -> str:
     return unit.replace("*", " ")

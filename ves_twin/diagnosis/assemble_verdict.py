@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from scipy.stats import norm
@@ -12,6 +12,7 @@ from ves_twin.core.types import FloatArray, SingleArray
 from ves_twin.diagnosis.adequacy import cells
 from ves_twin.diagnosis.aliases import Lookalike, lookalikes
 from ves_twin.diagnosis.assess import Assessment
+from ves_twin.diagnosis.build_up.result import BuildUp, Proved, Size
 from ves_twin.diagnosis.disagreement import Alone
 from ves_twin.diagnosis.explain import Explanation
 from ves_twin.diagnosis.findable import findable_sizes, twins
@@ -54,6 +55,7 @@ class Findings:
         proposals: next programmes.
         apart: what each recording says alone.
         widened: factor on the declared commissioning sd in this view.
+        built: what building up proved.
     """
 
     seen: Dataset
@@ -68,6 +70,7 @@ class Findings:
     proposals: tuple[Proposal, ...] = ()
     apart: tuple[Alone, ...] = ()
     widened: float = 1.0
+    built: BuildUp | None = None
 
 
 def assemble_verdict(
@@ -77,6 +80,11 @@ def assemble_verdict(
     first, found, limits = findings.first, findings.found, findings.limits
     named = found is not None and kind.names_causes
     causes, alternatives = _causes(findings, found) if named and found else ((), ())
+    built = findings.built
+    proved = _sized(built, causes) if built and named else ()
+    firm = {one.label: one.firm for one in proved}
+    causes = tuple(replace(c, firm=firm.get(f"{c.effect}@{c.target}", c.firm)) for c in causes)
+    nearest = _causes(findings, found)[0] if found and not named else ()
     exhibit = exhibit_of(findings.seen, first, found)
     sizes = findable_sizes(first.screen, limits.effect)
     units = {h.label: _unit(findings, h) for h in first.screen.bank.hypotheses}
@@ -115,7 +123,27 @@ def assemble_verdict(
         excluded=excluded,
         alone=findings.apart,
         exhibit=exhibit,
+        proved=proved,
+        put_to_proof=built.tested if built else None,
+        false_discovery_rate=built.false_discovery_rate if built else None,
+        left=built.left if built else {},
+        inseparable=built.inseparable if built else (),
+        nearest=nearest,
     )
+
+
+def _sized(built: BuildUp, causes: Sequence[Cause]) -> tuple[Proved, ...]:
+    """What is proved with its sizes; firm only where no commissioning error explains it either."""
+    named = {f"{cause.effect}@{cause.target}": cause for cause in causes}
+    found = []
+    for one in built.proved:
+        cause = named[one.label]
+        sizes = {
+            name: Size(e.value, e.low, e.high, e.unit, e.nominal)
+            for name, e in cause.shortened.parameters.items()
+        }
+        found.append(replace(one, parameters=sizes, firm=one.firm and cause.firm))
+    return tuple(found)
 
 
 def _lookalikes(

@@ -10,7 +10,9 @@ import numpy as np
 from ves_twin.core.recording.recording import Recording
 from ves_twin.core.workers import Workers
 from ves_twin.diagnosis.assess import pull_limit
-from ves_twin.diagnosis.build_up import build_up
+from ves_twin.diagnosis.build_up.build_up import Built, build_up
+from ves_twin.diagnosis.build_up.halves import split
+from ves_twin.diagnosis.build_up.result import BuildUp
 from ves_twin.diagnosis.explain import Explanation, FitContext, explain
 from ves_twin.diagnosis.forecast import forecast
 from ves_twin.diagnosis.forward import Forward
@@ -21,12 +23,12 @@ from ves_twin.diagnosis.settings import Settings
 from ves_twin.diagnosis.verdict import Kind
 from ves_twin.diagnosis.whitening import Whitening, whitening_of
 
-MOST = 0.5
-"""Share of the held-out excess that causes proved one by one must take, interval's lower end."""
-
 ALMOST = 0.95
 """The same of a single cause that leaves more than noise: a wrong one that moves the same channels
 takes up to nine tenths (viscous damping of a drag with the square of speed, of blind pendulums)."""
+
+MANY_FROM = 2
+"""Causes beyond which more may be at work than a search of single ones and pairs can see."""
 
 ROUGH = 0.01
 """Fall of chi^2, of all of it, that ends the search for the model before, where commissioning
@@ -42,12 +44,16 @@ class Conclusion:
         kind: of the verdict.
         gain: on held-out recordings.
         forecast: gain ahead in time, of causes whose sizes belong to a stretch of it.
+        built: what building up proved; None where a few causes explain the record.
+        cut: whether stretches of the record itself were held out.
     """
 
     found: Explanation | None
     kind: Kind
     gain: Gain | None = None
     forecast: Gain | None = None
+    built: BuildUp | None = None
+    cut: bool = False
 
 
 @dataclass(frozen=True)
@@ -124,20 +130,59 @@ def decide(
     found = explain(desk.first, desk.thresholds, desk.settings, desk.progress)
     if found is None:
         return Conclusion(None, Kind.UNKNOWN)
-    grown = held is not None and not found.adequate and desk.settings.causes > 2
-    if grown and held is not None:
-        found = build_up(desk, found, held.gain)
+    built, cut = None, False
+    if not found.adequate and desk.settings.causes > MANY_FROM:
+        evidence = desk.first.evidence
+        fitted = Dataset(evidence.runs, evidence.measured, ())
+        if held is None:
+            cut = True
+            fitted, rest = split(fitted)
+            held = HeldOut(rest, whitening_of(rest.runs, standstill), desk.settings)
+        built = build_up(desk, found, fitted, held.seen)
+    if built is not None and built.report.proved:
+        return _proved(desk, forward, recordings, held, standstill, built, cut)
+    if cut:  # nothing is proved there, and nothing else was held out
+        held = None
     found = _probed(found)
     limit = pull_limit(desk.first.screen.bank, desk.settings.alpha)
-    together = grown and len(found.best.causes) > 1
-    least = MOST if together else ALMOST  # causes together were proved one by one
-    gains = held.gains(found, limit, least) if held else []
-    kind = _kind(found, gains, together)
-    ahead = None
-    if kind.names_causes and any(cause.transient for cause in found.best.causes):
-        workers = desk.first.screen.bank.base.runs.workers
-        ahead = forecast(forward, recordings, found.best, desk.settings, standstill, workers)
-    return Conclusion(found, kind, gains[0] if gains else None, ahead)
+    gains = held.gains(found, limit, ALMOST) if held else []
+    kind = _kind(found, gains)
+    ahead = _ahead(desk, forward, recordings, found, standstill) if kind.names_causes else None
+    report = built.report if built else None
+    return Conclusion(found, kind, gains[0] if gains else None, ahead, report, cut)
+
+
+def _proved(
+    desk: FitContext,
+    forward: Forward,
+    recordings: Sequence[Recording],
+    held: HeldOut | None,
+    standstill: Recording | None,
+    built: Built,
+    cut: bool,
+) -> Conclusion:
+    """Causes that were proved one by one: all of it, or a part."""
+    found = built.found
+    kind = Kind.PARTIAL
+    if found.adequate:
+        kind = Kind.NAMED if len(found.best.causes) == 1 else Kind.SEVERAL
+    gain = held.gain(built.before, found.best) if held else None
+    ahead = _ahead(desk, forward, recordings, found, standstill)
+    return Conclusion(found, kind, gain, ahead, built.report, cut)
+
+
+def _ahead(
+    desk: FitContext,
+    forward: Forward,
+    recordings: Sequence[Recording],
+    found: Explanation,
+    standstill: Recording | None,
+) -> Gain | None:
+    """Gain ahead in time, where a cause's sizes belong to a stretch of it."""
+    if not any(cause.transient for cause in found.best.causes):
+        return None
+    workers = desk.first.screen.bank.base.runs.workers
+    return forecast(forward, recordings, found.best, desk.settings, standstill, workers)
 
 
 def _probed(found: Explanation) -> Explanation:
@@ -152,20 +197,16 @@ def _probed(found: Explanation) -> Explanation:
     return replace(found, chosen=chosen, fits=fits)
 
 
-def _kind(found: Explanation, gains: Sequence[Gain], proved: bool) -> Kind:
+def _kind(found: Explanation, gains: Sequence[Gain]) -> Kind:
     if not found.adequate:
-        return Kind.PARTIAL if _beats(found, gains, proved) else Kind.UNKNOWN
+        return Kind.PARTIAL if _beats(found, gains) else Kind.UNKNOWN
     if len(found.chosen) > 1:
         return Kind.AMBIGUOUS
     return Kind.NAMED if len(found.best.causes) == 1 else Kind.SEVERAL
 
 
-def _beats(found: Explanation, gains: Sequence[Gain], proved: bool) -> bool:
-    """Whether the causes take most of the held-out excess away, and no rival nearly as much.
-
-    Of causes that were `proved` one by one each has stood against its rivals already.
-    """
+def _beats(found: Explanation, gains: Sequence[Gain]) -> bool:
+    """Whether the causes take most of the held-out excess away, and no rival nearly as much."""
     if len(found.chosen) > 1 or not gains or gains[0].low is None:
         return False
-    rivals = [] if proved else [gain.share or 0.0 for gain in gains[1:]]
-    return gains[0].low > max([MOST if proved else ALMOST, *rivals])
+    return gains[0].low > max([ALMOST, *(gain.share or 0.0 for gain in gains[1:])])

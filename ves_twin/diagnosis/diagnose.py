@@ -177,9 +177,12 @@ class _View:
         if found is None or not found.adequate:
             bank, limits = first.screen.bank, findings.limits
             apart = disagreement(seen, bank, self.whitening, limits, chosen, progress)
+        if end.cut:
+            basis = replace(basis, held_out="split")
         findings = replace(
             findings,
             found=found,
+            built=end.built,
             gain=end.gain,
             forecast=end.forecast,
             proposals=proposals,

@@ -55,7 +55,7 @@ class Explanation:
         weights: probability of each of them, given the library.
         adequate: whether what the best leaves is noise.
         score: largest cell score it leaves.
-        second: best score of a further cause beside it.
+        second: best score of a further cause beside it; None if nobody looked.
         before, after: cells without and with it.
         alone: fits of single causes, where only two together are adequate.
         hopeless: fits that were given up, under the first whitening.
@@ -68,7 +68,7 @@ class Explanation:
     weights: tuple[float, ...]
     adequate: bool
     score: float
-    second: float
+    second: float | None
     before: tuple[Cell, ...]
     after: tuple[Cell, ...]
     alone: tuple[Fit, ...] = ()

@@ -214,9 +214,10 @@ class _Carried:
         return np.asarray(left + float(pull @ pull) * lengths / lengths.sum())
 
     def errors(self, measured: SingleArray) -> FloatArray:
-        """Rms of each channel."""
+        """Rms of each channel over the rows that were measured."""
         off = np.square(measured - self.local.prediction, dtype=float)
-        return np.asarray(np.sqrt(np.mean(off, axis=0)))
+        kept = self.local.runs.kept
+        return np.asarray(np.sqrt(np.sum(off, axis=0, where=kept) / np.sum(kept, axis=0)))
 
     def _metric(self, whitening: Whitening) -> Metric:
         columns = whitening.apply(self.local.columns).T

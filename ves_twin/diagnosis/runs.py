@@ -104,6 +104,13 @@ class Runs:
         return tuple(slice(int(a), int(b)) for a, b in pairwise(ends))
 
     @property
+    def kept(self) -> BoolArray:
+        """Rows of the grid that were measured (rows, c)."""
+        if self.holes:
+            return ~np.concatenate(self.holes)
+        return np.ones((self.slices[-1].stop, len(self.columns)), bool)
+
+    @property
     def origin(self) -> FloatArray:
         """No departure."""
         return np.zeros(len(self.coordinates))

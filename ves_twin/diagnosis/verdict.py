@@ -12,6 +12,7 @@ from ves_twin.core.units import unit_tail
 from ves_twin.core.whole_file import write_whole
 from ves_twin.data.quality.check import Check
 from ves_twin.diagnosis.aliases import Lookalike
+from ves_twin.diagnosis.build_up.result import Inseparable, Left, Proved
 from ves_twin.diagnosis.disagreement import Alone
 from ves_twin.diagnosis.gain import Gain
 from ves_twin.diagnosis.report_traces import ReportTraces
@@ -184,7 +185,10 @@ class Verdict:
     of it. `tuned` are the plant's commissioning numbers at the fit. `lookalikes` say what a named
     cause could be taken for, and up to which size; `twins` are cosines of all pairs. `quality`
     has the checks that a recording failed; `alone` what each recording says
-    by itself, where all together have no explanation. `exhibit` has the traces of the
+    by itself, where all together have no explanation. `proved` are the causes that held-out data
+    prove one by one, out of `put_to_proof`, with the false-discovery rate that this keeps; `left`
+    is what then stays of each channel, `inseparable` what is known only in combination. `nearest`
+    are the causes that come nearest where none is named. `exhibit` has the traces of the
     report, and stays out of verdict.json.
     """
 
@@ -209,6 +213,12 @@ class Verdict:
     excluded: tuple[str, ...] = ()
     quality: tuple[Check, ...] = ()
     alone: tuple[Alone, ...] = ()
+    proved: tuple[Proved, ...] = ()
+    put_to_proof: int | None = None
+    false_discovery_rate: float | None = None
+    left: Mapping[str, Left] = field(default_factory=dict)
+    inseparable: tuple[Inseparable, ...] = ()
+    nearest: tuple[Cause, ...] = ()
     exhibit: ReportTraces | None = field(default=None, repr=False, compare=False)
     schema: int = SCHEMA
 
@@ -241,6 +251,8 @@ class Verdict:
                 return f"Something is wrong that the library does not explain{hint}."
             case _:
                 limit = "" if self.verdict is Kind.AMBIGUOUS else self.limit
+                if self.proved:
+                    return self.proving + limit
                 return self.naming([self._name(i) for i in range(len(self.causes))]) + limit
 
     def naming(self, names: Sequence[str], begin: str = "") -> str:
@@ -266,6 +278,22 @@ class Verdict:
                 return f"{begin}{every}."
 
     @property
+    def proving(self) -> str:
+        """The sentences of a verdict whose causes were proved one by one."""
+        names = {f"{c.effect}@{c.target}": self._name(i) for i, c in enumerate(self.causes)}
+        firm = [names[one.label] for one in self.proved if one.firm]
+        like = [
+            " or ".join([names[one.label], *one.acts_like]) for one in self.proved if not one.firm
+        ]
+        count = len(self.proved)
+        said = [f"{count} extension{'s' * (count > 1)} proved to predict held-out data better."]
+        said += [f"Named: {'; '.join(firm)}."] if firm else []
+        said += [f"Acts like: {'; '.join(like)}."] if like else []
+        if self.verdict is Kind.PARTIAL:
+            said.append("Something more stays unexplained.")
+        return " ".join(said)
+
+    @property
     def limit(self) -> str:
         """What the extension is good for, where it holds between recordings and not beyond."""
         if self.forecast is None or self.forecast.carries_on:
@@ -289,7 +317,7 @@ class Verdict:
             f"{name} = {p.told(origin)}" for name, p in (shown[:1] if told else shown)
         )
         text = f"{cause.effect} at {cause.target}: {told}{sizes}"
-        if cause.firm:
+        if cause.firm or (cause.sigmas is None and self.proved):
             return text
         if changed:
             return f"{text}, {cause.sigmas:.1f} sigmas of a change since then: fault or drift"

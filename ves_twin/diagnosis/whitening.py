@@ -245,7 +245,7 @@ def whitening_measured(runs: Runs, standstill: Recording) -> Whitening:
     for c in np.flatnonzero(silent):  # a standing encoder shows one count and no noise
         covariance[c] = grid.autocovariance(channels[c].sd, ORDER)
         noise[:, c] = channels[c].sd * np.random.default_rng(c).standard_normal(count)
-    filters = _filters(covariance)
+    filters = prediction_filters(covariance)
     inner = np.stack([lfilter(a, [1.0], noise[:, c])[ORDER:] for c, a in enumerate(filters)])
     correlation = np.atleast_2d(np.corrcoef(inner))
     copies = len(runs.grids)
@@ -266,7 +266,7 @@ def _whitening(
 ) -> Whitening:
     filters, mixing = [], []
     for covariance, correlation in zip(covariances, correlations, strict=True):
-        a = _filters(covariance)
+        a = prediction_filters(covariance)
         sd = np.sqrt(np.sum(a * covariance, axis=1))
         filters.append(a)
         mixing.append(np.linalg.inv(np.linalg.cholesky(correlation * np.outer(sd, sd))))
@@ -274,7 +274,7 @@ def _whitening(
     return Whitening(runs, np.array(filters), np.array(mixing), np.zeros(shape), np.ones(shape))
 
 
-def _filters(covariance: FloatArray) -> FloatArray:
+def prediction_filters(covariance: FloatArray) -> FloatArray:
     """Yule-Walker: autocovariances (c, ORDER + 1) -> prediction-error filters (c, ORDER + 1)."""
     rows = []
     for g in covariance:

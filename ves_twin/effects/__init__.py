@@ -1,6 +1,6 @@
 """effects: named deviations of a machine from its description, which diagnosis looks for."""
 
-from ves_twin.effects.actuators import ActuatorDelay, ActuatorGain
+from ves_twin.effects.actuators import ActuatorDeadband, ActuatorDelay, ActuatorGain
 from ves_twin.effects.bodies import BodyInertia, BodyMass, MassCentre, PayloadMass
 from ves_twin.effects.couplings import CouplingCoulomb, CouplingInertia, CouplingViscous
 from ves_twin.effects.effect import Effect
@@ -59,6 +59,7 @@ TorqueConstant = ActuatorGain
 # names of earlier versions, as registry.RENAMED has them of files
 
 __all__ = [
+    "ActuatorDeadband",
     "ActuatorDelay",
     "ActuatorGain",
     "AnchorPosition",

@@ -6,6 +6,8 @@ import math
 from dataclasses import dataclass
 from typing import final
 
+import numpy as np
+
 from ves_twin.core.types import FloatArray
 from ves_twin.effects import change
 from ves_twin.effects.change import Law, Loop
@@ -99,3 +101,31 @@ class ActuatorDelay(Effect):
     def edit_required(self, effort: FloatArray, time: FloatArray) -> FloatArray:
         """That of a delay ahead."""
         return shifted(effort, time, -self.delay)
+
+
+@final
+@dataclass(frozen=True)
+class ActuatorDeadband(Effect):
+    """Nothing acts until the command leaves a band: u -> sign(u) max(|u| - band, 0).
+
+    Overlapped valves, amplifiers that hold back small currents. The command that an effort needs
+    lies beyond the band on the side of the effort.
+    """
+
+    band: float = 0.0
+
+    kind = "actuator_deadband"
+    sizes = (Size("band", "", Sign.POSITIVE),)
+    anywhere = Anywhere(Element.ACTUATOR, lambda p: 0.5 * p.effort)
+
+    def edit_command(self, command: FloatArray, time: FloatArray) -> FloatArray:
+        """What of it lies outside the band."""
+        return np.asarray(np.sign(command) * np.maximum(np.abs(command) - self.band, 0.0))
+
+    def edit_row(self, command: FloatArray, time: FloatArray, row: int) -> float:
+        """That of one row."""
+        return float(self.edit_command(command[row : row + 1], time)[0])
+
+    def edit_required(self, effort: FloatArray, time: FloatArray) -> FloatArray:
+        """Beyond the band."""
+        return np.asarray(effort + self.band * np.sign(effort))

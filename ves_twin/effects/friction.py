@@ -116,9 +116,9 @@ class FrictionBehindGap(Effect):
 
     @classmethod
     def starts(cls, place: Place) -> tuple[tuple[float, ...], ...]:
-        """Half the typical effort; three elastic travels, four gaps and none, three differences."""
-        grid = product((-0.25, 0.0, 0.25), (0.01, 0.04, 0.15), (0.0, 0.03, 0.08, 0.15, 0.3))
-        reach = place.travel
+        """Half the typical effort; travels and gaps each twice the last one, three differences."""
+        travels, gaps = (0.01, 0.02, 0.04, 0.08, 0.16), (0.0, 0.02, 0.04, 0.08, 0.16, 0.32)
+        grid, reach = product((-0.25, 0.0, 0.25), travels, gaps), place.travel
         return tuple((0.5 * place.effort, d, e * reach, g * reach) for d, e, g in grid)
 
     def hold(self, position: FloatArray) -> FloatArray:

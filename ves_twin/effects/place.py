@@ -15,8 +15,9 @@ class Place:
         element: what it is.
         name: as the file has it: "axis", "motor", "tool.x", "wrist.force.3".
         hinge: whether a joint turns rather than slides.
-        effort, speed, travel: typical at a joint [N or N m, m/s or rad/s, m or rad].
-        unit: of a signal.
+        effort, speed, travel: typical at a joint [N or N m, m/s or rad/s, m or rad]; of an
+            actuator the command that this effort takes.
+        unit: of a signal, or of an actuator's command.
         span: typical range of a signal [its unit].
         mass: of a body [kg].
         begin, end, terms: stretch that drift shapes span, and their count.

@@ -123,12 +123,16 @@ def causes_of_today(names: Iterable[str]) -> list[str]:
     """Causes of VES II, each a kind or kind@target, by the kinds' names of today."""
     found = []
     for name in names:
-        earlier, _, target = name.partition("@")
-        kind, targets = RENAMED.get(earlier, ("", ()))
-        if target:
-            targets = (target,)
-        found += [f"{kind}@{one}" for one in targets] if kind else [name]
+        kind, targets = RENAMED.get(name, ("", ()))
+        found += [f"{kind}@{one}" for one in targets] if kind else [label_of_today(name)]
     return found
+
+
+def label_of_today(label: str) -> str:
+    """kind@target or kind@target:size by today's name, where VES II had that kind there."""
+    earlier, _, place = label.partition("@")
+    kind, targets = RENAMED.get(earlier, ("", ()))
+    return f"{kind}@{place}" if place.partition(":")[0] in targets else label
 
 
 def causes_anywhere(names: Iterable[str]) -> list[str]:

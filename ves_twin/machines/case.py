@@ -122,7 +122,6 @@ class Case(ABC):
         Raises:
             InvalidInputError: a standstill recording at another rate.
         """
-        declared = self.declared_noise()
         recording, rows, said = self.recording, slice(0), NoiseSource.STILL
         if self.standstill is not None:
             recording = even_clock(self.standstill, ())
@@ -134,7 +133,7 @@ class Case(ABC):
                 raise InvalidInputError("rate of the standstill recording", came, here)
         elif self.still:
             rows = standing_rows(recording, self.same) or slice(0)
-        found = {}
+        declared, found = self.declared_noise(), {}
         for name in self.outputs:
             for i, column in enumerate(self.signals[name].columns):
                 there = name in recording.signals

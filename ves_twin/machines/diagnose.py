@@ -28,6 +28,7 @@ class Diagnosis:
         extended: it with the causes; None where no causes are named.
         refused: why the extension is only a candidate; empty where it passed on held-out data.
         excitation: that should part the causes, where they cannot be told apart.
+        nearest: it with what comes nearest, where no causes are named; None if nothing does.
     """
 
     verdict: Verdict
@@ -35,6 +36,7 @@ class Diagnosis:
     extended: Machine | None
     refused: str
     excitation: Excitation | None = None
+    nearest: Machine | None = None
 
 
 def diagnose(
@@ -105,13 +107,16 @@ def diagnose(
         progress=progress,
     )
     causes = tuple(cause.shortened for cause in verdict.causes)
-    verdict = replace(verdict, causes=causes, quality=prepared.flaws)
+    near = tuple(cause.shortened for cause in verdict.nearest)
+    verdict = replace(verdict, causes=causes, nearest=near, quality=prepared.flaws)
     if verdict.verdict.names_a_plant:
         new = machine.extended(verdict)
         return Diagnosis(verdict, machine, new, machine.refusal(verdict))
     best = verdict.next_experiment[0].programme if verdict.next_experiment else ""
     chosen = next((one for one in offered if one.name == best), None)
-    return Diagnosis(verdict, machine, None, f"the verdict is {verdict.verdict.value}", chosen)
+    why = f"the verdict is {verdict.verdict.value}"
+    nearest = machine.extended(replace(verdict, causes=near)) if near else None
+    return Diagnosis(verdict, machine, None, why, chosen, nearest)
 
 
 def prepare(

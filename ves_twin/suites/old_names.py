@@ -1,6 +1,8 @@
-"""current_label and others: names in files of suites made before the pendulum was MJCF."""
+"""current_label and others: names in files of suites, as they were when those were made."""
 
 from __future__ import annotations
+
+from ves_twin.effects.registry import label_of_today
 
 _NUMBERS = {
     "joint.damping": "viscous_friction@joint:damping",
@@ -33,12 +35,15 @@ AGAINST_MOTION = "drive.offset"
 
 def current_label(label: str) -> str:
     """effect@target as the library has it today."""
-    return _NUMBERS[_CAUSES[label]].partition(":")[0] if label in _CAUSES else label
+    if label in _CAUSES:  # the pendulum before it was an MJCF machine
+        return _NUMBERS[_CAUSES[label]].partition(":")[0]
+    return label_of_today(label)
 
 
 def current_size(name: str, value: float) -> tuple[str, float]:
     """A parameter and its value as the library has them today."""
-    return _NUMBERS.get(name, name), -value if name == AGAINST_MOTION else value
+    today = _NUMBERS.get(name) or label_of_today(name)
+    return today, -value if name == AGAINST_MOTION else value
 
 
 def current_name(said: str) -> str:

@@ -10,7 +10,7 @@ import pytest
 
 from ves_twin.core.errors import InvalidInputError
 from ves_twin.diagnosis.forward import Excitation
-from ves_twin.effects import FrictionBehindGap, StribeckFriction
+from ves_twin.effects import ActuatorDeadband, FrictionBehindGap, StribeckFriction
 from ves_twin.machines.mjcf.description import Mode
 from ves_twin.machines.mjcf.forward import MjcfForward
 from ves_twin.machines.mjcf.machine import Rig
@@ -189,3 +189,14 @@ def test_an_extended_machine_with_a_coupling_loads_again_with_it(tmp_path):
     model = Rig.load(str(tmp_path / "more.toml")).model
     assert float(model.tendon_damping[model.tendon("sum").id]) == 0.25
     assert isinstance(model, mujoco.MjModel)
+
+
+def test_commands_inside_a_dead_band_do_nothing_and_the_command_of_an_effort_lies_beyond_it():
+    effect = ActuatorDeadband("ma", band=0.5)
+    command = np.array([-2.0, -0.5, -0.3, 0.0, 0.2, 0.5, 1.5])
+    given = effect.edit_command(command, np.arange(7.0))
+    assert given.tolist() == [-1.5, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0]
+    outside = np.abs(command) > 0.5
+    assert np.array_equal(effect.edit_required(given, np.arange(7.0))[outside], command[outside])
+    rows = [effect.edit_row(command, np.arange(7.0), k) for k in range(7)]
+    assert rows == given.tolist()

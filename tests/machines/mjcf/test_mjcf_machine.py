@@ -7,6 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+import slide
 from two_link import TIME, programme, write_files
 
 import ves_twin as vt
@@ -19,7 +20,7 @@ from ves_twin.diagnosis.residuals.noise import NoiseSource
 from ves_twin.diagnosis.settings import Settings
 from ves_twin.machines.machine import SETPOINTS, Machine, Material, Named
 from ves_twin.machines.mjcf.description import Mode
-from ves_twin.machines.mjcf.excitations import BORNE, offered, write_inputs
+from ves_twin.machines.mjcf.excitations import BANDS, BORNE, offered, write_inputs
 from ves_twin.machines.mjcf.forward import MjcfForward
 from ves_twin.machines.tolerance import Tolerance
 from ves_twin.report.comparison.page import comparison_page
@@ -159,13 +160,28 @@ def test_a_plan_of_an_mjcf_machine_says_what_an_excitation_could_find(machine):
         vt.plan(machine, "multisin", quick=True)
 
 
+def test_an_excitation_takes_the_clock_of_the_recording_that_it_follows(machine):
+    for one in machine.excitations(recorded(machine, 1)):
+        assert one.period == pytest.approx(TIME[1] - TIME[0])
+
+
+@pytest.mark.slow
 def test_causes_that_cannot_be_told_apart_get_a_next_experiment_in_the_log_s_own_columns(
-    machine, tmp_path
+    tmp_path, capsys
 ):
-    (first, *_) = machine.excitations(recorded(machine, 1))
-    assert first.period == pytest.approx(TIME[1] - TIME[0])
-    machine.save_excitation(first, tmp_path)
-    assert (tmp_path / SETPOINTS).read_text().startswith(machine.rig.description.clock.column)
+    """A gain of 0.97 against 3 % more mass."""
+    path = slide.write_files(tmp_path)
+    weak = {"mass": 5.0, "damping": 10.0, "gain": 0.97}
+    slide.write_day(tmp_path / "log.csv", np.random.default_rng(5), weak, 0.0)
+    words = ["diagnose", str(tmp_path / "log.csv"), "--plant", str(path), "--json"]
+    assert main([*words, "--out", str(tmp_path / "out")]) == 0
+    said = json.loads(capsys.readouterr().out)
+    assert said["verdict"] == "ambiguous"
+    assert {p["programme"] for p in said["next_experiment"]} <= set(BANDS)
+    assert (tmp_path / "out" / "diagnosis.rrd").stat().st_size > 1000
+    head, *rows = (tmp_path / "out" / SETPOINTS).read_text().splitlines()
+    assert head == "t,f"
+    assert max(abs(float(row.split(",")[1])) for row in rows) <= 15.0  # typical effort
 
 
 @pytest.mark.parametrize("name", ["ves2_fast", "emps", "ft_wrist"])

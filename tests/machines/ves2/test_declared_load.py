@@ -1,5 +1,7 @@
 """Recordings of one rig with declared loads that differ."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -45,8 +47,10 @@ def test_a_load_is_fed_in_through_the_gate_which_expects_its_weight(lab):
 
 
 def test_a_load_that_changes_on_the_way_is_refused(lab):
-    changing = with_load(lab, 1.0)
-    changing[LOAD.name][5:] = 2.0
+    steady = with_load(lab, 1.0)
+    rows = steady[LOAD.name].copy()
+    rows[5:] = 2.0
+    changing = replace(steady, signals={**steady.signals, LOAD.name: rows})
     fed = Excitation.of(changing, (*DRIVE, LOAD.name), "two loads")
     forward = RigForward(vt.Plant.load(PLANT), replay_scenario(lab), loaded=True)
     with pytest.raises(InvalidInputError, match="one mass"):

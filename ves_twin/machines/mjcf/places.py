@@ -38,7 +38,7 @@ def place_of(effect: Effect, told: RigDescription, model: mujoco.MjModel) -> Pla
         return Place(element, target, mass=float(model.body_mass[model.body(name).id]))
     if element is Element.ACTUATOR:
         _known("actuator", target, {model.actuator(i).name for i in range(model.nu)})
-        return Place(element, target)
+        return _actuator(target, told, model)
     if element is Element.TENDON:
         return _tendon(target, told, model)
     return _joint(target, told, model)
@@ -81,6 +81,21 @@ def _joint(target: str, told: RigDescription, model: mujoco.MjModel) -> Place:
         effort=_positive(span.effort, "N*m" if hinge else "N", f"{what}.effort"),
         speed=typical_speed(target, told, model),
         travel=_positive(span.travel, "rad" if hinge else "m", f"{what}.travel"),
+    )
+
+
+def _actuator(target: str, told: RigDescription, model: mujoco.MjModel) -> Place:
+    """With the command that its joint's typical effort takes, 0 where the file says none."""
+    actuator = model.actuator(target)
+    on_joint = int(actuator.trntype[0]) == int(mujoco.mjtTrn.mjTRN_JOINT)
+    joint = model.joint(int(actuator.trnid[0])).name if on_joint else ""
+    span, gain = told.typical.joint.get(joint, Span()), abs(actuator.gear[0] * actuator.gainprm[0])
+    if not span.effort or not gain:
+        return Place(Element.ACTUATOR, target)
+    unit = "N*m" if joint_units(model, joint)[0] == "rad" else "N"
+    effort = _positive(span.effort, unit, f"typical.joint.{joint}.effort")
+    return Place(
+        Element.ACTUATOR, target, effort=effort / float(gain), unit=unit if gain == 1.0 else "1"
     )
 
 

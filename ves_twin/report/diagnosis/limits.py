@@ -18,8 +18,8 @@ def rival_words(rival: Rival, best: bool) -> str:
     """Why an explanation was kept or lost."""
     if rival.standing is Standing.SCREENED:
         return (
-            f"not fitted: the bank expects it to take {digits(rival.score)} of chi^2 away, less"
-            " than those that were"
+            f"not fitted: alone it was predicted to take {digits(rival.score)} of chi^2 away, less"
+            " than each of those that were fitted first"
         )
     if best:
         return "the best"

@@ -13,6 +13,7 @@ from ves_twin.report.diagnosis.pictures import (
     residuals_figure,
     trace_figure,
 )
+from ves_twin.report.diagnosis.proved import proved_parts
 from ves_twin.report.diagnosis.words import (
     alone_sentences,
     ambiguity_sentences,
@@ -50,6 +51,7 @@ def diagnosis_page(verdict: Verdict, title: str = "Diagnosis", plant: str = "") 
     parts = [_answer(verdict, plant), section("Before and after", *_levels(verdict))]
     if exhibit:
         parts += _pictures(verdict, exhibit)
+    parts += proved_parts(verdict)
     if verdict.rivals:
         parts.append(section("Rivals, and why they lost", _rivals(verdict.rivals)))
     parts += [
@@ -65,7 +67,7 @@ def diagnosis_page(verdict: Verdict, title: str = "Diagnosis", plant: str = "") 
 def _answer(verdict: Verdict, plant: str) -> Html:
     """The first screen: verdict, cause, size, gain, basis."""
     parts = [paragraph(headline(verdict), f"lead {tone(verdict)}")]
-    if verdict.causes:
+    if verdict.causes and not verdict.proved:
         head = ("cause", "size", "90 % interval", _origin(verdict), "probability", "standing")
         parts.append(table(head, [row for c in verdict.causes for row in _cause(c, verdict)]))
         parts += [
@@ -206,7 +208,12 @@ def _findable(verdict: Verdict) -> list[Html]:
     if len(rows) > 3 * SHOWN:
         parts = [parts[0], folded(f"{len(rows)} causes", parts[1])]
     if blind:
-        parts.append(paragraph(f"Nothing can be said about: {', '.join(blind)}."))
+        parts.append(
+            paragraph(
+                f"Nothing can be said about: {', '.join(blind)}. What even the largest size tried"
+                " would change here is no more than noise and commissioning errors may."
+            )
+        )
     return parts
 
 
@@ -216,7 +223,9 @@ def _leftover(verdict: Verdict) -> list[Html]:
         return []
     parts = [paragraph(f"Mean square of what is left: {left.mean_square:.3g} (1 is noise).")]
     if not left.loud:
-        return [*parts, paragraph("No band and no stretch of time is beyond noise.")]
+        most = digits(verdict.statistics.misfit_threshold)
+        said = f"No band and no stretch of time passes {most} sigma, the most that rigs in order"
+        return [*parts, paragraph(f"{said} leave in these recordings.")]
     if left.onset is not None:
         parts.append(paragraph(f"First stretch beyond noise: from {left.onset:.2f} s."))
     head = ("recording", "channel", "where", "score, sigma", "share of what is left")

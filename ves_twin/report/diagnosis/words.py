@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ves_twin.core.quantity import digits, percent, quantity
+from ves_twin.core.quantity import digits, percent, quantity, shares
 from ves_twin.diagnosis.disagreement import disagree
 from ves_twin.diagnosis.residual_structure import Loud
 from ves_twin.diagnosis.rivals import Place
@@ -41,6 +41,8 @@ def headline(verdict: Verdict) -> str:
             return _nothing(verdict)
         case Kind.UNKNOWN:
             return _unknown(verdict)
+        case _ if verdict.proved:
+            return _proved(verdict)
         case Kind.AMBIGUOUS | Kind.PARTIAL:
             return verdict.naming(names) + _doubt(verdict)
         case _:
@@ -82,6 +84,21 @@ def _unknown(verdict: Verdict) -> str:
             " explains all of them."
         )
     return "Something is wrong that no cause in the library explains."
+
+
+def _proved(verdict: Verdict) -> str:
+    """Of causes that were proved one by one: firm names, those that act like one, what is left."""
+    firm = [spoken(one.label) for one in verdict.proved if one.firm]
+    like = [spoken(one.label) for one in verdict.proved if not one.firm]
+    count = len(verdict.proved)
+    what = "1 extension predicts" if count == 1 else f"{count} extensions predict"
+    said = f"{what} held-out data better, each beside all others."
+    for begin, names in (("Firm", firm), ("Acting like", like)):
+        more = f" and {len(names) - TOLD} more" if len(names) > TOLD else ""
+        said += f" {begin}: {', '.join(names[:TOLD])}{more}." if names else ""
+    if verdict.verdict is Kind.PARTIAL:
+        said += " Something more stays unexplained."
+    return said
 
 
 def _begin(verdict: Verdict) -> str:
@@ -133,6 +150,9 @@ def nearest_sentence(verdict: Verdict) -> str:
     if verdict.suspect:
         names = " with ".join(map(spoken, verdict.suspect.split(" with ")))
         said = f"Nearest, and not accepted: {names}. "
+        if verdict.gain is not None and verdict.gain.share is not None and verdict.gain.passed:
+            share = shares(verdict.gain.share)[0]
+            said += f"It takes {share} of the held-out error away, and more is missing. "
     if left.loud:
         top = left.loud[0]
         said += f"What is left is loudest in {top.channel} at {ends_words(top)}."
@@ -234,8 +254,9 @@ def gain_sentence(verdict: Verdict) -> str:
             "Gain: the held-out recordings show no error beyond noise that an extension could take"
             " away; they neither confirm nor refute it."
         )
-    span = f"{_share(gain.low)} to {_share(gain.high)}"
-    said = f"{_share(gain.share)} of the error beyond noise on held-out recordings ({span})"
+    share, low, high = shares(gain.share, gain.low, gain.high)
+    span = f"{low} to {high}"
+    said = f"{share} of the error beyond noise on held-out recordings ({span})"
     if gain.passed:
         return f"Gain: the extended plant takes away {said}."
     if not gain.by_causes:
@@ -263,6 +284,8 @@ def basis_sentences(verdict: Verdict) -> tuple[str, ...]:
     }
     held = {
         "measured": "Held-out recordings: given.",
+        "split": "Held-out recordings: none were given. The record was cut into stretches, and"
+        " every second one was held out.",
         "none": "Held-out recordings: none. The verdict was not tested on other data.",
     }
     return (
@@ -270,10 +293,6 @@ def basis_sentences(verdict: Verdict) -> tuple[str, ...]:
         tolerances.get(basis.tolerances, f"Tolerances: {basis.tolerances}."),
         held.get(basis.held_out, f"Held-out recordings: {basis.held_out}."),
     )
-
-
-def _share(value: float | None) -> str:
-    return "-" if value is None else f"{100.0 * value:.0f} %"
 
 
 def capital(text: str) -> str:

@@ -1,0 +1,50 @@
+"""Set: a measured machine made ready: its two files, recordings to fit and to hold out."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterable
+from dataclasses import dataclass
+from pathlib import Path
+
+from ves_twin.core.recording.recording import Recording
+from ves_twin.machines.mjcf.columns import read_rig_recording
+from ves_twin.machines.mjcf.machine import Rig
+
+
+@dataclass(frozen=True)
+class Set:
+    """One way to ask: which recordings are fitted, and which are held out."""
+
+    name: str
+    rig: Rig
+    fitted: list[Recording]
+    held_out: list[Recording]
+    expert: str
+    asked: str
+
+
+def machine(folder: Path, name: str, model: str, description: str) -> Rig:
+    """Write the two files and load them."""
+    folder.mkdir(parents=True, exist_ok=True)
+    (folder / f"{name}.xml").write_text(model)
+    (folder / f"{name}.toml").write_text(description)
+    return Rig.load(str(folder / f"{name}.toml"))
+
+
+def read(rig: Rig, path: Path) -> Recording:
+    """A log of the machine."""
+    return read_rig_recording(path, rig)
+
+
+def stretch(recording: Recording, start: float, stop: float) -> Recording:
+    """Rows from start to stop [s]."""
+    rows = (recording.time >= start) & (recording.time < stop)
+    signals = {name: values[rows] for name, values in recording.signals.items()}
+    return Recording(recording.time[rows], signals, recording.info)
+
+
+def effects(*kinds: tuple[str, Iterable[str]]) -> str:
+    """Tables of what may be wrong, and where."""
+    tables = (f'\n[[effects]]\nkind = "{k}"\non = {json.dumps(list(on))}\n' for k, on in kinds)
+    return "".join(tables)

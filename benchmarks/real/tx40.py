@@ -1,0 +1,108 @@
+"""TX40: six-axis arm; motion fed in, torques compared; URDF masses and rotor inertias given."""
+
+from __future__ import annotations
+
+import xml.etree.ElementTree as ElementTree
+from pathlib import Path
+
+import mujoco
+
+from real.machine import Set, effects, machine, read, stretch
+
+ROTORS = (0.362, 0.362, 0.0988, 0.0313, 0.0468, 0.0105)
+"""Drive inertias at the joints [kg m^2], published with the data."""
+
+TORQUES = (60, 80, 40, 10, 10, 4)
+SPEEDS = (4.0, 3.0, 4.0, 5.0, 5.0, 8.0)
+"""Typical torque [N m] and speed [rad/s] of each joint, read off the recording."""
+
+JOINTS = [f"joint_{k}" for k in range(1, 7)]
+PAIRS = [f"{sign}_{k}_{k + 1}" for k in range(1, 6) for sign in ("sum", "difference")]
+BODIES = [f"link_{k}" for k in range(1, 7)]
+
+HEAD = """schema = 1
+kind = "rig"
+name = "tx40"
+model = "tx40.xml"
+rate = 50
+[clock]
+column = "t"
+[drive]
+mode = "motion"
+smoothing = "25 Hz"
+"""
+
+
+def model(urdf: Path) -> str:
+    """MJCF of the URDF: no shapes, no contacts, no limits; tendons that may couple neighbours."""
+    tree = ElementTree.parse(urdf)
+    for link in tree.getroot().iter("link"):
+        for part in (*link.findall("visual"), *link.findall("collision")):
+            link.remove(part)
+        inertia = link.find("inertial/inertia")
+        if inertia is not None and float(inertia.attrib["ixx"]) == 0.0:  # rounded to zero there
+            for axis in ("ixx", "iyy", "izz"):
+                inertia.attrib[axis] = "1e-4"
+    spec = mujoco.MjSpec.from_string(ElementTree.tostring(tree.getroot(), encoding="unicode"))
+    for name, rotor in zip(JOINTS, ROTORS, strict=True):
+        joint = spec.joint(name)
+        joint.armature, joint.limited, joint.frictionloss = rotor, 0, 0.0
+        joint.actfrclimited = 0
+        actuator = spec.add_actuator(name=f"motor_{name[-1]}", target=name)
+        actuator.trntype = mujoco.mjtTrn.mjTRN_JOINT
+    for pair in PAIRS:
+        sign, one, two = pair.split("_")
+        tendon = spec.add_tendon(name=pair)
+        tendon.wrap_joint(f"joint_{one}", 1.0)
+        tendon.wrap_joint(f"joint_{two}", 1.0 if sign == "sum" else -1.0)
+    spec.option.disableflags |= int(mujoco.mjtDisableBit.mjDSBL_CONTACT)
+    spec.compile()
+    return str(spec.to_xml())
+
+
+def description() -> str:
+    """What the columns are, what is known how well, and what may be wrong."""
+    text = HEAD
+    text += "joints = { " + ", ".join(f'{j} = "q.{j[-1]}"' for j in JOINTS) + " }\n"
+    for k, joint in enumerate(JOINTS, 1):
+        text += f'\n[signals."q.{k}"]\ncolumns = ["q{k}"]\nunit = "rad"\n'
+        text += f'[signals."torque.{k}"]\ncolumns = ["tau{k}"]\nunit = "N*m"\nnoise = 0.05\n'
+        text += f'[compare."torque.{k}"]\nactuator = "motor_{k}"\n'
+        text += f"[typical.joint.{joint}]\neffort = {TORQUES[k - 1]}\nspeed = {SPEEDS[k - 1]}\n"
+        text += "travel = 2.0\n"
+        text += f'[typical.signal."torque.{k}"]\nspan = {TORQUES[k - 1]}\n'
+        text += f'[[parameters]]\njoint = "{joint}"\nattribute = "armature"\n'
+        text += f"sd = {0.1 * ROTORS[k - 1]}\n"
+    for body, mass in zip(BODIES, (10.5, 3.6, 4.07, 3.62, 1.02, 0.2), strict=True):
+        text += f'[[parameters]]\nbody = "{body}"\nattribute = "mass"\nsd = {0.05 * mass}\n'
+    torques = [f"torque.{k}" for k in range(1, 7)]
+    return text + effects(
+        ("viscous_friction", JOINTS),
+        ("coulomb_friction", JOINTS),
+        ("viscous_asymmetry", JOINTS),
+        ("coulomb_asymmetry", JOINTS),
+        ("stribeck_friction", JOINTS),
+        ("quadratic_drag", JOINTS),
+        ("force_offset", JOINTS),
+        ("joint_spring", JOINTS),
+        ("rotor_inertia", JOINTS),
+        ("coupling_inertia", PAIRS),
+        ("coupling_viscous", PAIRS),
+        ("coupling_coulomb", PAIRS),
+        ("actuator_delay", [f"motor_{k}" for k in range(1, 7)]),
+        ("sensor_gain", [f"{t}.1" for t in torques]),
+        ("body_mass", BODIES),
+        ("mass_centre", [f"{b}.{axis}" for b in BODIES for axis in "xyz"]),
+        ("body_inertia", BODIES),
+    )
+
+
+def sets(data: Path, folder: Path) -> list[Set]:
+    """Both halves of the one recording, each fitted with the other held out."""
+    rig = machine(folder, "tx40", model(data / "tx40" / "tx40.urdf"), description())
+    whole = read(rig, data / "tx40" / "tx40.csv")
+    halves = [stretch(whole, 0.0, 4.5), stretch(whole, 4.5, 9.1)]
+    return [
+        Set(f"tx40, fit {a}", rig, [halves[i]], [halves[1 - i]], "18.8 %, 13.5 %", "<= 10 %")
+        for i, a in enumerate(("first half", "second half"))
+    ]

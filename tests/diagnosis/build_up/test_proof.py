@@ -1,0 +1,206 @@
+"""Proof by held-out improvement: what is hidden is found, what is not there is not."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from linear import KINDS, Linear, drawn, halves, recorded, seen
+
+from ves_twin.diagnosis.build_up.discrepancy import discrepancy
+from ves_twin.diagnosis.build_up.halves import halves_at, split
+from ves_twin.diagnosis.build_up.inseparable import inseparable
+from ves_twin.diagnosis.build_up.paired import paired
+from ves_twin.diagnosis.build_up.proof import FALSE_SHARE, prove
+from ves_twin.diagnosis.build_up.report import report_of
+from ves_twin.diagnosis.build_up.select import Selector
+from ves_twin.diagnosis.build_up.stand_ins import stand_ins
+from ves_twin.diagnosis.build_up.trials import Trial, columns_of, trials_at
+
+PLANT = Linear()
+
+
+def label(trial) -> str:
+    return f"{trial.cause.label}:size"
+
+
+def found(two):
+    """Labels that are chosen and proved, and the proof."""
+    chosen = Selector(two.regression).run()
+    proof = prove(two.regression, two.held, chosen)
+    return {label(two.regression.trials[n]) for n in proof.proved}, proof
+
+
+def test_what_a_residual_is_whitened_by_makes_it_white_and_of_unit_size():
+    world = seen(PLANT, recorded(PLANT, {}, 3))
+    residual = world.measured - world.runs.one(world.runs.origin)
+    z = discrepancy(world.runs, residual).apply(residual).reshape(-1, 2)
+    assert np.std(z, axis=0) == pytest.approx(1.0, abs=0.06)
+    for lag in range(1, 5):
+        memory = np.mean(z[lag:] * z[:-lag], axis=0)
+        assert np.all(np.abs(memory) < 4.0 / np.sqrt(len(z)))
+
+
+def test_no_channel_is_quieter_than_its_declared_noise():
+    world = seen(PLANT, recorded(PLANT, {}, 3))
+    silent = np.zeros(world.measured.shape)
+    z = discrepancy(world.runs, silent).apply(np.full_like(world.measured, PLANT.noise))
+    assert np.all(np.isfinite(z))
+    assert np.max(np.abs(z)) < 10.0
+
+
+def test_differences_that_remember_are_seldom_taken_for_an_improvement():
+    rng, low = np.random.default_rng(0), 0
+    for _ in range(200):
+        x = np.convolve(rng.standard_normal(1100), np.ones(40) / 40, "valid")[:1000]
+        low += paired(x - 0.02 * abs(x.mean()), np.zeros(1000, int)).p < 0.05
+    assert low <= 24  # 10 expected, 24 is four sd more
+
+
+def test_a_block_never_reaches_over_a_gap():
+    piece = np.repeat(np.arange(10), 100)
+    assert paired(np.random.default_rng(1).standard_normal(1000), piece).blocks >= 10
+
+
+@pytest.mark.parametrize("seed", [0, 1])
+def test_hidden_causes_are_proved_and_their_sizes_are_right(seed):
+    hidden = drawn(np.random.default_rng(seed), 4)
+    two = halves(PLANT, hidden, seed)
+    names, proof = found(two)
+    assert set(hidden) - {"rotor@a:size", "rotor@b:size"} <= names
+    _, shares = proof.bench.subset(proof.proved)
+    fit = two.regression.solve(proof.proved, proof.bench.fit.whitening)
+    for n, at in two.regression.places(proof.proved).items():
+        if label(two.regression.trials[n]) in hidden:
+            trial = two.regression.trials[n]
+            (size,) = trial.departures(fit.shares[at] * fit.scale[at])
+            assert size == pytest.approx(hidden[label(trial)], rel=0.25)
+    assert len(shares)
+
+
+def told(two, proof):
+    """The report, by the linear model."""
+    left = two.regression.solve(proof.proved, proof.bench.fit.whitening).residual
+    return report_of(two, proof, (left, proof.bench.residual(proof.proved)))
+
+
+def rates(draws: int, count: int) -> tuple[int, int, int]:
+    """False and true names that are proved, and hidden ones, over draws."""
+    wrong = right = hid = 0
+    for seed in range(draws):
+        hidden = drawn(np.random.default_rng(100 + seed), count) if count else {}
+        names, _ = found(halves(PLANT, hidden, 50 + seed))
+        wrong += len(names - set(hidden))
+        right += len(names & set(hidden))
+        hid += len(hidden)
+    return wrong, right, hid
+
+
+def test_nothing_is_proved_where_nothing_is_hidden():
+    wrong, _, _ = rates(6, 0)
+    assert wrong <= 1
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("count", [0, 3, 6])
+def test_the_false_discovery_rate_is_kept_over_draws(count):
+    wrong, right, hid = rates(40, count)
+    # three sd of a binomial above the rate
+    allowed = FALSE_SHARE * max(right + wrong, 40)
+    assert wrong <= allowed + 3.0 * np.sqrt(allowed)
+    assert right >= 0.85 * hid
+
+
+def test_a_twin_is_a_stand_in_and_takes_the_firm_name_away():
+    plant = Linear((*KINDS, "twin"))
+    two = halves(plant, {"viscous@a:size": 0.5, "coulomb@b:size": 0.6}, 4)
+    names, proof = found(two)
+    others = stand_ins(proof)
+    trials = two.regression.trials
+    like = {trials[n].cause.label: {trials[k].cause.label for k in ks} for n, ks in others.items()}
+    pair = {"viscous@a", "twin@a"}
+    (kept,) = pair & {name.removesuffix(":size") for name in names}
+    assert like[kept] >= pair - {kept}
+    report = told(two, proof)
+    firm = {one.label: one.firm for one in report.proved}
+    assert not firm[kept]
+    assert firm["coulomb@b"]
+    apart = [set(one.names) for one in inseparable(proof, others)]
+    assert any(pair <= names for names in apart)
+
+
+def test_the_report_says_what_each_takes_and_what_is_left():
+    two = halves(PLANT, {"coulomb@a:size": 0.8}, 7)
+    _, proof = found(two)
+    report = told(two, proof)
+    (one,) = [p for p in report.proved if p.label == "coulomb@a"]
+    before, after = one.takes["torque.a"]
+    assert before > 2.0 * after
+    assert set(one.takes) == {"torque.a"}
+    left = report.left["torque.a"]
+    assert left.rms == pytest.approx(after)
+    assert left.rms == pytest.approx(0.1, rel=0.3)  # the hidden model error
+    assert left.noise == pytest.approx(PLANT.noise)
+    assert report.false_discovery_rate == FALSE_SHARE
+    assert report.tested >= len(report.proved)
+
+
+def test_a_law_that_the_library_lacks_is_seen_in_what_is_left_and_no_name_is_firm_there():
+    lacking = Linear(tuple(k for k in KINDS if k not in ("harmonic", "drag")))
+    world = {"harmonic@a:size": 0.7, "viscous@a:size": 0.5}
+    one, two = (seen(lacking, recorded(PLANT, world, s, 0.02)) for s in (11, 12))
+    both = halves_at(one, two, one.runs.origin, lacking.hypotheses)
+    _, proof = found(both)
+    report = told(both, proof)
+    assert "q.1" in report.left["torque.a"].laws
+    about = [p for p in report.proved if p.label in ("spring@a", "offset@a")]
+    assert not any(p.firm for p in about)
+
+
+def test_a_linear_cause_has_one_trial_and_a_bent_one_has_one_for_each_size():
+    plant = Linear(("viscous", "gap"))
+    world = seen(plant, recorded(plant, {}, 1))
+    trials, columns = trials_at(world.runs, world.runs.origin, plant.hypotheses)
+    kinds = [t.cause.label for t in trials]
+    assert kinds.count("viscous@a") == 1
+    assert kinds.count("gap@a") > 2
+    assert all(column.shape == (1, 900, 2) for column in columns)
+
+
+def test_a_trial_stands_for_the_same_cause_before_and_after_it_is_fitted():
+    world = seen(PLANT, recorded(PLANT, {}, 1))
+    cause = next(h for h in PLANT.hypotheses if h.label == "viscous@a")
+    trial = Trial(cause, (0.7,))
+    there = world.runs.depart(world.runs.origin, world.runs.indices(cause), np.array([0.3]))
+    (one,) = columns_of(world.runs, world.runs.origin, [trial])
+    (two,) = columns_of(world.runs, there, [trial])
+    assert np.allclose(one, two, atol=1e-5)
+
+
+def test_a_record_is_split_into_stretches_that_share_no_row():
+    world = seen(PLANT, recorded(PLANT, {}, 1))
+    one, two = split(world)
+    assert not np.any(one.runs.kept & two.runs.kept)
+    assert np.all(one.runs.kept | two.runs.kept)
+    both = halves_at(one, two, one.runs.origin, PLANT.hypotheses)
+    assert len(both.held.own) == 0
+    assert both.regression.half.columns is both.held.columns
+
+
+def test_a_split_record_proves_what_is_hidden_in_it():
+    hidden = {"coulomb@a:size": 0.8, "viscous@b:size": 0.4}
+    one, two = split(seen(PLANT, recorded(PLANT, hidden, 5)))
+    names, _ = found(halves_at(one, two, one.runs.origin, PLANT.hypotheses))
+    assert set(hidden) <= names
+
+
+def test_rows_without_a_measurement_change_no_proof():
+    """A spike in a hole is as if it were not there."""
+    record = recorded(PLANT, {"coulomb@a:size": 0.8}, 21)
+    torque = record["torque"].copy()
+    torque[300:320, 0] = np.nan
+    holed = replace(record, signals={**record.signals, "torque": torque})
+    one, two = seen(PLANT, holed), seen(PLANT, recorded(PLANT, {"coulomb@a:size": 0.8}, 22))
+    names, _ = found(halves_at(one, two, one.runs.origin, PLANT.hypotheses))
+    assert "coulomb@a:size" in names

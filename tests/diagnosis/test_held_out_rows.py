@@ -1,0 +1,25 @@
+"""Rows without a measurement count for no held-out error."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from toy import QUICK, SD, Toy, programme, record
+
+from ves_twin.diagnosis.diagnose import diagnose
+
+
+def test_held_out_rms_counts_measured_rows_only():
+    """The line across a hole is off by the whole motion; that is nobody's error."""
+    hidden = {"friction.size": 0.1}
+    once = record(np.random.default_rng(1), hidden, spread=0.0)
+    other = record(np.random.default_rng(2), hidden, spread=0.0, fed=programme(9))
+    out = other["out"].copy()
+    out[200:360] = np.nan
+    holed = replace(other, signals={**other.signals, "out": out})
+    verdict = diagnose(Toy(), [once], held_out=[holed], settings=QUICK)
+    for channel, sd in enumerate(SD):
+        _, after = verdict.gain.errors[f"out.{channel}"]
+        assert after == pytest.approx(sd, rel=0.5)

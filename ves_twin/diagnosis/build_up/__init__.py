@@ -1,0 +1,1 @@
+"""Building up: as many causes as held-out data prove, against noise and model error."""

@@ -1,0 +1,121 @@
+"""halves_at: the fitted and the held-out half about a point, with every trial's columns."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from ves_twin.core.types import FloatArray, SingleArray
+from ves_twin.diagnosis.build_up.regression import Half, Regression
+from ves_twin.diagnosis.build_up.trials import Trial, columns_of, trials_at
+from ves_twin.diagnosis.forward import Hypothesis
+from ves_twin.diagnosis.linearise import Linearisation, linearise
+from ves_twin.diagnosis.preprocess import Dataset
+from ves_twin.diagnosis.runs import Progress, Runs, silent
+
+STRETCHES = 10
+"""Stretches that a record is cut into where nothing else is held out, every second one for proof:
+five of each is the least that a test over stretches can use."""
+
+
+@dataclass(frozen=True)
+class Halves:
+    """A fitted half as a regression, and the held-out half beside it."""
+
+    regression: Regression
+    held: Half
+
+
+def halves_at(
+    fitted: Dataset,
+    held: Dataset,
+    point: FloatArray,
+    causes: Sequence[Hypothesis],
+    present: Sequence[Trial] = (),
+    progress: Progress = silent,
+) -> Halves:
+    """Both halves, linear about a point.
+
+    Args:
+        fitted: recordings that sizes come from.
+        held: recordings that they are judged on.
+        point: departures in the fitted recordings (coordinates,).
+        causes: the library.
+        present: trials that are at work at the point.
+        progress: told how far it is.
+    """
+    runs = fitted.runs
+    trials, columns = trials_at(runs, point, causes, present, progress)
+    there = carried_point(runs, held.runs, point)
+    same = held.runs.programmes is runs.programmes
+    others = columns if same else columns_of(held.runs, there, trials, progress)
+    mine = _half(fitted, point, trials, columns, present, same)
+    yours = _half(held, there, trials, others, present, same)
+    return Halves(Regression(mine, trials), yours)
+
+
+def split(seen: Dataset) -> tuple[Dataset, Dataset]:
+    """Every second stretch of a record to fit, the others held out: rows of the other are holes."""
+    parts: tuple[list[np.ndarray], list[np.ndarray]] = ([], [])
+    for k, rows in enumerate(seen.runs.slices):
+        count = rows.stop - rows.start
+        first = (np.arange(count) * STRETCHES // count) % 2 == 0
+        old = seen.runs.holes[k] if seen.runs.holes else np.zeros((count, 1), bool)
+        for part, used in zip(parts, (first, ~first), strict=True):
+            part.append(old | ~np.repeat(used[:, None], seen.measured.shape[1], axis=1))
+    return (
+        replace(seen, runs=replace(seen.runs, holes=tuple(parts[0]))),
+        replace(seen, runs=replace(seen.runs, holes=tuple(parts[1]))),
+    )
+
+
+def carried_point(runs: Runs, other: Runs, point: FloatArray) -> FloatArray:
+    """A point in other recordings: what is drawn anew for each is nominal there."""
+    if other.programmes is runs.programmes:
+        return point
+    shared = {
+        axis.parameter.name: point[i]
+        for i, axis in enumerate(runs.coordinates)
+        if axis.recording == -1
+    }
+    return np.array([shared.get(axis.parameter.name, 0.0) for axis in other.coordinates])
+
+
+def _half(
+    seen: Dataset,
+    point: FloatArray,
+    trials: Sequence[Trial],
+    columns: Sequence[SingleArray],
+    present: Sequence[Trial],
+    same: bool,
+) -> Half:
+    """What is to be explained: measured less predicted, with what is at work put back."""
+    runs = seen.runs
+    local = linearise(runs, point)
+    target = np.asarray(seen.measured - local.prediction, float)
+    at_work = {trial.cause.label: trial for trial in present}
+    moved = np.zeros(len(runs.coordinates), bool)
+    for trial, column in zip(trials, columns, strict=True):
+        if at_work.get(trial.cause.label) == trial:
+            target = target + column.sum(axis=0)
+            moved[runs.indices(trial.cause)] = True
+    pull = np.where(moved[runs.nuisances], 0.0, point[runs.nuisances] / runs.sd[runs.nuisances])
+    target = np.asarray(target + np.tensordot(pull, local.columns[:-1], axes=1), float)
+    return _sorted(seen, local, target, columns, same)
+
+
+def _sorted(
+    seen: Dataset,
+    local: Linearisation,
+    target: FloatArray,
+    columns: Sequence[SingleArray],
+    same: bool,
+) -> Half:
+    """Nuisances that both halves share first, then those of single recordings."""
+    runs = seen.runs
+    own = np.array([runs.coordinates[int(i)].recording != -1 for i in runs.nuisances], bool)
+    own = own & (not same)
+    shared = np.concatenate([local.columns[:-1][~own], local.columns[-1:]])
+    return Half(runs, target, shared, local.columns[:-1][own], columns)

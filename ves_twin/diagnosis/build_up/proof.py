@@ -1,0 +1,249 @@
+"""prove: which chosen trials predict held-out rows better, each by itself, beside all others."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import numpy as np
+
+from ves_twin.core.types import BoolArray, FloatArray, IntArray
+from ves_twin.diagnosis.build_up.discrepancy import apart, carried
+from ves_twin.diagnosis.build_up.paired import Difference, loss, paired
+from ves_twin.diagnosis.build_up.regression import Half, LinearFit, Regression
+from ves_twin.diagnosis.metric import Metric
+from ves_twin.diagnosis.whitening import Whitening
+
+FALSE_SHARE = 0.05
+"""False-discovery rate over everything that was put to proof."""
+
+AGAIN = 0.5
+"""Share of that rate at which a trial that was dropped may come back: dropping went one by one."""
+
+ACTS = 0.05
+"""Share of its strongest channel's part from which a trial counts as acting on a channel."""
+
+
+@dataclass(frozen=True)
+class Bench:
+    """Fits of any subset of trials to the fitted half, told on the held-out half.
+
+    Sizes are of the fitted half; what is drawn anew for each held-out recording is taken off there
+    in every subset alike. The discrepancy is held, so that a trial that is taken out does not pass
+    for more of it; channels are judged one by one.
+
+    Attributes:
+        fit: of all trials of the bench, on the fitted half.
+        held: the held-out half.
+        regression: of the fitted half.
+    """
+
+    fit: LinearFit
+    held: Half
+    regression: Regression
+
+    @cached_property
+    def own_colour(self) -> Whitening:
+        """The discrepancy of each channel by itself, on the held-out half."""
+        return apart(carried(self.fit.whitening, self.held.runs))
+
+    @cached_property
+    def _told(self) -> tuple[FloatArray, FloatArray]:
+        """Held-out design (rows, c, k) and target (rows, c), whitened; own nuisances taken off."""
+        held, width = self.held, len(self.held.runs.columns)
+        whitening = self.own_colour
+        columns = [held.shared, *(held.columns[n] for n in self.fit.chosen)]
+        design = whitening.apply(np.concatenate(columns)).T
+        scale = np.delete(self.fit.scale, self._own)
+        both = np.column_stack([design * scale, whitening.apply(held.target.astype(np.float32))])
+        if len(held.own):
+            unit = np.repeat(self._unit[None], len(both) // width, axis=0).ravel()
+            metric = Metric(whitening.apply(held.own).T / unit[:, None])
+            both = metric.project(both / unit[:, None]) * unit[:, None]
+        both = both.reshape(-1, width, both.shape[1])
+        return both[..., :-1], both[..., -1]
+
+    @cached_property
+    def _own(self) -> IntArray:
+        """Columns of the fit that belong to single fitted recordings."""
+        first = len(self.regression.half.shared)
+        return np.arange(first, first + len(self.regression.half.own))
+
+    @cached_property
+    def _unit(self) -> FloatArray:
+        """Sd of the innovations of each channel on the fitted half (c,)."""
+        whitening = apart(self.fit.whitening)
+        width = len(self.held.runs.columns)
+        inner = whitening.apply(self.fit.residual.astype(np.float32)).reshape(-1, width)
+        count = whitening.freedom.reshape(-1, width).sum(axis=0)
+        return np.asarray(np.sqrt(np.sum(inner**2, axis=0) / np.maximum(count, 1.0)) + 1e-30)
+
+    @cached_property
+    def whole(self) -> BoolArray:
+        """Held-out samples that count (rows, c)."""
+        return self.own_colour.freedom.reshape(-1, len(self.held.runs.columns)) > 0.0
+
+    @cached_property
+    def pieces(self) -> IntArray:
+        """Number of the contiguous stretch of each held-out sample (rows,)."""
+        any_kept = np.asarray(self.whole.any(axis=1))
+        numbers: list[IntArray] = []
+        start = 0
+        for k, block in enumerate(self.own_colour.times()):
+            rows = any_kept[start : start + len(block)]
+            steps = np.cumsum(np.append(0, np.abs(np.diff(rows.astype(int)))))
+            numbers.append(steps + (numbers[-1][-1] + 1 if k and len(numbers[-1]) else 0))
+            start += len(block)
+        return np.concatenate(numbers)
+
+    @cached_property
+    def places(self) -> dict[int, IntArray]:
+        """Columns of each trial in the fit."""
+        return self.regression.places(self.fit.chosen)
+
+    def subset(
+        self, trials: Sequence[int], of: Sequence[int] | None = None
+    ) -> tuple[IntArray, FloatArray]:
+        """Columns of a subset with all nuisances, and their amplitudes on the fitted half.
+
+        Args:
+            trials: the subset.
+            of: a larger one beside which amplitudes are fitted; the subset itself if None.
+        """
+        first = len(self.regression.half.shared) + len(self.regression.half.own)
+        parts = [np.arange(first), *(self.places[n] for n in (trials if of is None else of))]
+        at = np.concatenate(parts).astype(int)
+        matrix = self.fit.hessian[np.ix_(at, at)]
+        shares = np.linalg.solve(matrix, self.fit.gradient[at])
+        kept = np.concatenate([np.arange(first), *(self.places[n] for n in trials)]).astype(int)
+        amplitude = np.zeros(len(self.fit.scale))
+        amplitude[at] = shares
+        return kept, amplitude[kept]
+
+    def innovations(self, trials: Sequence[int], of: Sequence[int] | None = None) -> FloatArray:
+        """What a subset leaves of the held-out rows (rows, c); arguments as of `subset`."""
+        at, shares = self.subset(trials, of)
+        kept = ~np.isin(at, self._own)
+        every = np.setdiff1d(np.arange(len(self.fit.scale)), self._own)
+        design, target = self._told
+        where = np.searchsorted(every, at[kept])
+        return np.asarray(target - design[..., where] @ shares[kept])
+
+    def residual(self, trials: Sequence[int]) -> FloatArray:
+        """What a subset leaves of the held-out channels, in their units, own nuisances unfitted."""
+        at, shares = self.subset(trials)
+        amplitudes = np.zeros(len(self.fit.scale))
+        amplitudes[at] = shares
+        amplitudes = np.delete(amplitudes * self.fit.scale, self._own)
+        columns = [self.held.shared, *(self.held.columns[n] for n in self.fit.chosen)]
+        return self.held.target - np.tensordot(amplitudes, np.concatenate(columns), axes=1)
+
+    def bare(self, trials: Sequence[int]) -> FloatArray:
+        """Mean square that a subset leaves of each held-out channel, of its level (c,)."""
+        return np.asarray(np.square(self.held.rms(self.residual(trials)) / self.regression.level))
+
+    def scale(self, trials: Sequence[int]) -> FloatArray:
+        """Robust scale of the innovations that a subset leaves (c,)."""
+        left = np.where(self.whole, self.innovations(trials), np.nan)
+        return np.asarray(np.nanmedian(np.abs(left), axis=0) / 0.6745 + 1e-30)
+
+    def acts(self, trial: int) -> BoolArray:
+        """Channels on which a trial acts (c,)."""
+        half = self.held
+        parts = [half.rms(column) / self.regression.level for column in half.columns[trial]]
+        size = np.sqrt(np.mean(np.square(parts), axis=0))
+        return np.asarray(size > ACTS * np.max(size))
+
+    def compared(self, trial: int, without: FloatArray, beside: FloatArray) -> Difference:
+        """Paired test of losses (rows, c) on the channels where a trial acts."""
+        counted = self.whole & self.acts(trial)
+        rows = counted.any(axis=1)
+        difference = np.where(counted, without - beside, 0.0).sum(axis=1)
+        return paired(difference[rows], self.pieces[rows])
+
+
+@dataclass(frozen=True)
+class Proof:
+    """What held-out rows prove.
+
+    Attributes:
+        proved: trials, in the order in which they were chosen.
+        differences: paired test of each of them, all others beside.
+        dropped: trials that were put to proof and not proved, with p when they went.
+        tested: trials that were put to proof in all.
+        bench: with everything that was put to proof.
+    """
+
+    proved: tuple[int, ...]
+    differences: dict[int, Difference]
+    dropped: dict[int, float]
+    tested: int
+    bench: Bench
+
+
+def prove(regression: Regression, held: Half, chosen: Sequence[int], more: int = 0) -> Proof:
+    """Drop the least proved trial until the false-discovery rate is kept by all that stay.
+
+    Each is judged by its own paired improvement of held-out rows, all others refitted without it.
+
+    Source: Benjamini and Hochberg 1995, over all that were put to proof; dropping one by one is
+    outside their theorem, so that the rate is checked by drawing (tests, the workshop suite).
+
+    Args:
+        regression: of the fitted half.
+        held: the held-out half.
+        chosen: trials that are put to proof.
+        more: trials that were put to proof before, which count for the rate.
+    """
+    tested = len(chosen) + more
+    kept, dropped = list(chosen), dict[int, float]()
+    back: list[int] | None = None
+    whole = Bench(regression.fit(chosen), held, regression)
+    bench = whole
+    while True:
+        found = _each(bench, kept)
+        worst = max(kept, key=lambda n: found[n].p, default=None)
+        if worst is not None and found[worst].p > FALSE_SHARE * len(kept) / max(tested, 1):
+            kept.remove(worst)
+            dropped[worst] = found[worst].p
+        else:
+            back = list(dropped) if back is None else back
+            again = _again(bench, kept, back, tested)
+            if again is None:
+                return Proof(tuple(kept), found, dropped, tested, whole)
+            back.remove(again)
+            kept.append(again)
+            del dropped[again]
+        bench = replace(whole, fit=regression.solve(kept, whole.fit.whitening))
+
+
+def _again(bench: Bench, kept: Sequence[int], back: Sequence[int], tested: int) -> int | None:
+    """Of those that were dropped the one that held-out rows ask for most now, if they do."""
+    if not back:
+        return None
+    wider = replace(bench, fit=bench.regression.solve([*kept, *back], bench.fit.whitening))
+    p = {n: _each(wider, [*kept, n])[n].p for n in back}
+    best = min(back, key=lambda n: p[n])
+    return best if p[best] <= AGAIN * FALSE_SHARE * (len(kept) + 1) / tested else None
+
+
+def _each(bench: Bench, kept: Sequence[int]) -> dict[int, Difference]:
+    """Paired tests of all, each beside the others, by the less sure of two.
+
+    The others refitted without it: it must be needed. The others as they are: held-out rows must
+    show it, or a cause that has gone there would be proved by how badly the others mimic it. And
+    the bare error must not grow: innovations weigh slow error lightly (a spring, the damper).
+    """
+    scale = bench.scale(kept)
+    beside = loss(bench.innovations(kept), scale)
+    bare = bench.bare(kept)
+    found = {}
+    for n in kept:
+        rest, acts = [k for k in kept if k != n], bench.acts(n)
+        refitted, plain = (bench.innovations(rest, of) for of in (None, kept))
+        tests = [bench.compared(n, loss(e, scale), beside) for e in (refitted, plain)]
+        told = replace(tests[0], p=max(test.p for test in tests))
+        grows = np.sum(bench.bare(rest)[acts]) <= np.sum(bare[acts])
+        found[n] = replace(told, p=1.0) if grows else told
+    return found

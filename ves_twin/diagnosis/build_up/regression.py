@@ -1,0 +1,226 @@
+"""Regression: sizes of any set of trials against noise and model error, on one half of the data."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from ves_twin.core.types import BoolArray, FloatArray, IntArray, SingleArray
+from ves_twin.diagnosis.build_up.discrepancy import discrepancy
+from ves_twin.diagnosis.build_up.trials import Trial
+from ves_twin.diagnosis.runs import Runs
+from ves_twin.diagnosis.whitening import Whitening
+
+WIDE = 5.0
+"""Prior sd of a cause's contribution, in rms of everything that is to be explained: wide enough to
+leave sizes alone, narrow enough to keep collinear columns apart from overflow."""
+
+ROUNDS = 3
+"""Times that the discrepancy is learnt anew from what a fit leaves; it moves sizes by less than a
+hundredth of their sd then (TX40)."""
+
+RIDGE = 1e-3
+"""Prior weight while nothing is known of the discrepancy, in rows."""
+
+
+@dataclass(frozen=True)
+class Half:
+    """Recordings with what is to be explained, and what explains.
+
+    Attributes:
+        runs: of the recordings.
+        target: measured less predicted without any cause (rows, c).
+        shared: change for one sd of each nuisance that both halves have, last the step's (s, rows,
+            c).
+        own: the same of what is drawn anew for each recording (o, rows, c).
+        columns: of each trial (width, rows, c).
+    """
+
+    runs: Runs
+    target: FloatArray
+    shared: SingleArray
+    own: SingleArray
+    columns: Sequence[SingleArray]
+
+    @cached_property
+    def kept(self) -> BoolArray:
+        """Rows that were measured (rows, c)."""
+        return self.runs.kept
+
+    @property
+    def nuisances(self) -> SingleArray:
+        """All nuisances, the shared ones first."""
+        return np.concatenate([self.shared, self.own])
+
+    def rms(self, rows: FloatArray) -> FloatArray:
+        """Of each channel, where it was measured (c,)."""
+        squares = np.where(self.kept, np.square(rows, dtype=float), 0.0)
+        return np.asarray(np.sqrt(squares.sum(axis=0) / np.maximum(self.kept.sum(axis=0), 1)))
+
+
+@dataclass(frozen=True)
+class LinearFit:
+    """Most probable amplitudes of chosen trials and nuisances.
+
+    Attributes:
+        chosen: numbers of the trials.
+        whitening: the discrepancy that this fit leaves.
+        scale: sd of each column's prior (k,).
+        shares: amplitudes in those sd, nuisances first (k,).
+        hessian: X'X + 1 in those sd (k, k).
+        gradient: X'y (k,).
+        samples: whitened samples that count.
+        residual: (rows, c).
+    """
+
+    chosen: tuple[int, ...]
+    whitening: Whitening
+    scale: FloatArray
+    shares: FloatArray
+    hessian: FloatArray
+    gradient: FloatArray
+    samples: float
+    residual: FloatArray
+
+
+@dataclass(frozen=True)
+class Regression:
+    """Linear fits on one half.
+
+    Attributes:
+        half: the data.
+        trials: what may be chosen.
+    """
+
+    half: Half
+    trials: Sequence[Trial]
+
+    @cached_property
+    def level(self) -> FloatArray:
+        """Rms of what is to be explained in each channel (c,), declared noise at least."""
+        channels = [self.half.runs.forward.channels[c] for c in self.half.runs.columns]
+        sds = np.array([channel.sd for channel in channels])
+        return np.asarray(np.maximum(self.half.rms(self.half.target), sds))
+
+    @cached_property
+    def prior(self) -> list[FloatArray]:
+        """Prior sd of the amplitudes of each trial (width,)."""
+        found = []
+        for columns in self.half.columns:
+            share = [self.half.rms(column) / self.level for column in columns]
+            size = np.sqrt(np.mean(np.square(share), axis=1))
+            found.append(WIDE / np.maximum(size, 1e-9))
+        return found
+
+    def design(self, chosen: Sequence[int]) -> tuple[SingleArray, FloatArray]:
+        """Columns (k, rows, c) of nuisances and trials, and the prior sd of each."""
+        nuisances = self.half.nuisances
+        columns = [nuisances, *(self.half.columns[n] for n in chosen)]
+        scale = [np.ones(len(nuisances)), *(self.prior[n] for n in chosen)]
+        return np.concatenate(columns), np.concatenate(scale)
+
+    def places(self, chosen: Sequence[int]) -> dict[int, IntArray]:
+        """Where each chosen trial's columns stand in the design."""
+        found, start = {}, len(self.half.shared) + len(self.half.own)
+        for n in chosen:
+            width = self.trials[n].width
+            found[n] = np.arange(start, start + width)
+            start += width
+        return found
+
+    def whitened(self, whitening: Whitening, columns: SingleArray) -> FloatArray:
+        """Columns (samples, k)."""
+        return whitening.apply(columns).T
+
+    def fit(
+        self, chosen: Sequence[int], start: Whitening | None = None, rounds: int = ROUNDS
+    ) -> LinearFit:
+        """Amplitudes and the discrepancy that they leave, in turn.
+
+        Args:
+            chosen: numbers of trials.
+            start: discrepancy to begin with; plain squares if None.
+            rounds: how often it is learnt anew.
+        """
+        columns, scale = self.design(chosen)
+        target = self.half.target
+        whitening, residual = start, target
+        if whitening is None:
+            residual = self._plainly(columns, scale)
+        for _ in range(rounds):
+            whitening = discrepancy(self.half.runs, residual)
+            found = self.solve(chosen, whitening)
+            residual = found.residual
+        return self.solve(chosen, whitening) if rounds == 0 and whitening else found
+
+    def solve(self, chosen: Sequence[int], whitening: Whitening) -> LinearFit:
+        """Amplitudes under a given discrepancy."""
+        columns, scale = self.design(chosen)
+        design = self.whitened(whitening, columns) * scale
+        target = whitening.apply(self.half.target.astype(np.float32))
+        hessian = design.T @ design + np.eye(len(scale))
+        gradient = design.T @ target
+        shares = np.asarray(np.linalg.solve(hessian, gradient), float)
+        residual = self.half.target - np.tensordot(shares * scale, columns, axes=1)
+        samples = float(np.sum(whitening.freedom))
+        return LinearFit(
+            tuple(chosen), whitening, scale, shares, hessian, gradient, samples, residual
+        )
+
+    def plain_error(self, chosen: Sequence[int]) -> float:
+        """Sum over channels of the log of what plain least squares leave, in their units."""
+        left = self._plainly(*self.design(chosen))
+        return float(np.sum(np.log(np.maximum(self.half.rms(left), 1e-30))))
+
+    def _plainly(self, columns: SingleArray, scale: FloatArray) -> FloatArray:
+        """What plain least squares leave, each channel in units of what is to be explained."""
+        kept = self.half.kept
+        weighed = np.where(kept, columns / self.level, 0.0).reshape(len(columns), -1).T * scale
+        target = np.where(kept, self.half.target / self.level, 0.0).ravel()
+        hessian = weighed.T @ weighed + RIDGE * np.eye(len(scale))
+        shares = np.linalg.solve(hessian, weighed.T @ target)
+        return np.asarray(self.half.target - np.tensordot(shares * scale, columns, axes=1))
+
+    def gains(self, fit: LinearFit, others: Sequence[int]) -> Gains:
+        """Chi^2 that each of other trials would take beside a fit, under its discrepancy."""
+        columns, scale = self.design(fit.chosen)
+        inside = self.whitened(fit.whitening, columns) * scale
+        fresh = np.concatenate([self.half.columns[n] for n in others])
+        weight = np.concatenate([self.prior[n] for n in others])
+        outside = self.whitened(fit.whitening, fresh) * weight
+        left = fit.whitening.apply(fit.residual.astype(np.float32))
+        cross = outside.T @ inside
+        gram = outside.T @ outside - cross @ np.linalg.solve(fit.hessian, cross.T)
+        slope = outside.T @ left  # the fit itself is at its optimum
+        ends = np.cumsum([0, *(self.trials[n].width for n in others)])
+        where = {n: np.arange(ends[k], ends[k + 1]) for k, n in enumerate(others)}
+        wrong = {n for n in others if self.trials[n].positive and slope[where[n][0]] < 0.0}
+        return Gains(gram, slope, where, frozenset(wrong))
+
+
+@dataclass(frozen=True)
+class Gains:
+    """What trials would take beside a fit.
+
+    Attributes:
+        gram: of their whitened columns, less what the fit can explain (m, m).
+        slope: of chi^2 along each, halved (m,).
+        where: columns of each trial.
+        wrong: trials that would enter with a sign that no machine has.
+    """
+
+    gram: FloatArray
+    slope: FloatArray
+    where: dict[int, IntArray]
+    wrong: frozenset[int]
+
+    def of(self, *trials: int) -> float:
+        """Chi^2 that trials take together; nothing where a sign is wrong."""
+        if self.wrong.intersection(trials):
+            return 0.0
+        at = np.concatenate([self.where[n] for n in trials])
+        matrix = self.gram[np.ix_(at, at)] + np.eye(len(at))
+        return float(self.slope[at] @ np.linalg.solve(matrix, self.slope[at]))

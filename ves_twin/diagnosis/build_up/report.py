@@ -1,0 +1,117 @@
+"""report_of: what a proof comes to, in names, channels and units."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from ves_twin.core.types import FloatArray
+from ves_twin.diagnosis.build_up.halves import Halves
+from ves_twin.diagnosis.build_up.inseparable import inseparable
+from ves_twin.diagnosis.build_up.leftover_laws import Law, by_channel, laws_left, same_motion
+from ves_twin.diagnosis.build_up.proof import FALSE_SHARE, Bench, Proof
+from ves_twin.diagnosis.build_up.regression import Half
+from ves_twin.diagnosis.build_up.result import BuildUp, Left, Proved
+from ves_twin.diagnosis.build_up.stand_ins import stand_ins
+
+ALONG = 0.3
+"""Correlation from which channels are said to go along with what another one leaves."""
+
+
+def report_of(halves: Halves, proof: Proof, ends: tuple[FloatArray, FloatArray]) -> BuildUp:
+    """Everything that is told of a proof, sizes excepted.
+
+    Args:
+        halves: both halves.
+        proof: what is proved.
+        ends: what the extended model leaves of the fitted and of the held-out half (rows, c).
+    """
+    regression = halves.regression
+    fit = regression.solve(proof.proved, proof.bench.fit.whitening)
+    bench = replace(proof.bench, fit=fit)
+    left = ends[1]
+    laws = laws_left(bench, *ends)
+    others = stand_ins(proof)
+    ranked = sorted(proof.proved, key=lambda n: proof.differences[n].p)
+    trials = regression.trials
+    together = inseparable(proof, others)
+    shared = {name for one in together for name in one.names}
+    proved = [_proved(bench, proof, n, others[n], laws, left) for n in ranked]
+    return BuildUp(
+        proved=tuple(replace(p, firm=p.firm and p.label not in shared) for p in proved),
+        tested=proof.tested,
+        false_discovery_rate=FALSE_SHARE,
+        dropped={trials[n].cause.label: p for n, p in proof.dropped.items()},
+        left=_left(bench, left, laws),
+        inseparable=together,
+    )
+
+
+def _proved(
+    bench: Bench, proof: Proof, trial: int, others: Sequence[int], laws: list[Law], left: FloatArray
+) -> Proved:
+    trials, half = bench.regression.trials, bench.held
+    change = bench.residual([n for n in proof.proved if n != trial])
+    without = left + change - bench.residual(proof.proved)
+    before, after = half.rms(without), half.rms(left)
+    names = _names(half)
+    acts = np.flatnonzero(bench.acts(trial))
+    own = max(acts, key=lambda c: before[c] - after[c])
+    motion = same_motion(bench.regression.half, trial, int(own))
+    ruled = any(law.channel == own and law.variable in motion for law in laws)
+    cause, difference = trials[trial].cause, proof.differences[trial]
+    return Proved(
+        effect=cause.effect,
+        target=cause.target,
+        parameters={},
+        p=difference.p,
+        blocks=difference.blocks,
+        takes={names[c]: (float(before[c]), float(after[c])) for c in acts},
+        firm=not others and not ruled,
+        acts_like=tuple(dict.fromkeys(trials[n].cause.label for n in others)),
+    )
+
+
+def _left(bench: Bench, left: FloatArray, laws: list[Law]) -> dict[str, Left]:
+    half, names = bench.held, _names(bench.held)
+    rms, first = half.rms(left), half.rms(half.target)
+    grid = half.runs.grids[0]
+    rows = half.kept.all(axis=1)
+    spread = left[rows] if np.count_nonzero(rows) > 2 else left
+    along = np.atleast_2d(np.corrcoef(spread.T))
+    found = {}
+    for c, name in enumerate(names):
+        channel = half.runs.forward.channels[half.runs.columns[c]]
+        noise = float(np.sqrt(grid.autocovariance(channel.sd, 0, channel.corner)[0]))
+        found[name] = Left(
+            rms=float(rms[c]),
+            before=float(first[c]),
+            unit=channel.unit,
+            noise=noise,
+            memory=_memory(spread[:, c]) * grid.step,
+            along={
+                names[k]: float(along[c, k])
+                for k in range(len(names))
+                if k != c and abs(along[c, k]) > ALONG
+            },
+            laws=by_channel(laws, c),
+        )
+    return found
+
+
+def _memory(column: FloatArray) -> float:
+    """Rows over which a column remembers itself: its integral time."""
+    centred = column - column.mean()
+    power = np.abs(np.fft.rfft(centred, 2 * len(centred))) ** 2
+    memory = np.fft.irfft(power)[: len(centred)]
+    memory = memory / max(float(memory[0]), 1e-30)
+    ends = np.flatnonzero(memory < 0.05)
+    stop = int(ends[0]) if len(ends) else len(memory)
+    return float(0.5 + np.sum(memory[1:stop]))
+
+
+def _names(half: Half) -> list[str]:
+    runs = half.runs
+    return [runs.forward.channels[c].name for c in runs.columns]

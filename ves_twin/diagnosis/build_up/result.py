@@ -1,0 +1,106 @@
+"""BuildUp: what held-out data prove of an extension, as it stands in verdict.json."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+
+@dataclass(frozen=True)
+class Size:
+    """A parameter's value and interval, counted from nominal; the interval counts model error."""
+
+    value: float
+    low: float
+    high: float
+    unit: str
+    nominal: float
+
+
+@dataclass(frozen=True)
+class Proved:
+    """One extension that is proved to predict better.
+
+    Attributes:
+        effect, target: what and where.
+        parameters: size of each.
+        p: probability of its held-out improvement where there is none, one-sided, all other
+            extensions beside it.
+        blocks: stretches of time that the improvement was compared on.
+        takes: rms error of each channel on held-out data without and with it, of the channels
+            where it acts.
+        firm: whether the name is the mechanism: no other cause does as well in its place, it is
+            known apart from the others, what is left shows no law of the same motion, and no
+            commissioning error explains it.
+        acts_like: causes that do as well in its place on held-out data.
+    """
+
+    effect: str
+    target: str
+    parameters: Mapping[str, Size]
+    p: float
+    blocks: int
+    takes: Mapping[str, tuple[float, float]]
+    firm: bool
+    acts_like: tuple[str, ...] = ()
+
+    @property
+    def label(self) -> str:
+        """effect@target."""
+        return f"{self.effect}@{self.target}"
+
+
+@dataclass(frozen=True)
+class Left:
+    """What stays of a channel on held-out data.
+
+    Attributes:
+        rms: of what is left, and of what was there before any extension [unit].
+        noise: declared noise on the analysis grid [unit].
+        memory: time over which what is left remembers itself [s].
+        along: channels that go along with it, with their correlations.
+        laws: what a smooth law of a fed-in signal, or of its rate, would still take of the square
+            on held-out data; those that pass the false-discovery rate.
+    """
+
+    rms: float
+    before: float
+    unit: str
+    noise: float
+    memory: float
+    along: Mapping[str, float] = field(default_factory=dict)
+    laws: Mapping[str, float] = field(default_factory=dict)
+
+
+@dataclass(frozen=True)
+class Inseparable:
+    """Extensions of which these recordings know only a combination.
+
+    Attributes:
+        names: effect@target of each.
+        ratio: how much worse the badly known combination is known than the well known one.
+    """
+
+    names: tuple[str, ...]
+    ratio: float
+
+
+@dataclass(frozen=True)
+class BuildUp:
+    """Everything that building up found.
+
+    Attributes:
+        proved: extensions, the surest first.
+        tested: how many were put to proof.
+        false_discovery_rate: that the proof keeps over those.
+        dropped: those that were put to proof in vain, with their p.
+        left: what stays, by channel.
+        inseparable: combinations of which only one is known.
+    """
+
+    proved: tuple[Proved, ...]
+    tested: int
+    false_discovery_rate: float
+    dropped: Mapping[str, float]
+    left: Mapping[str, Left]
+    inseparable: tuple[Inseparable, ...] = ()

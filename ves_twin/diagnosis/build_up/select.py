@@ -1,0 +1,208 @@
+"""Selector: which trials are worth a proof, on the fitted half: greedy, families, pairs."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from ves_twin.diagnosis.build_up.regression import Gains, LinearFit, Regression
+
+MOST = 60
+"""Trials that may be chosen: beyond that a record of any length is described, not explained."""
+
+PAIRED = 30
+"""Trials, by falling gain, of which every two are tried together."""
+
+
+@dataclass(frozen=True)
+class Selector:
+    """Forward selection against a discrepancy that is learnt anew after each step.
+
+    A trial of k columns enters where it takes more than k (ln n + 2 ln m) of chi^2, n samples and
+    m causes: the Bayesian information criterion, extended for the many that were looked at.
+
+    Source: Chen and Chen 2008, Extended Bayesian information criteria, Biometrika 95.
+
+    Attributes:
+        regression: on the fitted half.
+    """
+
+    regression: Regression
+
+    def run(self, begin: Sequence[int] = ()) -> list[int]:
+        """Chosen trials, each cause once at most.
+
+        Args:
+            begin: trials to begin with.
+        """
+        chosen = list(begin)
+        fit = self.regression.fit(chosen)
+        while len(chosen) < MOST:
+            more, there = self._next(chosen, fit)
+            if there is None:
+                break
+            chosen = self.swapped([*chosen, *more])
+            fit = self.regression.fit(chosen, there.whitening, 2)
+        return self.pruned(chosen, fit)
+
+    def best(self) -> list[list[int]]:
+        """The best single trial, and the best two together, of all."""
+        fit = self.regression.fit([])
+        rest = self._rest([])
+        if not rest:
+            return []
+        gains = self.regression.gains(fit, rest)
+        single = max(rest, key=gains.of)
+        pair = self._pair(gains, rest)
+        return [self.swapped(few) for few in ([single], list(pair or ())) if few]
+
+    def price(self, samples: float, width: int) -> float:
+        """Chi^2 that trials must take to enter."""
+        causes = len({trial.cause.label for trial in self.regression.trials})
+        return float(width * (np.log(samples) + 2.0 * np.log(max(causes, 1))))
+
+    def _rest(self, chosen: Sequence[int]) -> list[int]:
+        """Trials of causes that are not chosen yet."""
+        trials = self.regression.trials
+        used = {trials[n].cause.label for n in chosen}
+        return [n for n, trial in enumerate(trials) if trial.cause.label not in used]
+
+    def _next(self, chosen: list[int], fit: LinearFit) -> tuple[list[int], LinearFit | None]:
+        """The trials to add, and the fit with them; None where nothing is worth its price."""
+        rest = self._rest(chosen)
+        if not rest:
+            return [], None
+        regression, samples = self.regression, fit.samples
+        gains = regression.gains(fit, rest)
+        offers = [[max(rest, key=lambda n: gains.of(n) - self.price(samples, self._width([n])))]]
+        pair = self._pair(gains, rest)
+        offers += [list(pair)] if pair and self._synergy(gains, pair, offers[0]) else []
+        offers += self._families(gains, rest)
+        worth = [self._worth(gains, offer, samples) for offer in offers]
+        pick, top = offers[int(np.argmax(worth))], max(worth)
+        there = regression.fit([*chosen, *pick], fit.whitening, 2) if top > 0.0 else None
+        slow, by_slow = self._slow(chosen, fit, rest, pick if there else [])
+        if by_slow is not None:
+            limit = self._evidence(fit, 0)
+            if there is not None:
+                limit = max(limit, self._evidence(there, self._width(pick)))
+            if self._evidence(by_slow, self._width(slow)) > limit:
+                return slow, by_slow
+        return pick, there
+
+    def _slow(
+        self, chosen: list[int], fit: LinearFit, rest: list[int], pick: list[int]
+    ) -> tuple[list[int], LinearFit | None]:
+        """The best trial by plain squares, judged with the discrepancy that it leaves itself.
+
+        A level that is missing passes for slow discrepancy, whose whitening then hides it.
+        """
+        half, regression = self.regression.half, self.regression
+        weight = half.kept / np.maximum(half.rms(fit.residual), 1e-30)
+        left = fit.residual * weight
+        best, top = rest[0], -1.0
+        for n in rest:
+            columns = (half.columns[n] * weight).reshape(regression.trials[n].width, -1)
+            inner = columns @ left.ravel()
+            if regression.trials[n].positive and inner[0] < 0.0:
+                continue
+            gram = columns @ columns.T + np.diag(1.0 / np.square(regression.prior[n]))
+            score = float(inner @ np.linalg.solve(gram, inner))
+            if score > top:
+                best, top = n, score
+        if best in pick:
+            return [], None
+        return [best], regression.fit([*chosen, best], fit.whitening)
+
+    def _evidence(self, fit: LinearFit, width: int) -> float:
+        """Log evidence of a fit by its discrepancy's size, less the price of what was added."""
+        rows = fit.samples / len(fit.whitening.mixing[0])
+        _, size = np.linalg.slogdet(fit.whitening.mixing[0])
+        return float(rows * size - 0.5 * self.price(fit.samples, width))
+
+    def _width(self, trials: Sequence[int]) -> int:
+        return sum(self.regression.trials[n].width for n in trials)
+
+    def _worth(self, gains: Gains, offer: list[int], samples: float) -> float:
+        """Gain less price; a family was looked at once, however many members it has."""
+        width = self._width(offer)
+        if len(offer) < 3:
+            return gains.of(*offer) - self.price(samples, width)
+        once = self.price(samples, 1) - np.log(samples)
+        return float(gains.of(*offer) - width * np.log(samples) - once)
+
+    def _pair(self, gains: Gains, rest: list[int]) -> tuple[int, int] | None:
+        """The two trials of different causes that take most together."""
+        trials = self.regression.trials
+        likely = sorted(rest, key=gains.of, reverse=True)[:PAIRED]
+        pairs = [
+            (a, b)
+            for i, a in enumerate(likely)
+            for b in likely[i + 1 :]
+            if trials[a].cause.label != trials[b].cause.label
+        ]
+        return max(pairs, key=lambda pair: gains.of(*pair)) if pairs else None
+
+    @staticmethod
+    def _synergy(gains: Gains, pair: tuple[int, int], single: list[int]) -> bool:
+        """Whether two together take more than the best alone could announce twice over."""
+        return gains.of(*pair) > 2.0 * gains.of(*single)
+
+    def _families(self, gains: Gains, rest: list[int]) -> list[list[int]]:
+        """One kind of cause at every place, and all kinds at one place of couplings."""
+        trials = self.regression.trials
+        found = []
+        for effect in dict.fromkeys(trials[n].cause.effect for n in rest):
+            best: dict[str, int] = {}
+            for n in rest:
+                cause = trials[n].cause
+                if cause.effect != effect or gains.of(n) <= 0.0:
+                    continue
+                if cause.target not in best or gains.of(n) > gains.of(best[cause.target]):
+                    best[cause.target] = n
+            if len(best) > 2:
+                found.append(list(best.values()))
+        return found
+
+    def swapped(self, chosen: list[int]) -> list[int]:
+        """With the best variant of each cause in place of the one that was chosen, by plain error.
+
+        Whitened by a discrepancy, a friction with a wrong gap can pass for a right one with slow
+        error beside it (the damper: gaps of 1 and 6 mm).
+        """
+        trials, regression = self.regression.trials, self.regression
+        for place, n in enumerate(list(chosen)):
+            variants = [k for k, t in enumerate(trials) if t.cause.label == trials[n].cause.label]
+            if len(variants) < 2:
+                continue
+            rest = [k for k in chosen if k != n]
+            error = {k: regression.plain_error([*rest, k]) for k in variants}
+            chosen[place] = min(variants, key=lambda k: error[k])
+        return chosen
+
+    def pruned(self, chosen: list[int], fit: LinearFit) -> list[int]:
+        """Without trials that take less than ln n a column of chi^2 beside all others."""
+        regression = self.regression
+        chosen = self.swapped(list(chosen))
+        while chosen:
+            fit = regression.fit(chosen, fit.whitening, 2)
+            losses = losses_of(regression, fit)
+            worst = min(chosen, key=lambda n: losses[n])
+            if losses[worst] > np.log(fit.samples):
+                break
+            chosen.remove(worst)
+        return chosen
+
+
+def losses_of(regression: Regression, fit: LinearFit) -> dict[int, float]:
+    """Chi^2 a column that is lost where a chosen trial is taken out; -1 where its sign is wrong."""
+    inverse = np.linalg.inv(fit.hessian)
+    found = {}
+    for n, at in regression.places(fit.chosen).items():
+        shares = fit.shares[at]
+        value = float(shares @ np.linalg.solve(inverse[np.ix_(at, at)], shares)) / len(at)
+        wrong = regression.trials[n].positive and shares[0] < 0.0
+        found[n] = -1.0 if wrong else value
+    return found

@@ -1,0 +1,164 @@
+"""Trial: one way in which a cause may act, and trials_at: all of them about a point."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from ves_twin.core.types import FloatArray, SingleArray
+from ves_twin.diagnosis.forward import Hypothesis
+from ves_twin.diagnosis.runs import Progress, Runs, silent
+
+STRAIGHT = 0.01
+"""Relative change of a column between two sizes up to which a cause counts as linear: a tenth of
+the errors of size that model error leaves on any of the measured machines."""
+
+REACH = 0.8
+"""Share of its largest size at which a linear cause's column is computed."""
+
+SMALL = 0.04
+"""Share of its largest size at which that column is checked."""
+
+
+@dataclass(frozen=True)
+class Trial:
+    """A cause at sizes up to a factor: columns that are added with free amplitudes.
+
+    Attributes:
+        cause: of the library.
+        sizes: departures of its parameters at amplitude one (p,).
+        wide: whether each parameter has a column of its own; else one column for all together.
+        positive: whether only positive amplitudes are physical.
+    """
+
+    cause: Hypothesis
+    sizes: tuple[float, ...]
+    wide: bool = False
+    positive: bool = False
+
+    @property
+    def width(self) -> int:
+        """Columns."""
+        return len(self.sizes) if self.wide else 1
+
+    @property
+    def points(self) -> list[tuple[float, ...]]:
+        """Departures of its parameters, one for each column."""
+        if not self.wide:
+            return [self.sizes]
+        return [tuple(row) for row in np.diag(self.sizes)]
+
+    def departures(self, amplitudes: FloatArray) -> FloatArray:
+        """Departures of its parameters at amplitudes (width,)."""
+        return np.asarray(np.array(self.sizes) * amplitudes)
+
+
+def columns_of(
+    runs: Runs, point: FloatArray, trials: Sequence[Trial], progress: Progress = silent
+) -> list[SingleArray]:
+    """What each trial adds to the channels about a point: (width, rows, c) each.
+
+    A cause that has departures at the point is taken out first: its column runs from absent to
+    present, so that the same trial stands for it before and after it is fitted.
+
+    Args:
+        runs: of the recordings.
+        point: departures (coordinates,).
+        trials: whose columns are computed.
+        progress: told how far it is.
+    """
+    absent: dict[bytes, int] = {}
+    shifts: list[FloatArray] = []
+
+    def place(shift: FloatArray) -> int:
+        key = shift.tobytes()
+        if key not in absent:
+            absent[key] = len(shifts)
+            shifts.append(shift)
+        return absent[key]
+
+    pairs = []
+    for trial in trials:
+        where = runs.indices(trial.cause)
+        without = runs.depart(point, where, np.zeros(len(where)))
+        rows = []
+        for sizes in trial.points:
+            there = runs.depart(point, where, np.array(sizes))
+            rows.append((place(there), place(without)))
+        pairs.append(rows)
+    stacks = runs.many(shifts, progress, "what each cause would change")
+    return [np.stack([stacks[a] - stacks[b] for a, b in rows]) for rows in pairs]
+
+
+def trials_at(
+    runs: Runs,
+    point: FloatArray,
+    causes: Sequence[Hypothesis],
+    present: Sequence[Trial] = (),
+    progress: Progress = silent,
+) -> tuple[list[Trial], list[SingleArray]]:
+    """Every way each cause may act about a point, with its columns.
+
+    A cause whose columns at two sizes are proportional has one trial; one whose parameters add up
+    has a column for each; any other has a trial for each of its bank sizes.
+
+    Args:
+        runs: of the recordings.
+        point: departures (coordinates,).
+        causes: the library.
+        present: trials that are fitted at the point: kept as they are.
+        progress: told how far it is.
+    """
+    looked = [probe for cause in causes for probe in _probes(runs, cause)]
+    columns = columns_of(runs, point, looked, progress)
+    here = {trial.cause.label: trial for trial in present}
+    trials: list[Trial] = []
+    bent: list[Trial] = []
+    found: list[SingleArray] = []
+    for n, cause in enumerate(causes):
+        probes, shown = looked[3 * n : 3 * n + 3], columns[3 * n : 3 * n + 3]
+        linear = not cause.starts and _is_linear(probes, shown)
+        if linear and cause.label not in here:
+            trials.append(probes[0])
+            found.append(shown[0])
+        elif not linear:
+            sizes = [_within(runs, cause, row) for row in cause.departures()]
+            bent += [Trial(cause, row, positive=True) for row in dict.fromkeys(sizes)]
+        bent += [here[cause.label]] if cause.label in here else []
+    rest = columns_of(runs, point, bent, progress)
+    every, stacks = [*trials, *bent], [*found, *rest]
+    sound = [n for n, stack in enumerate(stacks) if np.all(np.isfinite(stack)) and np.any(stack)]
+    return [every[n] for n in sound], [stacks[n] for n in sound]
+
+
+def _probes(runs: Runs, cause: Hypothesis) -> tuple[Trial, Trial, Trial]:
+    """Large, small, and large with all parameters together: whether a cause is linear."""
+    sign = 1.0 if 1 in cause.signs else -1.0
+    largest = sign * np.array(cause.starts[0] if cause.starts else cause.largest)
+    wide, positive = len(largest) > 1 and not cause.starts, len(cause.signs) == 1
+    large, small = (_within(runs, cause, share * largest) for share in (REACH, SMALL))
+    return (
+        Trial(cause, large, wide, positive),
+        Trial(cause, small, wide, positive),
+        Trial(cause, large, False, positive),
+    )
+
+
+def _within(runs: Runs, cause: Hypothesis, sizes: FloatArray) -> tuple[float, ...]:
+    """Sizes within the bounds of the parameters."""
+    where = runs.indices(cause)
+    return tuple(np.clip(sizes, runs.low[where], runs.high[where]).tolist())
+
+
+def _is_linear(probes: Sequence[Trial], shown: Sequence[SingleArray]) -> bool:
+    """Whether columns follow their sizes, and those of several parameters add up."""
+    (large, small, _), (one, two, joint) = probes, shown
+    if not all(np.all(np.isfinite(stack)) for stack in shown) or 0.0 in small.sizes:
+        return False
+    ratio = np.array(large.sizes) / np.array(small.sizes)
+    factor = ratio[:, None, None] if large.wide else ratio[0]
+    size = STRAIGHT * float(np.linalg.norm(one))
+    follows = np.linalg.norm(one - factor * two) <= size
+    return bool(follows and np.linalg.norm(np.sum(one, axis=0) - joint[0]) <= size)

@@ -1,0 +1,122 @@
+"""proved_parts: extensions that were proved one by one, what is left, what cannot be separated."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+from ves_twin.core.quantity import UNSURE, digits, percent, quantity
+from ves_twin.diagnosis.build_up.result import Left, Proved
+from ves_twin.diagnosis.verdict import Verdict
+from ves_twin.report.diagnosis.words import spoken
+from ves_twin.report.html import Html, bullets, paragraph, section, table
+
+SHOWN = 3
+"""Channels of one extension that are told: those where it takes most."""
+
+
+def proved_parts(verdict: Verdict) -> list[Html]:
+    """Sections of a page; none where nothing was put to proof."""
+    if verdict.put_to_proof is None:
+        return []
+    parts = [section("Proved extensions", *_proved(verdict))]
+    if verdict.left:
+        parts.append(section("What is left of each channel", *_left(verdict.left)))
+    if verdict.inseparable:
+        parts.append(section("What cannot be separated", bullets(inseparable_sentences(verdict))))
+    return parts
+
+
+def proof_sentence(verdict: Verdict) -> str:
+    """How much was tried, and how sure all of it together is; empty where nothing was."""
+    if verdict.put_to_proof is None:
+        return ""
+    rate = percent(verdict.false_discovery_rate)
+    said = (
+        f"{verdict.put_to_proof} extensions were put to proof on held-out data and"
+        f" {len(verdict.proved)} predict better, at a false-discovery rate of {rate}."
+    )
+    if not verdict.proved:
+        return said
+    return (
+        f"{said} That an extension predicts better does not prove its name: only firm ones are"
+        " the mechanism, the others act like it."
+    )
+
+
+def standing_words(one: Proved) -> str:
+    """How sure a name is."""
+    if one.firm:
+        return "firm"
+    if one.acts_like:
+        return f"acts like it, or like {' or '.join(map(spoken, one.acts_like))}"
+    return "acts like it: what is left, a tolerance or another extension follows the same motion"
+
+
+def proved_line(one: Proved) -> str:
+    """An extension in one line of a terminal."""
+    sizes = ", ".join(
+        f"{quantity(s.value, s.unit)} ({quantity(s.low, s.unit)} to {quantity(s.high, s.unit)})"
+        for s in one.parameters.values()
+    )
+    return f"  {one.label:<36}{sizes}; {standing_words(one)}"
+
+
+def inseparable_sentences(verdict: Verdict) -> list[str]:
+    """Each combination by the names that take part in it."""
+    return [
+        f"{', '.join(map(spoken, one.names))}: only a combination of them is known; how they share"
+        f" it is known {one.ratio:.0f} times worse."
+        for one in verdict.inseparable
+    ]
+
+
+def _proved(verdict: Verdict) -> list[Html]:
+    parts = [paragraph(proof_sentence(verdict))]
+    if not verdict.proved:
+        return parts
+    head = ("extension", "size", "90 % interval", "error without and with it", "p", "name")
+    rows = [row for one in verdict.proved for row in _rows(one, verdict)]
+    return [*parts, table(head, rows)]
+
+
+def _rows(one: Proved, verdict: Verdict) -> list[tuple[str, ...]]:
+    ranked = sorted(one.takes.items(), key=lambda item: item[1][1] - item[1][0])[:SHOWN]
+    takes = "; ".join(
+        f"{name} {digits(before)} to {quantity(after, verdict.left[name].unit)}"
+        for name, (before, after) in ranked
+    )
+    rows: list[tuple[str, ...]] = []
+    for n, (name, size) in enumerate(one.parameters.items()):
+        label = spoken(one.label)
+        rows.append(
+            (
+                label if len(one.parameters) == 1 else f"{label}: {name}",
+                quantity(size.value, size.unit),
+                f"{quantity(size.low, size.unit)} to {quantity(size.high, size.unit)}",
+                takes if n == 0 else "",
+                f"{one.p:.1g}" if n == 0 else "",
+                standing_words(one) if n == 0 else "",
+            )
+        )
+    return rows
+
+
+def _left(left: Mapping[str, Left]) -> list[Html]:
+    head = ("channel", "before", "left", "noise", "it remembers", "goes along with", "follows")
+    rows = [
+        (
+            name,
+            quantity(one.before, one.unit),
+            quantity(one.rms, one.unit),
+            quantity(one.noise, one.unit),
+            quantity(one.memory, "s"),
+            ", ".join(f"{k} ({c:+.2f})" for k, c in one.along.items()) or UNSURE,
+            ", ".join(f"{k} ({percent(s)})" for k, s in one.laws.items()) or UNSURE,
+        )
+        for name, one in left.items()
+    ]
+    note = (
+        "Rms on held-out data. What is left beyond noise is model error: no cause of the library"
+        " explains it. Follows: a smooth law of that signal would take this share of its square."
+    )
+    return [paragraph(note, "note"), table(head, rows)]
