@@ -247,15 +247,15 @@ def test_a_rig_in_order_cut_out_of_its_motion_is_in_order(tmp_path):
 
 @pytest.mark.parametrize(
     "changed",
-    [{"bench": ...}, {"cases": 3}, {"excluded": []}, {"excluded": {"a": 1}}, {"commissioned": "x"},
+    [{"machine": ...}, {"cases": 3}, {"excluded": []}, {"excluded": {"a": 1}}, {"commissioned": "x"},
      {"commissioned": float("inf")}],
     ids=str,
 )  # fmt: skip
 def test_a_suite_that_is_not_what_was_written_is_refused_in_one_line(changed, tmp_path):
-    content = {"schema": 1, "bench": "pendulum", "cases": ["a"], "excluded": {}} | changed
+    content = {"schema": 1, "machine": "pendulum", "cases": ["a"], "excluded": {}} | changed
     content = {name: value for name, value in content.items() if value is not ...}
     (tmp_path / "suite.json").write_text(json.dumps(content))
-    with pytest.raises(InvalidInputError, match="expected bench, cases, excluded") as caught:
+    with pytest.raises(InvalidInputError, match="expected machine, cases, excluded") as caught:
         load_suite(tmp_path)
     assert "\n" not in str(caught.value)
 

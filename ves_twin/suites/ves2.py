@@ -112,8 +112,10 @@ class BlindVes2(BlindMachine):
         _edit(sim, rig)
         _run(sim, rig, rng)
         rows = _collected(sim, self._programme(programme, {"run.substeps": 2}))
-        rows.signals["sensor.wrench"][:] += offsets
-        return _edited(rows, rig, rng, self.plant)
+        signals = {name: np.array(values) for name, values in rows.signals.items()}
+        signals["sensor.wrench"] += offsets
+        _edit_signals(signals, rows.time, rig, rng, self.plant)
+        return replace(rows, signals=signals)
 
     def play(self, rig: BlindRig, programme: Excitation, rng: np.random.Generator) -> Recording:
         """Not built for this rig; raises InvalidInputError."""
@@ -175,11 +177,15 @@ def _collected(sim: Simulator, written: Scenario) -> Recording:
     return Recording(time, measured, info)
 
 
-def _edited(
-    recording: Recording, rig: BlindRig, rng: np.random.Generator, plant: Plant
-) -> Recording:
-    """What edits of the record make of it."""
-    time, wrench = recording.time, recording.signals["sensor.wrench"]
+def _edit_signals(
+    signals: dict[str, FloatArray],
+    time: FloatArray,
+    rig: BlindRig,
+    rng: np.random.Generator,
+    plant: Plant,
+) -> None:
+    """What edits of the record make of it, in place."""
+    wrench = signals["sensor.wrench"]
     fz, size = wrench[:, 2], rig.size
     match rig.outside:
         case "sensor_offset_step":
@@ -191,16 +197,13 @@ def _edited(
         case "sensor_hysteresis":
             fz += size * np.sign(np.gradient(lfilter([0.2], [1.0, -0.8], fz)))
         case "stale_lengths":
-            lengths, late = recording.signals["leg.length"], round(size)
+            lengths, late = signals["leg.length"], round(size)
             lengths[late:, 3] = lengths[:-late, 3].copy()
         case "gear_ripple":
-            recording.signals["arm.torque"][:, 1] += size * np.sin(
-                60.0 * recording.signals["arm.q"][:, 1]
-            )
+            signals["arm.torque"][:, 1] += size * np.sin(60.0 * signals["arm.q"][:, 1])
         case "clock_skew":
             for name in ("arm.q", "arm.torque"):
-                recording.signals[name][:] = _skewed(recording.signals[name], time, size)
-    return recording
+                signals[name] = _skewed(signals[name], time, size)
 
 
 def _skewed(values: FloatArray, time: FloatArray, skew: float) -> FloatArray:
