@@ -15,7 +15,7 @@ demo: .venv/.run
 HIDDEN := runs/demo-diagnosis
 demo-diagnosis: .venv/.run
 	rm -rf $(HIDDEN) $(HIDDEN).key
-	$(BIN)/ves-twin blind make --bench ves2_fast --cases 1 --none 0 --outside 0 --pair 0 --out $(HIDDEN)
+	$(BIN)/ves-twin blind make --machine ves2_fast --cases 1 --none 0 --outside 0 --pair 0 --out $(HIDDEN)
 	$(BIN)/ves-twin diagnose $(HIDDEN)/case-0001/recording.parquet --plant ves2_pressure_fast \
 		--held-out $(HIDDEN)/case-0001/held_out.parquet \
 		--out $(HIDDEN)/diagnosis
@@ -28,6 +28,7 @@ test: .venv/.dev lint layers types
 nightly: .venv/.dev lint layers types attack
 	$(BIN)/python -m pytest -n 2 --dist worksteal --nightly --mutations 10000 \
 		--costs runs/nightly-costs.csv
+	$(BIN)/python benchmarks/suites.py --size full --folder runs/blind
 
 check: .venv/.dev lint layers types fast
 
@@ -78,7 +79,7 @@ scorecard: .venv/.run
 	cp runs/scorecard/thesis-scorecard.md docs/thesis-scorecard.md
 
 diagnosis-scorecard: .venv/.run
-	$(BIN)/python benchmarks/diagnosis_scorecard.py docs/diagnosis-scorecard.md
+	$(BIN)/python benchmarks/suites.py --size full --folder runs/blind --page docs/diagnosis-scorecard.md
 
 figures: .venv/.dev
 	$(BIN)/python -m pytest -n 0 --figures docs/figures.md \

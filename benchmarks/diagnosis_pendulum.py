@@ -13,11 +13,11 @@ from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "tests" / "support"))
 
+from pendulum import PLANT
 from rows import PEER, ROWS, row_record
 
 from ves_twin.diagnosis.diagnose import diagnose
 from ves_twin.diagnosis.settings import Settings
-from ves_twin.machines.pendulum.forward import Pendulum
 
 MARK = "## Beside mujoco.sysid"
 
@@ -37,7 +37,7 @@ def peer_rows(settings: Settings) -> list[str]:
     """One row of the table for each pendulum."""
     lines = []
     for name, (hidden, told) in ROWS.items():
-        verdict = diagnose(Pendulum(), [row_record(hidden)], settings=settings)
+        verdict = diagnose(PLANT, [row_record(hidden)], settings=settings)
         found = [p.words for cause in verdict.causes for p in cause.parameters.values()]
         said = " ".join([str(verdict.verdict), *(cause.effect for cause in verdict.causes)])
         size = ", ".join(found) or "-"

@@ -23,27 +23,29 @@ import numpy as np
 
 import ves_twin as vt
 from ves_twin.diagnosis.diagnose import diagnose
-from ves_twin.diagnosis.forward import Excitation
 from ves_twin.diagnosis.settings import Settings
 from ves_twin.diagnosis.verdict import Verdict
 from ves_twin.machines.compare import compare
 from ves_twin.machines.diagnose import verdict_on
 from ves_twin.machines.machine import Named
-from ves_twin.machines.pendulum.forward import START, STEP, Pendulum
+from ves_twin.machines.mjcf.machine import Rig
+from ves_twin.machines.mjcf.programmes import Multisine, multisine
 from ves_twin.plant.plant import Plant
 from ves_twin.report.comparison.page import comparison_page
-from ves_twin.suites import pendulum as generator
-from ves_twin.suites import rig as rig_generator
-from ves_twin.suites.bench import BlindRig
-from ves_twin.suites.pendulum import BlindPendulum
-from ves_twin.suites.rig import BlindVes2
+from ves_twin.suites import mjcf as generator
+from ves_twin.suites import ves2 as rig_generator
+from ves_twin.suites.machine import BlindMachine, BlindRig
+from ves_twin.suites.mjcf import BlindMjcf
+from ves_twin.suites.ves2 import BlindVes2
 
 SECONDS = 20.0
 
+FRICTION, BIAS = "coulomb_friction@joint:level", "sensor_offset@joint.angle.1:offset"
+
 PENDULUM = {
     "nothing": BlindRig(),
-    "one cause": BlindRig({"joint.friction": 0.008}),
-    "two causes": BlindRig({"joint.friction": 0.008, "encoder.bias": 0.02}),
+    "one cause": BlindRig({FRICTION: 0.008}),
+    "two causes": BlindRig({FRICTION: 0.008, BIAS: 0.02}),
     "outside the library": BlindRig({}, "quadratic_drag", 0.016),
 }
 VES2 = {
@@ -76,10 +78,10 @@ def timed(what: str, case: str, work: Callable[[], str]) -> None:
     print(f"{what:<12}{case:<28}{cpu:9.1f}{wall:9.1f}{asked:>9}   {said}", flush=True)
 
 
-def drawn(bench: BlindPendulum | BlindVes2, rig: BlindRig) -> BlindRig:
+def drawn(machine: BlindMachine, rig: BlindRig) -> BlindRig:
     """A rig within its tolerances with what is hidden."""
-    values = bench.commissioned(np.random.default_rng(3))
-    nominal = {p.name: p.nominal for p in bench.forward.parameters}
+    values = machine.commissioned(np.random.default_rng(3))
+    nominal = {p.name: p.nominal for p in machine.forward.parameters}
     for name, size in rig.values.items():
         values[name] = values.get(name, nominal[name]) + size
     return BlindRig(values, rig.outside, rig.size)
@@ -104,14 +106,12 @@ def compare_rows() -> None:
 def pendulum_rows(folder: Path) -> None:
     # over 20 s the generator's disturbance is found as what it is: something that no model has
     generator.DISTURBANCE = 0.0
-    torque = generator.asked_torque(1, amplitude=0.15, seconds=SECONDS)  # not over the top
-    start = np.zeros((len(torque), 2))
-    drive = {"joint.torque": torque[:, None], START.name: start}
-    fed = Excitation("20 s", STEP * np.arange(len(torque)), drive)
-    bench, plant = BlindPendulum(), Pendulum.with_command_delay()
+    machine = BlindMjcf(Rig.load("pendulum"))
+    plant, small = machine.forward, Multisine("20 s", 0.15)  # not over the top
+    fed = multisine(machine.rig, np.random.default_rng(1), SECONDS, small)
     settings = Settings(cache=folder / "pendulum", workers=os.cpu_count() or 1)
     records = {
-        name: bench.play(drawn(bench, rig), fed, np.random.default_rng(5))
+        name: machine.play(drawn(machine, rig), fed, np.random.default_rng(5))
         for name, rig in PENDULUM.items()
     }
     rows = [("nothing, cold", "nothing"), *((f"{name}, warm", name) for name in records)]
@@ -123,10 +123,10 @@ def pendulum_rows(folder: Path) -> None:
 
 def ves2_rows(folder: Path) -> None:
     rig_generator.SECONDS = SECONDS
-    bench, plant = BlindVes2("ves2_pressure_fast"), Plant.load("ves2_pressure_fast")
+    machine, plant = BlindVes2("ves2_pressure_fast"), Plant.load("ves2_pressure_fast")
     settings = Settings(cache=folder / "ves2", workers=os.cpu_count() or 1)
     records = {
-        name: bench.record(drawn(bench, rig), "train", np.random.default_rng(5))
+        name: machine.record(drawn(machine, rig), "train", np.random.default_rng(5))
         for name, rig in VES2.items()
     }
     rows = [("nothing, cold", "nothing"), *((f"{name}, warm", name) for name in records)]

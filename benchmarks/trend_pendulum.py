@@ -23,11 +23,13 @@ from ves_twin.diagnosis.settings import Settings
 from ves_twin.diagnosis.trend.calendar import Calendar
 from ves_twin.diagnosis.trend.result import Answer, Trend
 from ves_twin.diagnosis.trend.trend import trend
-from ves_twin.suites.bench import BlindRig
-from ves_twin.suites.pendulum import BlindPendulum
+from ves_twin.suites.machine import BlindRig
+from ves_twin.suites.machines import machine_of
 
 MARK = "## Measured on the pendulum"
-BENCH = BlindPendulum()
+MACHINE = machine_of("pendulum")
+FORWARD = MACHINE.forward
+FRICTION, DAMPING = "coulomb_friction@joint:level", "viscous_friction@joint:damping"
 DAYS = (0.0, 3.0, 7.0, 10.0, 14.0, 17.0)
 CHANGED = (Answer.STEP, Answer.RAMP, Answer.VARIES)
 
@@ -45,37 +47,37 @@ class Case:
 
 
 CASES = (
-    Case("nothing", "joint.friction", lambda _: 0.0, (Answer.NOTHING,), share=1.0),
-    Case("dry friction, constant", "joint.friction", lambda _: 0.004, (Answer.CONSTANT,)),
-    Case("dry friction from day 10 on", "joint.friction", lambda d: 0.002 * (d >= 10), CHANGED[:1]),
+    Case("nothing", FRICTION, lambda _: 0.0, (Answer.NOTHING,), share=1.0),
+    Case("dry friction, constant", FRICTION, lambda _: 0.004, (Answer.CONSTANT,)),
+    Case("dry friction from day 10 on", FRICTION, lambda d: 0.002 * (d >= 10), CHANGED[:1]),
     Case(
         "dry friction growing from day 5 on",
-        "joint.friction",
+        FRICTION,
         lambda d: 0.0003 * max(d - 5.0, 0.0),
         CHANGED[1:2],
     ),
     Case(
         "two sd of damping from day 10 on",
-        "joint.damping",
+        DAMPING,
         lambda d: 0.002 * (d >= 10),
         CHANGED[:1],
     ),
-    Case("two rigs", "joint.friction", lambda _: 0.0, (Answer.MIXED,), other=(1, 4)),
+    Case("two rigs", FRICTION, lambda _: 0.0, (Answer.MIXED,), other=(1, 4)),
 )
 
 
 def series(case: Case, seed: int) -> list[Recording]:
     """One rig, its start and its drive's zero drawn anew each day; some days another rig."""
     rng = np.random.default_rng([seed, 77])
-    rigs = [BENCH.commissioned(rng) for _ in range(2)]
-    daily = [p for p in BENCH.forward.parameters if p.per_recording]
+    rigs = [MACHINE.commissioned(rng) for _ in range(2)]
+    daily = [p for p in FORWARD.parameters if p.per_recording]
     found = []
     for k, day in enumerate(DAYS):
         values = dict(rigs[k in case.other])
         values |= {p.name: p.nominal + p.sd * rng.standard_normal() for p in daily}
-        nominal = next(p.nominal for p in BENCH.forward.parameters if p.name == case.parameter)
+        nominal = next(p.nominal for p in FORWARD.parameters if p.name == case.parameter)
         values[case.parameter] = values.get(case.parameter, nominal) + case.size(day)
-        found.append(BENCH.record(BlindRig(values), "train", rng))
+        found.append(MACHINE.record(BlindRig(values), "train", rng))
     return found
 
 
@@ -85,7 +87,7 @@ def right(case: Case, found: Trend) -> bool:
         return False
     if found.cause is None or found.answer is Answer.MIXED:
         return True
-    hidden = {h.label for h in BENCH.forward.hypotheses if case.parameter in h.parameters}
+    hidden = {h.label for h in FORWARD.hypotheses if case.parameter in h.parameters}
     return bool(hidden & {found.cause.label, *found.cause.equals})
 
 
@@ -105,7 +107,9 @@ def measured(count: int, rate: float) -> list[str]:
         for case in CASES:
             number, begin = max(1, round(case.share * count)), time.process_time()
             said = [
-                trend(BENCH.forward, series(case, s), calendar, false_alarm=rate, settings=settings)
+                trend(
+                    MACHINE.forward, series(case, s), calendar, false_alarm=rate, settings=settings
+                )
                 for s in range(number)
             ]
             hits = sum(right(case, one) for one in said)

@@ -12,7 +12,7 @@ def home_page(root: Path) -> str:
 
 
 def rigs_page(root: Path) -> str:
-    """models/rigs/README.md, at the top of the site."""
-    text = (root / "models" / "rigs" / "README.md").read_text(encoding="utf-8")
+    """models/machines/README.md, at the top of the site."""
+    text = (root / "models" / "machines" / "README.md").read_text(encoding="utf-8")
     page = "bring-your-own-rig.md"
     return text.replace(f"[../../docs/{page}](../../docs/{page})", f"[{page}]({page})")

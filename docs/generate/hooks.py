@@ -29,4 +29,4 @@ def on_files(files: Files, config: MkDocsConfig) -> Files:
 
 def on_page_markdown(markdown: str, **_: object) -> str:
     """Links that leave docs/ for what the site has as a page of its own."""
-    return markdown.replace("](../models/rigs/README.md)", "](rigs.md)")
+    return markdown.replace("](../models/machines/README.md)", "](rigs.md)")

@@ -5,6 +5,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from pendulum import FRICTION, PLANT
 
 import ves_twin as vt
 from ves_twin.cli.main import main
@@ -14,7 +15,6 @@ from ves_twin.diagnosis.diagnose import diagnose
 from ves_twin.diagnosis.forward import Excitation
 from ves_twin.diagnosis.settings import Settings
 from ves_twin.machines.diagnose import Diagnosis
-from ves_twin.machines.pendulum.forward import Pendulum
 from ves_twin.machines.ves2.forward import DRIVE
 from ves_twin.machines.ves2.ves2_machine import Ves2Machine
 
@@ -49,11 +49,11 @@ def test_bad_input_is_one_line_and_exit_2(capsys, tmp_path, recording, options, 
 def found(monkeypatch, recording):
     """A diagnosis whose verdict was made of a pendulum, so that it takes seconds."""
     fed = Excitation("pendulum", 0.002 * np.arange(2000), {"joint.torque": TORQUE})
-    rows = Pendulum().simulate(fed, {"joint.friction": 0.1})
+    rows = PLANT.simulate(fed, {FRICTION: 0.1})
     rows += np.random.default_rng(0).normal(size=rows.shape) * [0.001, 0.01]
     signals = {"joint.torque": TORQUE, "joint.angle": rows[:, :1], "joint.rate": rows[:, 1:]}
     data = Recording(fed.time, signals, RecordingInfo("measured"))
-    verdict = diagnose(Pendulum(), [data], settings=Settings(nulls=20))
+    verdict = diagnose(PLANT, [data], settings=Settings(nulls=20))
     setpoints = Excitation.of(load_recording(Path(recording)), DRIVE, "next")
     plant = vt.Plant.load("ves2").extended(vt.effects.CoulombFriction("leg.3", level=60.0))
     scenario = vt.Scenario.load("identify_fast")

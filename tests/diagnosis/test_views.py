@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from pendulum import MASS, PLANT, STEP
 
 from ves_twin.diagnosis.both_views import both_views
 from ves_twin.diagnosis.forward import Excitation
@@ -11,7 +12,6 @@ from ves_twin.diagnosis.gain import Gain
 from ves_twin.diagnosis.refusal import refusal
 from ves_twin.diagnosis.verdict import Basis, Cause, Kind, Statistics, Verdict
 from ves_twin.diagnosis.widened import LEAST, Widened, widening
-from ves_twin.machines.pendulum.forward import STEP, Pendulum
 from ves_twin.machines.ves2.ves2_machine import Ves2Machine
 from ves_twin.report.diagnosis.words import headline
 
@@ -50,11 +50,11 @@ def test_which_of_two_views_is_said(declared, measured, expected):
 
 
 def test_a_plant_known_less_well_predicts_the_same():
-    plant = Pendulum()
+    plant = PLANT
     wide = Widened(plant, 2.5)
     time = STEP * np.arange(50)
     programme = Excitation("", time, {"joint.torque": np.ones((50, 1))})
-    values = {"link.mass": 1.1}
+    values = {MASS: 1.1}
     assert np.array_equal(wide.simulate(programme, values), plant.simulate(programme, values))
     assert [p.sd for p in wide.parameters] == [2.5 * p.sd for p in plant.parameters]
     assert len({plant.identity, wide.identity, Widened(plant, 2.0).identity}) == 3

@@ -4,23 +4,21 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from pendulum import PLANT, STEP, fed
 from scipy.signal import lfilter
 from toy import Toy, programme
 
 from ves_twin.core.errors import InvalidInputError
 from ves_twin.core.recording.recording import Recording, RecordingInfo
 from ves_twin.diagnosis.adequacy import cells, misfit, misfit_floor
-from ves_twin.diagnosis.forward import Excitation
 from ves_twin.diagnosis.grid import AnalysisGrid
 from ves_twin.diagnosis.runs import Runs
 from ves_twin.diagnosis.whitening import whitening_declared, whitening_measured
-from ves_twin.machines.pendulum.forward import STEP, Pendulum
 
 
 @pytest.fixture(scope="module")
 def runs():
-    time = STEP * np.arange(4000)
-    return Runs(Pendulum(), (Excitation("", time, {"joint.torque": np.zeros((4000, 1))}),), (0, 1))
+    return Runs(PLANT, (fed(np.zeros(4000)),), (0, 1))
 
 
 def noise(seed: int, rows: int = 4000) -> np.ndarray:

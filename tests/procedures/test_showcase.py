@@ -7,12 +7,13 @@ import pytest
 
 from ves_twin.core.errors import InvalidInputError, UnknownNameError
 from ves_twin.core.recording.files import load_recording
-from ves_twin.diagnosis.verdict import Basis, Cause, Kind, Statistics, Verdict
+from ves_twin.diagnosis.verdict import Kind
 from ves_twin.plant.plant import Plant
 from ves_twin.procedures.procedure import RunContext
 from ves_twin.procedures.registry import load_procedure
 from ves_twin.scenario.load import procedure_questions
-from ves_twin.suites.judge import Judgement, judge
+from ves_twin.suites.answers import Answer
+from ves_twin.suites.judgement import Judgement, judge
 
 SHOWN = (
     *("nothing", "valve_deadband", "sensor_drift", "soft_leg", "filter_place"),
@@ -36,13 +37,16 @@ def no_cache(monkeypatch, tmp_path_factory):
 def test_two_causes_are_named_and_held_against_the_truth(tmp_path):
     account = carried_out("showcase_two_causes", tmp_path)
     assert account.values["judged"] == "right"
-    assert set(account.values["causes"]) == {"coulomb_friction@joint", "encoder_offset@sensor"}
+    assert set(account.values["causes"]) == {
+        "coulomb_friction@joint",
+        "sensor_offset@joint.angle.1",
+    }
     assert {p.name for p in tmp_path.iterdir()} == {
         *("recording.parquet", "held_out.parquet", "standstill.parquet"),
-        *("verdict.json", "report.html"),
+        *("verdict.json", "report.html", "plant.toml"),
     }
     text = "\n".join(account.lines)
-    assert "hidden    coulomb_friction@joint joint.friction +0.008" in text
+    assert "hidden    coulomb_friction@joint level +0.008" in text
     assert "that is   right" in text
     verdict = json.loads((tmp_path / "verdict.json").read_text())
     assert verdict["verdict"] == "several"
@@ -101,18 +105,18 @@ def test_every_showcase_is_a_procedure_whose_options_are_valid():
 @pytest.mark.parametrize(
     ("changes", "kind", "words"),
     [
-        ({"bench": "pendulm"}, InvalidInputError, "pendulum"),
+        ({"bench": "pendulm"}, InvalidInputError, "did you mean 'pendulum'"),
         ({"deployed_filter": "feedback"}, InvalidInputError, "pendulum"),
         ({"outside.kind": "soft_stp"}, UnknownNameError, "did you mean 'soft_stop'"),
         (
-            {"hidden": [{"effect": "link_mas", "target": "link", "size": {"link.mass": 0.1}}]},
+            {"hidden": [{"effect": "body_mas", "target": "link", "size": {"mass": 0.1}}]},
             UnknownNameError,
-            "did you mean 'link_mass@link'",
+            "did you mean 'body_mass@link'",
         ),
         (
-            {"hidden": [{"effect": "link_mass", "target": "link", "size": {"link.mas": 0.1}}]},
+            {"hidden": [{"effect": "body_mass", "target": "link", "size": {"mas": 0.1}}]},
             UnknownNameError,
-            "link.mas",
+            "mas",
         ),
     ],
 )
@@ -129,9 +133,7 @@ def test_a_showcase_has_a_plant_of_its_own(tmp_path):
 
 
 def said(kind, labels=(), alternatives=()):
-    causes = tuple(Cause(*label.split("@"), {}, 1.0, firm=True, sigmas=None) for label in labels)
-    basis = Basis("declared", "declared", "none")
-    return Verdict(kind, basis, Statistics(1.0, 1.0, 1.0, 1.0), causes, alternatives)
+    return Answer(kind.value, labels, alternatives=alternatives)
 
 
 @pytest.mark.parametrize(

@@ -13,14 +13,14 @@ from ves_twin.core.errors import FileAccessError, InvalidInputError, UnknownName
 from ves_twin.core.recording.files import load_recording
 from ves_twin.diagnosis.runs import silent
 from ves_twin.suites.answers import Answer
-from ves_twin.suites.benches import bench_of
-from ves_twin.suites.draw import LOUDNESS, PAIR_LOUDNESS
+from ves_twin.suites.draw import DETECTABILITY, PAIR_DETECTABILITY
+from ves_twin.suites.machines import machine_of
 from ves_twin.suites.make import make_suite
 from ves_twin.suites.rate import Rate
 from ves_twin.suites.recipe import Recipe
-from ves_twin.suites.score import mark, read_truths
+from ves_twin.suites.score import read_truths, score
 from ves_twin.suites.seal import new_key, seal, unseal
-from ves_twin.suites.suite import BENCHES, RECORDING, load_suite
+from ves_twin.suites.suite import RECORDING, load_suite
 from ves_twin.suites.truth import Hidden, HiddenCause, Truth
 
 COUNTS = {Hidden.NONE: 1, Hidden.SINGLE: 2, Hidden.OUTSIDE: 2, Hidden.PAIR: 1, Hidden.CONFUSABLE: 1}
@@ -64,8 +64,8 @@ def test_no_hidden_cause_is_fainter_than_its_sort_may_be(suite):
     truths = read_truths(suite, suite.with_name("key").read_text().strip())
     pairs = [cause.d for t in truths if t.hidden is Hidden.PAIR for cause in t.causes]
     assert len(pairs) == 2 * COUNTS[Hidden.PAIR]
-    assert all(d >= PAIR_LOUDNESS[0] for d in pairs)
-    assert all(c.d >= LOUDNESS[0] for t in truths for c in t.causes)
+    assert all(d >= PAIR_DETECTABILITY[0] for d in pairs)
+    assert all(c.d >= DETECTABILITY[0] for t in truths for c in t.causes)
 
 
 def test_a_suite_that_was_interrupted_goes_on_with_the_same_cases(suite):
@@ -111,7 +111,7 @@ from ves_twin.suites.answer import answer_suite
 from ves_twin.diagnosis.settings import Settings
 folder = Path({str(suite)!r})
 answer_suite(folder, folder.with_name("answers.json"), Settings(nulls=12), lambda *a: None)
-for name in ("make", "pinned", "draw", "bench", "benches", "play", "pendulum", "rig", "seal", "truth"):
+for name in ("make", "pinned", "draw", "machine", "machines", "play", "mjcf", "ves2", "seal", "truth"):
     assert f"ves_twin.suites.{{name}}" not in sys.modules, name
 assert not any("sealed" in path or path.endswith("key") for path in opened), "looked at the truth"
 """
@@ -122,25 +122,25 @@ assert not any("sealed" in path or path.endswith("key") for path in opened), "lo
 
 
 def test_every_outside_kind_changes_what_is_measured():
-    bench = bench_of("pendulum")
-    from ves_twin.suites.bench import BlindRig
+    machine = machine_of("pendulum")
+    from ves_twin.suites.machine import BlindRig
 
     rng = np.random.default_rng
-    plain = bench.record(BlindRig(), "train", rng(0)).signals["joint.angle"]
-    for kind, (_, largest) in bench.outside.items():
-        odd = bench.record(BlindRig({}, kind, largest), "train", rng(0)).signals["joint.angle"]
+    plain = machine.record(BlindRig(), "train", rng(0)).signals["joint.angle"]
+    for kind, (_, largest) in machine.outside.items():
+        odd = machine.record(BlindRig({}, kind, largest), "train", rng(0)).signals["joint.angle"]
         assert np.sqrt(np.mean((odd - plain) ** 2)) > 1e-3, kind  # the encoder's noise
 
 
 @pytest.mark.slow
 def test_every_outside_kind_of_the_rig_changes_what_is_measured():
-    from ves_twin.suites.bench import BlindRig
+    from ves_twin.suites.machine import BlindRig
 
-    bench = bench_of("ves2_fast")
-    plain = bench.record(BlindRig(), "train", np.random.default_rng(0)).signals
+    machine = machine_of("ves2_fast")
+    plain = machine.record(BlindRig(), "train", np.random.default_rng(0)).signals
     noise = {"leg.length": 2e-5, "sensor.wrench": 0.4, "arm.q": 1e-3, "arm.torque": 0.1}
-    for kind, (_, largest) in bench.outside.items():
-        odd = bench.record(BlindRig({}, kind, largest), "train", np.random.default_rng(0)).signals
+    for kind, (_, largest) in machine.outside.items():
+        odd = machine.record(BlindRig({}, kind, largest), "train", np.random.default_rng(0)).signals
         loud = [np.abs(odd[n] - plain[n]).max() / sd for n, sd in noise.items()]
         assert max(loud) > 1.0, kind
 
@@ -169,16 +169,16 @@ def test_perfect_answers_get_full_marks():
         "case-0005": Answer("several", ["b@x", "a@x"], [True, True], 0.9),
         "case-0006": Answer("ambiguous", ["c@x", "a@x"], [True, True], 0.5),
     }
-    for name, rate in mark(TRUTHS, answers).rows.items():
+    for name, rate in score(TRUTHS, answers).rows.items():
         bad = any(word in name for word in ("false", "wrong", "beyond"))
         assert rate.hits == (0 if bad else rate.of), name
 
 
 def test_always_nothing_names_nothing_and_a_guesser_is_wrong():
-    silence = mark(TRUTHS, {t.case: Answer("nothing") for t in TRUTHS}).rows
+    silence = score(TRUTHS, {t.case: Answer("nothing") for t in TRUTHS}).rows
     assert silence["nothing hidden: nothing said"].hits == 1
     assert silence["single, d 10 to 20: exact"].hits == 0
-    guess = mark(TRUTHS, {t.case: Answer("named", ["z@x"], [True], 0.9) for t in TRUTHS})
+    guess = score(TRUTHS, {t.case: Answer("named", ["z@x"], [True], 0.9) for t in TRUTHS})
     assert guess.rows["nothing hidden: firm false name"].hits == 1
     assert guess.rows["single: right if named"].hits == 0
     assert guess.rows["a kind that the library lacks, detected: abstains"].hits == 0
@@ -204,4 +204,3 @@ def test_bad_input_gets_one_line(tmp_path, suite, capsys):
     )  # fmt: skip
     assert code == 2
     assert capsys.readouterr().err.count("\n") == 1
-    assert set(BENCHES) == {"pendulum", "ves2", "ves2_fast"}

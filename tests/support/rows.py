@@ -5,28 +5,28 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 import numpy as np
+from pendulum import BIAS, FRICTION, GAIN, LATE, PLANT, SDS, SPRING, STEP
 
 from ves_twin.core.recording.recording import Recording, RecordingInfo
 from ves_twin.diagnosis.forward import Excitation
-from ves_twin.machines.pendulum.forward import STEP, Pendulum
 
 ROWS: dict[str, tuple[Mapping[str, float], str]] = {
     "none": ({}, "-"),
-    "Coulomb friction": ({"joint.friction": 0.15}, "0.15 N m"),
-    "joint spring": ({"joint.stiffness": 0.5}, "0.5 N m/rad"),
-    "sensor delay": ({"sensor.delay": 0.010}, "10 ms"),
-    "encoder bias": ({"encoder.bias": 0.020}, "20 mrad"),
-    "torque gain": ({"drive.gain": 1 / 1.05}, "1/1.05"),
+    "Coulomb friction": ({FRICTION: 0.15}, "0.15 N m"),
+    "joint spring": ({SPRING: 0.5}, "0.5 N m/rad"),
+    "sensor delay": ({LATE: 0.010}, "10 ms"),
+    "encoder bias": ({BIAS: 0.020}, "20 mrad"),
+    "torque gain": ({GAIN: 1 / 1.05}, "1/1.05"),
 }
 """Hidden values of the data."""
 
 EXPECTED = {
     "none": None,
     "Coulomb friction": "coulomb_friction",
-    "joint spring": "joint_stiffness",
-    "sensor delay": "delay",
-    "encoder bias": "encoder_offset",
-    "torque gain": "torque_gain",
+    "joint spring": "joint_spring",
+    "sensor delay": "sensor_delay",
+    "encoder bias": "sensor_offset",
+    "torque gain": "actuator_gain",
 }
 
 PEER = {
@@ -47,7 +47,7 @@ def row_record(hidden: Mapping[str, float], seed: int = 0) -> Recording:
     chirp = 0.6 * np.sin(2 * np.pi * (0.2 + 3.0 * time / 16.0) * time)
     torque = (np.sin(2 * np.pi * 0.3 * time) + chirp)[:, None]
     fed = Excitation("chirp", time, {"joint.torque": torque})
-    rows = Pendulum().simulate(fed, hidden)
-    rows = rows + np.random.default_rng(seed).normal(size=rows.shape) * [0.001, 0.01]
+    rows = PLANT.simulate(fed, hidden)
+    rows = rows + np.random.default_rng(seed).normal(size=rows.shape) * SDS
     signals = {"joint.torque": torque, "joint.angle": rows[:, :1], "joint.rate": rows[:, 1:]}
     return Recording(time, signals, RecordingInfo("measured", scenario="chirp"))

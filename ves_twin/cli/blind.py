@@ -1,4 +1,4 @@
-"""blind: make a suite with hidden effects, diagnose it from the recordings alone, mark answers."""
+"""blind: make a suite with hidden effects, diagnose it from the recordings alone, score it."""
 
 from __future__ import annotations
 
@@ -16,11 +16,11 @@ from ves_twin.core.json_text import json_text
 if TYPE_CHECKING:
     from ves_twin.suites.answers import Answer
     from ves_twin.suites.recipe import Recipe
-    from ves_twin.suites.score import Marks
-    from ves_twin.suites.score_next import NextMarks
+    from ves_twin.suites.score import Scores
+    from ves_twin.suites.score_next import NextScores
     from ves_twin.suites.truth import Truth
 
-SUMMARY = "hide effects in recordings, answer from the recordings alone, mark anybody's answers"
+SUMMARY = "hide effects in recordings, answer from the recordings alone, score anybody's answers"
 
 QUICK = {"none": 6, "single": 10, "outside": 4, "pair": 2, "confusable": 0}
 """Cases of each sort if nothing is said."""
@@ -52,9 +52,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     )
     play = verbs.add_parser("play", help="record the next experiment of ambiguous cases")
     play.add_argument("--choice", default="proposed", help="proposed (default) or random")
-    score = verbs.add_parser("score", help="mark answers")
-    score.add_argument("--page", metavar="FILE", help="write the marks as a page, too")
-    score.add_argument("--json", action="store_true", help="the marks as JSON on stdout")
+    score = verbs.add_parser("score", help="score answers")
+    score.add_argument("--page", metavar="FILE", help="write the scores as a page, too")
+    score.add_argument("--json", action="store_true", help="the scores as JSON on stdout")
     score.add_argument(
         "--against", metavar="FILE", help="other answers: how many of their firm names stay"
     )
@@ -68,7 +68,13 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def _add_recipe(make: argparse.ArgumentParser) -> None:
-    make.add_argument("--bench", default="pendulum", help="pendulum, ves2_fast or ves2")
+    make.add_argument(
+        "--machine",
+        "--bench",
+        metavar="NAME|FILE",
+        default="pendulum",
+        help="pendulum, ves2_fast, ves2, or the TOML file of an MJCF machine",
+    )
     make.add_argument("--cases", metavar="N", type=int, help="so many single causes and no more")
     for sort, count in QUICK.items():
         make.add_argument(f"--{sort}", metavar="N", type=int, help=f"cases (default: {count})")
@@ -138,7 +144,7 @@ def _recipe(arguments: argparse.Namespace) -> Recipe:
     }
     check_commissioned(arguments.commissioned, FEWEST)
     return Recipe(
-        arguments.bench,
+        arguments.machine,
         asked,
         arguments.seed,
         arguments.spread,
@@ -235,23 +241,23 @@ def _read_key(key: Path) -> str:
 def _score(arguments: argparse.Namespace, folder: Path, key: Path, answers: Path) -> int:
     from ves_twin.core.whole_file import write_whole
     from ves_twin.suites.answers import read_answers
-    from ves_twin.suites.score import mark, read_truths
-    from ves_twin.suites.score_gain import mark_gain
+    from ves_twin.suites.score import read_truths, score
+    from ves_twin.suites.score_gain import score_gain
 
     truths, given = read_truths(folder, _read_key(key)), read_answers(answers)
     other = read_answers(Path(arguments.against)) if arguments.against else None
-    marks = mark(truths, given, other)
-    more = {name: rate for name, rate in mark_gain(folder, truths, given).items() if rate.of}
-    after = _next_marks(folder, truths, given, answers)
+    scores = score(truths, given, other)
+    more = {name: rate for name, rate in score_gain(folder, truths, given).items() if rate.of}
+    after = _next_scores(folder, truths, given, answers)
     more |= {name: rate for name, rate in after.rows.items() if rate.of} if after else {}
-    marks = replace(marks, rows={**marks.rows, **more})
-    text = _text(marks) + (_correlation(after) if after else "")
+    scores = replace(scores, rows={**scores.rows, **more})
+    text = _text(scores) + (_correlation(after) if after else "")
     if arguments.page:
         write_whole(Path(arguments.page), text)
     if arguments.json:
-        counted = {**marks.rows, _COVER: marks.coverage}
+        counted = {**scores.rows, _COVER: scores.coverage}
         rows = {name: {"hits": r.hits, "of": r.of} for name, r in counted.items() if r.of}
-        told = {"rows": rows, "seconds": dict(marks.seconds)}
+        told = {"rows": rows, "seconds": dict(scores.seconds)}
         if after:
             told["correlation"] = None if isnan(after.correlation) else after.correlation
         print(json_text(told, indent=1))
@@ -260,39 +266,39 @@ def _score(arguments: argparse.Namespace, folder: Path, key: Path, answers: Path
     return 0
 
 
-def _next_marks(
+def _next_scores(
     folder: Path, truths: Sequence[Truth], given: Mapping[str, Answer], answers: Path
-) -> NextMarks | None:
+) -> NextScores | None:
     """Of the next experiments that were played and answered; None without."""
     from ves_twin.suites.answers import read_answers
     from ves_twin.suites.play import CHOICES, played_file
-    from ves_twin.suites.score_next import mark_next
+    from ves_twin.suites.score_next import score_next
 
     done = [c for c in CHOICES if _after(answers, c).is_file() and played_file(folder, c).is_file()]
     if not done:
         return None
     after = {choice: read_answers(_after(answers, choice)) for choice in done}
     played = {choice: json.loads(played_file(folder, choice).read_text()) for choice in done}
-    return mark_next(truths, given, after, played)
+    return score_next(truths, given, after, played)
 
 
-def _correlation(after: NextMarks) -> str:
+def _correlation(after: NextScores) -> str:
     return (
         f"\nPredicted and realised separation of the rivals (logarithms of chi^2):"
         f" correlation {after.correlation:.2f} over {len(after.points)} experiments.\n"
     )
 
 
-def _text(marks: Marks) -> str:
+def _text(scores: Scores) -> str:
     lines = ["| counted | hits of cases (share; 95 % Wilson) |", "|---|---|"]
-    lines += [f"| {name} | {rate} |" for name, rate in marks.rows.items()]
-    if marks.coverage.of:
-        lines.append(f"| {_COVER} | {marks.coverage} |")
+    lines += [f"| {name} | {rate} |" for name, rate in scores.rows.items()]
+    if scores.coverage.of:
+        lines.append(f"| {_COVER} | {scores.coverage} |")
     lines += [
-        f"| stated probability {span}: right | {r} |" for span, r in marks.reliability.items()
+        f"| stated probability {span}: right | {r} |" for span, r in scores.reliability.items()
     ]
-    if marks.confusions:
+    if scores.confusions:
         lines += ["", "| hidden | said instead | times |", "|---|---|--:|"]
-        lines += [f"| {t} | {said} | {n} |" for (t, said), n in sorted(marks.confusions.items())]
-    times = ", ".join(f"{sort} {seconds:.0f} s" for sort, seconds in marks.seconds.items())
+        lines += [f"| {t} | {said} | {n} |" for (t, said), n in sorted(scores.confusions.items())]
+    times = ", ".join(f"{sort} {seconds:.0f} s" for sort, seconds in scores.seconds.items())
     return "\n".join([*lines, "", f"Median time of a diagnosis: {times}.", ""])

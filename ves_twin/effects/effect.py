@@ -58,6 +58,8 @@ class Effect(ABC):
     magnitudes: ClassVar[tuple[Magnitude, ...]] = ()
     channels: ClassVar[tuple[str, ...]] = ()
     source: ClassVar[str] = ""
+    steady: ClassVar[bool] = False
+    """Whether `resist` is the same effort at any speed."""
     proportional: ClassVar[bool] = True
     """Whether its trace on VES II is proportional to its size."""
 

@@ -128,6 +128,7 @@ class ForceOffset(Effect):
     kind = "force_offset"
     sizes = (Size("offset", EFFORT),)
     anywhere = Anywhere(Element.JOINT, lambda p: 0.5 * p.effort)
+    steady = True
 
     def resist(self, speed: FloatArray, slow: float) -> FloatArray:
         """The offset."""

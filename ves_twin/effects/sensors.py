@@ -221,7 +221,7 @@ class SensorLag(Effect):
 @final
 @dataclass(frozen=True)
 class SensorDelay(Effect):
-    """A signal is read late, on VES II beyond the lag of the low-pass: W(t) -> W(t - delay)."""
+    """A signal, or all of a part, is read late, on VES II behind the low-pass: W(t - delay)."""
 
     delay: float = 0.0
 

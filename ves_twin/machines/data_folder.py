@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from ves_twin.machines.mjcf.description import Data
 
 VARIABLE = "VES_TWIN_DATA"
-"""Environment variable with the folder of public data sets; see models/rigs/README.md."""
+"""Environment variable with the folder of public data sets; see models/machines/README.md."""
 
 
 def find_data(name: str, data: Sequence[Data], folder: str | None = None) -> Path:

@@ -1,4 +1,4 @@
-"""stand_ins: what else of the library would leave hardly anything of a cause."""
+"""aliases: what else of the library would leave hardly anything of a cause."""
 
 from __future__ import annotations
 
@@ -13,11 +13,11 @@ from ves_twin.diagnosis.runs import Runs
 from ves_twin.diagnosis.screen import Candidate, Screen
 from ves_twin.diagnosis.signature_library import SignatureLibrary, build_bank
 from ves_twin.diagnosis.whitening import whitening_declared
-from ves_twin.suites.draw import LOUDNESS
+from ves_twin.suites.draw import DETECTABILITY
 from ves_twin.suites.truth import Truth
 
 NEARLY = 1.5
-"""A group that leaves more than this many LOUDNESS[0] by the columns at the fit is not tried."""
+"""A group that leaves more than this times DETECTABILITY[0] by the columns is not tried."""
 
 TRIED = 24
 """Pairs at most that the full forward tries for one cause, those that leave least first."""
@@ -26,10 +26,10 @@ ANY_SCALE = (0.0, np.inf)
 """Two causes that nearly cancel need more of each than a diagnosis would begin with."""
 
 
-def stand_ins(runs: Runs, truths: Sequence[Truth]) -> list[tuple[tuple[str, ...], ...]]:
+def aliases(runs: Runs, truths: Sequence[Truth]) -> list[tuple[tuple[str, ...], ...]]:
     """Causes, alone or two together, that a cause could be taken for at its size.
 
-    A stand-in leaves d < LOUDNESS[0] of the cause's trace at noise and tolerances as declared,
+    An alias leaves d < DETECTABILITY[0] of the cause's trace at noise and tolerances as declared,
     its own sizes and the commissioning errors fitted by the full forward, as for the d of the
     cause itself: less than a diagnosis is asked to see. It is told before anything is diagnosed.
 
@@ -62,9 +62,9 @@ def _of(screen: Screen, bank: SignatureLibrary, truth: Truth) -> tuple[tuple[str
         free, start = tuple(bank.hypotheses[suspect.hypothesis] for suspect in group), usual.shift
         for suspect, hypothesis in zip(group, free, strict=True):
             start = runs.depart(start, runs.indices(hypothesis), suspect.sizes)
-        if refine(evidence, free, start, bank.base).chi2 < LOUDNESS[0] ** 2:
+        if refine(evidence, free, start, bank.base).chi2 < DETECTABILITY[0] ** 2:
             found.add(numbers)
-    # with another cause beside it, a stand-in leaves no more than alone
+    # with another cause beside it, an alias leaves no more than alone
     rest = set(range(len(labels))) - {hidden}
     found |= {alone | {k} for alone in found if len(alone) == 1 for k in rest - alone}
     groups = sorted((len(numbers), sorted(numbers)) for numbers in found)
@@ -72,11 +72,11 @@ def _of(screen: Screen, bank: SignatureLibrary, truth: Truth) -> tuple[tuple[str
 
 
 def _near(screen: Screen, residual: FloatArray, hidden: int) -> list[tuple[Candidate, ...]]:
-    """What may stand in, by the columns about the fit of commissioning errors; singles first."""
+    """What may be taken for it, by the columns about the fit; singles first."""
     power = float(residual @ screen.metric.project(residual))
     alone = [(suspect,) for suspect in screen.suspects(residual)]
     every = screen.pairs(residual, len(alone) ** 2, ANY_SCALE)
     pairs = [pair for pair in every if hidden not in (pair[0].hypothesis, pair[1].hypothesis)]
     singles = [one for one in alone if one[0].hypothesis != hidden]
-    near = (NEARLY * LOUDNESS[0]) ** 2
+    near = (NEARLY * DETECTABILITY[0]) ** 2
     return [group for group in (*singles, *pairs[:TRIED]) if power - group[0].score < near]

@@ -3,13 +3,17 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import TypeVar
 
 from ves_twin.core.errors import FileAccessError, InvalidInputError
 from ves_twin.core.whole_file import write_whole
 from ves_twin.diagnosis.verdict import Verdict
+from ves_twin.suites.old_names import current_excitation, current_label, current_name
+
+T = TypeVar("T")
 
 
 @dataclass(frozen=True)
@@ -29,6 +33,7 @@ class Answer:
         behind: effect@target of a single cause -> chi^2 that it leaves more than the best.
         programmes: offered next programme -> chi^2 by which it should part the causes.
         scale: of the tolerances, if recordings of other rigs told it.
+        alternatives: numbers of the causes, from 0, that each of several explanations takes.
     """
 
     verdict: str
@@ -43,6 +48,18 @@ class Answer:
     behind: Mapping[str, float] | None = None
     programmes: Mapping[str, float] | None = None
     scale: float | None = None
+    alternatives: Sequence[Sequence[int]] = ()
+
+    @property
+    def current(self) -> Answer:
+        """The same with the names of causes that the library has today."""
+        return replace(
+            self,
+            causes=[current_label(label) for label in self.causes],
+            sizes=_renamed(self.sizes, current_name),
+            behind=_renamed(self.behind, current_label),
+            programmes=_renamed(self.programmes, current_excitation),
+        )
 
     @staticmethod
     def of(verdict: Verdict, seconds: float) -> Answer:
@@ -71,7 +88,12 @@ class Answer:
             behind,
             {p.programme: p.separation for p in verdict.next_experiment},
             verdict.statistics.tolerance_scale,
+            verdict.alternatives,
         )
+
+
+def _renamed(given: Mapping[str, T] | None, name: Callable[[str], str]) -> dict[str, T] | None:
+    return None if given is None else {name(key): value for key, value in given.items()}
 
 
 def read_answers(path: Path) -> dict[str, Answer]:
@@ -83,7 +105,7 @@ def read_answers(path: Path) -> dict[str, Answer]:
     """
     try:
         content = json.loads(path.read_text(encoding="utf-8"))
-        return {str(case): Answer(**answer) for case, answer in content.items()}
+        return {str(case): Answer(**answer).current for case, answer in content.items()}
     except OSError as error:
         raise FileAccessError(f"cannot read {path}: {error.strerror}") from None
     except (ValueError, TypeError, AttributeError):

@@ -15,25 +15,25 @@ from ves_twin.diagnosis.forward import Hypothesis
 from ves_twin.diagnosis.linearise import Linearisation
 from ves_twin.diagnosis.metric import Metric
 from ves_twin.diagnosis.whitening import Whitening
-from ves_twin.suites.bench import BlindBench
+from ves_twin.suites.machine import BlindMachine
 from ves_twin.suites.truth import Hidden, HiddenCause, Truth
 
-LOUDNESS = (6.0, 40.0)
+DETECTABILITY = (6.0, 40.0)
 """Sizes in sigma that single causes are drawn from, log-uniform; none is fainter in the end."""
 
-PAIR_LOUDNESS = (10.0, 40.0)
+PAIR_DETECTABILITY = (10.0, 40.0)
 """The same for each of two."""
 
 ATTEMPTS = 60
 """Causes that are tried before a size in sigma is given up."""
 
 SECANTS = 4
-"""Runs at most to find the size of a cause that is as loud as asked."""
+"""Runs at most to find the size of a cause with the d that is asked for."""
 
 
 @dataclass(frozen=True)
-class Loudness:
-    """How loud departures are at nominal: d^2 = <s, s>, nuisances marginalised.
+class Detectability:
+    """Size in sigma of departures at nominal: d^2 = <s, s>, nuisances marginalised.
 
     Attributes:
         base: nuisance columns of the programme.
@@ -59,28 +59,28 @@ class Loudness:
 
 
 def draw_truths(
-    bench: BlindBench,
+    machine: BlindMachine,
     counts: Mapping[Hidden, int],
-    loudness: Loudness,
+    detectability: Detectability,
     rng: np.random.Generator,
     spread: float = 1.0,
 ) -> list[Truth]:
-    """What each case hides, in random order; causes with a twin only as confusable ones.
+    """What each case hides, in random order; causes with an alias only as confusable ones.
 
     Args:
-        bench: the plant.
+        machine: the machine.
         counts: how many of each sort.
-        loudness: of departures.
+        detectability: of departures.
         rng: of all draws.
         spread: commissioning errors, in declared sd.
 
     Raises:
-        InvalidInputError: a plant without causes of that sort.
+        InvalidInputError: a machine without causes of that sort.
     """
     sorts = [sort for sort, count in counts.items() for _ in range(count)]
     rng.shuffle(sorts)
-    library = bench.forward.hypotheses
-    clear = [h for h in library if h.label not in bench.confusable]
+    library = machine.forward.hypotheses
+    clear = [h for h in library if h.label not in machine.confusable]
     truths = []
     for n, sort in enumerate(sorts):
         case = f"case-{n + 1:04d}"
@@ -88,45 +88,45 @@ def draw_truths(
         kind, size = "", 0.0
         match Hidden(sort):
             case Hidden.SINGLE:
-                causes = (_cause(clear, loudness, LOUDNESS, rng),)
+                causes = (_cause(clear, detectability, DETECTABILITY, rng),)
             case Hidden.CONFUSABLE:
-                group = [h for h in library if h.label in bench.confusable]
-                causes = (_cause(group, loudness, LOUDNESS, rng),)
+                group = [h for h in library if h.label in machine.confusable]
+                causes = (_cause(group, detectability, DETECTABILITY, rng),)
             case Hidden.PAIR:
-                first = _cause(clear, loudness, PAIR_LOUDNESS, rng)
+                first = _cause(clear, detectability, PAIR_DETECTABILITY, rng)
                 rest = [h for h in clear if h.effect != first.effect]
-                causes = (first, _cause(rest, loudness, PAIR_LOUDNESS, rng))
+                causes = (first, _cause(rest, detectability, PAIR_DETECTABILITY, rng))
             case Hidden.OUTSIDE if rng.random() < 0.25:  # leave one out
-                causes = (_cause(library, loudness, PAIR_LOUDNESS, rng),)
+                causes = (_cause(library, detectability, PAIR_DETECTABILITY, rng),)
             case Hidden.OUTSIDE:
-                kind = str(rng.choice(sorted(bench.outside)))
-                size = _log_uniform(*bench.outside[kind], rng)
+                kind = str(rng.choice(sorted(machine.outside)))
+                size = _log_uniform(*machine.outside[kind], rng)
         truths.append(Truth(case, Hidden(sort), causes, kind, size, spread))
     return truths
 
 
 def _cause(
     library: Sequence[Hypothesis],
-    loudness: Loudness,
+    detectability: Detectability,
     limits: tuple[float, float],
     rng: np.random.Generator,
 ) -> HiddenCause:
     if not library:
-        raise InvalidInputError("causes to hide", "none", "some of the plant's library")
+        raise InvalidInputError("causes to hide", "none", "some of the machine's library")
     for _ in range(ATTEMPTS):
         hypothesis = library[int(rng.integers(len(library)))]
         wanted = _log_uniform(*limits, rng)
-        found = _at_loudness(hypothesis, wanted, loudness, rng)
+        found = _at_detectability(hypothesis, wanted, detectability, rng)
         if found is not None and found.d >= limits[0]:  # commissioning errors, fitted, take some
             return found
     raise InvalidInputError("causes to hide", "all too faint", f"one that reaches d = {limits[0]}")
 
 
-def _at_loudness(
-    hypothesis: Hypothesis, wanted: float, loudness: Loudness, rng: np.random.Generator
+def _at_detectability(
+    hypothesis: Hypothesis, wanted: float, detectability: Detectability, rng: np.random.Generator
 ) -> HiddenCause | None:
     """The cause at the size whose d is within a tenth of what is wanted; None if out of range."""
-    runs = loudness.base.runs
+    runs = detectability.base.runs
     where = runs.indices(hypothesis)
     low, high = np.array(hypothesis.smallest), np.array(hypothesis.largest)
     sign = rng.choice(hypothesis.signs)
@@ -134,7 +134,7 @@ def _at_loudness(
     size = float(np.sqrt(low[0] * high[0]) / high[0])  # of the largest
     for _ in range(SECANTS):
         shift = runs.depart(runs.origin, where, sign * size * share * high)
-        d = loudness.linear(shift)
+        d = detectability.linear(shift)
         if abs(np.log(max(d, 1e-6) / wanted)) < 0.1:
             break
         size *= float(np.clip(wanted / max(d, 1e-6), 0.05, 20.0))
@@ -143,7 +143,7 @@ def _at_loudness(
     shift = runs.depart(runs.origin, where, sign * size * share * high)
     names = hypothesis.parameters
     departures = {name: float(shift[i]) for name, i in zip(names, where, strict=True)}
-    return HiddenCause(hypothesis.effect, hypothesis.target, departures, loudness.full(shift))
+    return HiddenCause(hypothesis.effect, hypothesis.target, departures, detectability.full(shift))
 
 
 def _log_uniform(low: float, high: float, rng: np.random.Generator) -> float:

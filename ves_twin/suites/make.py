@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import replace
 from pathlib import Path
+
+import numpy as np
 
 from ves_twin.core.errors import FileAccessError, InvalidInputError
 from ves_twin.core.whole_file import whole_file
@@ -12,10 +14,10 @@ from ves_twin.core.workers import Workers
 from ves_twin.diagnosis.linearise import linearise
 from ves_twin.diagnosis.preprocess import preprocess
 from ves_twin.diagnosis.whitening import whitening_declared
-from ves_twin.suites.aliases import stand_ins
-from ves_twin.suites.bench import BlindBench, BlindRig
-from ves_twin.suites.benches import bench_of
-from ves_twin.suites.draw import Loudness, draw_truths
+from ves_twin.suites.aliases import aliases
+from ves_twin.suites.draw import Detectability, draw_truths
+from ves_twin.suites.machine import BlindMachine, BlindRig
+from ves_twin.suites.machines import machine_of
 from ves_twin.suites.pinned import pinned_recipe
 from ves_twin.suites.recipe import Recipe
 from ves_twin.suites.save_bare import save_bare
@@ -28,6 +30,7 @@ from ves_twin.suites.suite import (
     STANDSTILL,
     Suite,
     commissioning_file,
+    from_folder,
 )
 from ves_twin.suites.truth import Hidden, Truth
 
@@ -53,24 +56,28 @@ def make_suite(
         workers: processes.
 
     Raises:
-        UnknownNameError: no such plant or background.
+        UnknownNameError: no such machine or background.
         InvalidInputError: a folder that holds something else, or a recipe that cannot be met.
         FileAccessError: not writable.
     """
-    bench = bench_of(recipe.bench)
-    recipe.check(bench)
+    machine = machine_of(recipe.machine)
+    recipe.check(machine)
     key = _key(folder, key_file)
-    recipe = pinned_recipe(recipe, folder, key)
+    stored = replace(recipe, machine=from_folder(recipe.machine, folder))
+    seed = pinned_recipe(stored, folder, key).seed
+    recipe = replace(recipe, seed=seed)
     root = recipe.rng(1)
-    standstill = bench.record(BlindRig(bench.commissioned(root, recipe.spread)), "standstill", root)
+    standstill = machine.record(
+        BlindRig(machine.commissioned(root, recipe.spread)), "standstill", root
+    )
     save_bare(standstill, folder / STANDSTILL)
-    _commission(bench, recipe, folder)
-    truths = _truths(bench, recipe, progress, workers)
+    _commission(machine, recipe, folder)
+    truths = _truths(machine, recipe, progress, workers)
     for n, truth in enumerate(truths):
         progress(n / len(truths), "recordings")
         sealed = folder / truth.case / "truth.sealed"
         if not sealed.is_file():
-            whole = _record(bench, truth, recipe, folder, n)
+            whole = _record(machine, truth, recipe, folder, n)
             with whole_file(sealed) as partial:
                 partial.write_bytes(seal(whole.to_json(), key))
     excluded = {
@@ -79,7 +86,7 @@ def make_suite(
         if t.hidden is Hidden.OUTSIDE and t.causes
     }
     cases = tuple(t.case for t in truths)
-    suite = Suite(recipe.bench, cases, excluded, recipe.commissioned, recipe.baseline)
+    suite = Suite(recipe.machine, cases, excluded, recipe.commissioned, recipe.baseline)
     suite.save(folder)
     return suite
 
@@ -98,49 +105,87 @@ def _key(folder: Path, key_file: Path) -> str:
     return key
 
 
-def _commission(bench: BlindBench, recipe: Recipe, folder: Path) -> None:
+def _commission(machine: BlindMachine, recipe: Recipe, folder: Path) -> None:
     """Other rigs in order, each drawn for itself."""
     for k in range(recipe.commissioned):
         rng = recipe.rng(3, k)
-        rig = BlindRig(bench.commissioned(rng, recipe.spread), background=recipe.background)
-        save_bare(bench.record(rig, "train", rng), folder / commissioning_file(k + 1))
+        rig = BlindRig(machine.commissioned(rng, recipe.spread), background=recipe.background)
+        save_bare(machine.record(rig, "train", rng), folder / commissioning_file(k + 1))
 
 
-def _truths(bench: BlindBench, recipe: Recipe, progress: Progress, workers: int) -> list[Truth]:
+def _truths(machine: BlindMachine, recipe: Recipe, progress: Progress, workers: int) -> list[Truth]:
     rng = recipe.rng(0)
-    nominal = bench.record(BlindRig(), recipe.programme, rng)
+    nominal = machine.record(BlindRig(), recipe.programme, rng)
     with Workers(workers) as shared:
-        runs = preprocess(bench.forward, [nominal], shared).runs
+        runs = preprocess(machine.forward, [nominal], shared, machine.rate).runs
         base = linearise(runs, runs.origin, progress)
-        loudness = Loudness(base, whitening_declared(runs))
-        truths = draw_truths(bench, recipe.counts, loudness, rng, recipe.spread)
+        detectability = Detectability(base, whitening_declared(runs))
+        truths = draw_truths(machine, recipe.counts, detectability, rng, recipe.spread)
         left_out = [t for t in truths if t.hidden is Hidden.OUTSIDE and t.causes]
-        likes = dict(zip([t.case for t in left_out], stand_ins(runs, left_out), strict=True))
-    return [
-        replace(t, background=recipe.background, stand_ins=likes.get(t.case, ())) for t in truths
-    ]
+        likes = dict(zip([t.case for t in left_out], aliases(runs, left_out), strict=True))
+    return [replace(t, background=recipe.background, aliases=likes.get(t.case, ())) for t in truths]
 
 
-def _record(bench: BlindBench, truth: Truth, recipe: Recipe, folder: Path, number: int) -> Truth:
-    """Write the recordings of a case; its truth with every value of the rig."""
-    rng = recipe.rng(2, number)
-    usual = bench.commissioned(rng, truth.spread)
-    nominal = {p.name: p.nominal for p in bench.forward.parameters}
-    values = dict(usual)
+def record_pair(
+    machine: BlindMachine,
+    rigs: tuple[BlindRig, BlindRig],
+    place: Path,
+    rng: np.random.Generator,
+    programme: str = "train",
+    lead: float = 0.0,
+) -> None:
+    """Write what is to be explained, and what is held out.
+
+    Args:
+        machine: that measures.
+        rigs: of the two recordings.
+        place: folder of the case.
+        rng: of noise and disturbance.
+        programme: of the first recording.
+        lead: motion before it that is not recorded [s].
+    """
+    for rig, fed, name in zip(rigs, (programme, "held_out"), (RECORDING, HELD_OUT), strict=True):
+        save_bare(machine.record(rig, fed, rng, lead), place / name)
+
+
+def hide(
+    machine: BlindMachine,
+    usual: Mapping[str, float],
+    truth: Truth,
+    deployed: Mapping[str, object] | None = None,
+) -> BlindRig:
+    """A rig within its tolerances with what a case hides.
+
+    Args:
+        machine: whose rig.
+        usual: its values without anything hidden.
+        truth: what is hidden.
+        deployed: keys of the scenario that its programs have otherwise.
+    """
+    nominal, values = {p.name: p.nominal for p in machine.forward.parameters}, dict(usual)
     for cause in truth.causes:
         for name, departure in cause.departures.items():
             values[name] = values.get(name, nominal[name]) + departure
-    truth = replace(truth, values=values, repaired=recipe.repaired)
-    rig = BlindRig(values, truth.outside, truth.outside_size, background=truth.background)
+    kind, size = truth.outside, truth.outside_size
+    return BlindRig(values, kind, size, deployed or {}, truth.background)
+
+
+def _record(
+    machine: BlindMachine, truth: Truth, recipe: Recipe, folder: Path, number: int
+) -> Truth:
+    """Write the recordings of a case; its truth with every value of the rig."""
+    rng = recipe.rng(2, number)
+    usual = machine.commissioned(rng, truth.spread)
+    rig = hide(machine, usual, truth)
+    truth = replace(truth, values=rig.values, repaired=recipe.repaired)
     healthy = BlindRig(usual, background=truth.background)
     place = folder / truth.case
     lead = recipe.rng(4, number).uniform(*LEAD) if recipe.cut else 0.0
-    save_bare(bench.record(rig, recipe.programme, rng, lead), place / RECORDING)
     held = healthy if recipe.repaired else rig
-    save_bare(bench.record(held, "held_out", rng, lead), place / HELD_OUT)
+    record_pair(machine, (rig, held), place, rng, recipe.programme, lead)
     if recipe.baseline:
         rng = recipe.rng(5, number)
-        before = bench.again(usual, rng, truth.spread, DRIFT * truth.spread)
+        before = machine.again(usual, rng, truth.spread, DRIFT * truth.spread)
         healthy = replace(healthy, values=before)
-        save_bare(bench.record(healthy, recipe.programme, rng), place / BASELINE)
+        save_bare(machine.record(healthy, recipe.programme, rng), place / BASELINE)
     return truth

@@ -39,9 +39,20 @@ class Material:
 
     recordings: tuple[Recording, ...]
     held_out: tuple[Recording, ...]
-    standstill: Recording
-    commissioning: tuple[Recording, ...]
-    baseline: tuple[Recording, ...]
+    standstill: Recording | None
+    commissioning: tuple[Recording, ...] = ()
+    baseline: tuple[Recording, ...] = ()
+
+    @staticmethod
+    def in_folder(place: Path, standstill: bool) -> Material:
+        """Of a single case, with its standstill in the same folder if there is one.
+
+        Raises:
+            FileAccessError: one is missing.
+        """
+        record, held_out = load_recording(place / RECORDING), load_recording(place / HELD_OUT)
+        still = load_recording(place / STANDSTILL) if standstill else None
+        return Material((record,), (held_out,), still)
 
     @staticmethod
     def of(folder: Path, suite: Suite, case: str, use: Use) -> Material:
@@ -52,14 +63,13 @@ class Material:
             InvalidInputError: too few commissioned rigs to tell anything.
         """
         place = folder / case
-        recordings = [load_recording(place / RECORDING)]
-        if use.after:
-            recordings.append(load_recording(place / next_file(use.after)))
+        own = Material.in_folder(place, standstill=False)
+        after = (load_recording(place / next_file(use.after)),) if use.after else ()
         count = suite.commissioned if use.commissioning else 0
         has_baseline = suite.baseline and use.baseline
         return Material(
-            tuple(recordings),
-            (load_recording(place / HELD_OUT),),
+            (*own.recordings, *after),
+            own.held_out,
             load_recording(folder / STANDSTILL),
             tuple(load_recording(folder / commissioning_file(k + 1)) for k in range(count)),
             (load_recording(place / BASELINE),) if has_baseline else (),

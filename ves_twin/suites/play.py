@@ -14,10 +14,9 @@ import numpy as np
 
 from ves_twin.core.errors import InvalidInputError, UnknownNameError
 from ves_twin.core.whole_file import write_whole
-from ves_twin.machines.pendulum.excitations import pendulum_menu
 from ves_twin.suites.answers import Answer
-from ves_twin.suites.bench import BlindRig
-from ves_twin.suites.benches import bench_of
+from ves_twin.suites.machine import BlindRig
+from ves_twin.suites.machines import machine_of
 from ves_twin.suites.save_bare import save_bare
 from ves_twin.suites.suite import load_suite, next_file
 from ves_twin.suites.truth import Truth
@@ -53,8 +52,8 @@ def play_next(
     """
     if choice not in CHOICES:
         raise UnknownNameError("choice of a next experiment", choice, CHOICES)
-    bench = bench_of(load_suite(folder).bench)
-    menu = {programme.name: programme for programme in pendulum_menu()}
+    machine = machine_of(load_suite(folder).machine)
+    menu = machine.excitations
     played = {}
     for n, truth in enumerate(truths):
         progress(n / len(truths), truth.case)
@@ -67,9 +66,9 @@ def play_next(
         name = _chosen(offered, choice, rng)
         if name not in menu:
             raise UnknownNameError("next programme", name, menu)
-        values = bench.again(truth.values, rng, truth.spread, 0.0)
+        values = machine.again(truth.values, rng, truth.spread, 0.0)
         rig = BlindRig(values, truth.outside, truth.outside_size, background=truth.background)
-        save_bare(bench.play(rig, menu[name], rng), folder / truth.case / next_file(choice))
+        save_bare(machine.play(rig, menu[name], rng), folder / truth.case / next_file(choice))
         played[truth.case] = name
     write_whole(played_file(folder, choice), json.dumps(played, indent=1) + "\n")
     return played

@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from ves_twin.core.errors import InvalidInputError, UnknownNameError
-from ves_twin.suites.bench import BlindBench
+from ves_twin.suites.machine import BlindMachine
 from ves_twin.suites.truth import Hidden
 
 
@@ -17,7 +17,7 @@ class Recipe:
     """Which cases, of which rigs, with what else beside them.
 
     Attributes:
-        bench: a name of BENCHES.
+        machine: a name that `check_machine` knows, or the file of an MJCF machine.
         counts: cases of each sort.
         seed: of everything drawn, and as secret as the key; None for any.
         spread: commissioning errors, in declared sd.
@@ -29,7 +29,7 @@ class Recipe:
         repaired: whether held-out recordings are of the rig with nothing hidden any more.
     """
 
-    bench: str
+    machine: str
     counts: Mapping[Hidden, int]
     seed: int | None
     spread: float = 1.0
@@ -55,18 +55,18 @@ class Recipe:
             raise InvalidInputError("seed of a suite", None, "a number (`pinned_recipe` draws one)")
         return np.random.default_rng([self.seed, *part])
 
-    def check(self, bench: BlindBench) -> None:
-        """Refuse what the plant cannot do.
+    def check(self, machine: BlindMachine) -> None:
+        """Refuse what the machine cannot do.
 
         Raises:
             UnknownNameError: a background that is no kind outside the library.
             InvalidInputError: a size out of range, or a negative number of rigs.
         """
         for kind, size in self.background.items():
-            if kind not in bench.outside:
-                raise UnknownNameError("kind outside the library", kind, bench.outside)
-            if not 0.0 < size <= bench.outside[kind][1]:
-                expected = f"above 0 and up to {bench.outside[kind][1]:g}"
+            if kind not in machine.outside:
+                raise UnknownNameError("kind outside the library", kind, machine.outside)
+            if not 0.0 < size <= machine.outside[kind][1]:
+                expected = f"above 0 and up to {machine.outside[kind][1]:g}"
                 raise InvalidInputError(f"background {kind}", size, expected)
         if self.commissioned < 0:
             raise InvalidInputError("commissioned rigs", self.commissioned, "0 or more")

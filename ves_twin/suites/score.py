@@ -1,4 +1,4 @@
-"""mark_suite: answers against the truth: counts, Wilson intervals, confusions, by size in sigma."""
+"""score: answers against the truth: counts, Wilson intervals, confusions, by size in sigma."""
 
 from __future__ import annotations
 
@@ -9,19 +9,16 @@ from itertools import pairwise
 from pathlib import Path
 
 from ves_twin.core.errors import FileAccessError, InvalidInputError
-from ves_twin.diagnosis.verdict import Kind
 from ves_twin.suites.answers import Answer
+from ves_twin.suites.judgement import NAMES, Judgement, judge
 from ves_twin.suites.rate import Rate
 from ves_twin.suites.seal import unseal
 from ves_twin.suites.suite import load_suite
 from ves_twin.suites.truth import Hidden, Truth
 
-NAMES = frozenset(kind.value for kind in Kind if kind.names_a_plant)
-"""Verdicts that name causes for good."""
-
 Pair = tuple[Truth, Answer]
 
-LOUD = 10.0
+CLEAR = 10.0
 """Size in sigma from which a cause, or both of two, should be found."""
 
 BINS = (0.0, 6.0, 10.0, 20.0, float("inf"))
@@ -29,7 +26,7 @@ BINS = (0.0, 6.0, 10.0, 20.0, float("inf"))
 
 
 @dataclass(frozen=True)
-class Marks:
+class Scores:
     """How a set of answers did.
 
     Attributes:
@@ -65,12 +62,12 @@ def read_truths(folder: Path, key: str) -> list[Truth]:
     return truths
 
 
-def mark(
+def score(
     truths: Sequence[Truth],
     answers: Mapping[str, Answer],
     other: Mapping[str, Answer] | None = None,
-) -> Marks:
-    """Mark anybody's answers; a case without one is not counted.
+) -> Scores:
+    """Score anybody's answers; a case without one is not counted.
 
     Args:
         truths: of the suite.
@@ -86,15 +83,15 @@ def mark(
     single = [(t, a) for t, a in both if t.hidden is Hidden.SINGLE]
     named = [pair for pair in single if pair[1].verdict in NAMES]
     rows = _rows_of_none(both) | _rows_of_single(single, named) | _rows_of_others(both)
-    firm = [(t, a) for t, a in single if other and _exact_firm((t, other.get(t.case, _NONE)))]
-    rows["single: firm names of the other answers that stay"] = Rate.over(firm, _exact_firm)
+    firm = [(t, a) for t, a in single if other and _right_firm((t, other.get(t.case, _NONE)))]
+    rows["single: firm names of the other answers that stay"] = Rate.over(firm, _right_firm)
     repaired = [a for t, a in both if t.repaired and a.verdict == "named" and a.passed is not None]
     rows["held-out without the effect: the gate refuses"] = Rate.over(
         repaired, lambda a: not a.passed
     )
-    return Marks(
+    return Scores(
         {name: rate for name, rate in rows.items() if rate.of},
-        Counter((t.causes[0].label, _said(a)) for t, a in single if not _exact((t, a))),
+        Counter((t.causes[0].label, _said(a)) for t, a in single if not _right((t, a))),
         _reliability(named),
         _coverage(single),
         _seconds(both),
@@ -117,14 +114,14 @@ def _rows_of_single(single: Sequence[Pair], named: Sequence[Pair]) -> dict[str, 
     rows = {}
     for low, high in pairwise(BINS):
         some = [pair for pair in single if low <= pair[0].d < high]
-        rows[f"single, d {low:g} to {high:g}: exact"] = Rate.over(some, _exact)
-    loud = [pair for pair in single if pair[0].d >= LOUD]
-    rows[f"single, d >= {LOUD:g}: exact"] = Rate.over(loud, _exact)
-    rows[f"single, d >= {LOUD:g}: exact and firm"] = Rate.over(loud, _exact_firm)
+        rows[f"single, d {low:g} to {high:g}: exact"] = Rate.over(some, _right)
+    clear = [pair for pair in single if pair[0].d >= CLEAR]
+    rows[f"single, d >= {CLEAR:g}: exact"] = Rate.over(clear, _right)
+    rows[f"single, d >= {CLEAR:g}: exact and firm"] = Rate.over(clear, _right_firm)
     rows["single: a wrong name"] = Rate.over(single, _wrong)
-    rows["single: right if named"] = Rate.over(named, _exact)
-    heard = [pair for pair in single if pair[1].verdict in {*NAMES, "ambiguous"}]
-    rows["single and detected: truth among the causes"] = Rate.over(heard, _holds)
+    rows["single: right if named"] = Rate.over(named, _right)
+    seen = [pair for pair in single if pair[1].verdict in {*NAMES, "ambiguous"}]
+    rows["single and detected: truth among the causes"] = Rate.over(seen, _holds)
     return rows
 
 
@@ -132,14 +129,14 @@ def _rows_of_others(both: Sequence[Pair]) -> dict[str, Rate]:
     outside = [(t, a) for t, a in both if t.hidden is Hidden.OUTSIDE and a.verdict != "nothing"]
     kinds = [pair for pair in outside if pair[0].outside]
     left_out = [pair for pair in outside if not pair[0].outside]
-    pairs = [(t, a) for t, a in both if t.hidden is Hidden.PAIR and t.d >= LOUD]
+    pairs = [(t, a) for t, a in both if t.hidden is Hidden.PAIR and t.d >= CLEAR]
     group = [(t, a) for t, a in both if t.hidden is Hidden.CONFUSABLE and a.verdict != "nothing"]
     return {
         "a kind that the library lacks, detected: abstains": Rate.over(kinds, _abstains),
         "a cause left out, detected: abstains": Rate.over(left_out, _abstains),
-        "a cause left out, detected: a name beyond its stand-ins": Rate.over(left_out, _beyond),
-        f"pairs, both d >= {LOUD:g}: both right": Rate.over(pairs, _both),
-        f"pairs, both d >= {LOUD:g}: a wrong name": Rate.over(pairs, _wrong),
+        "a cause left out, detected: a name beyond its aliases": Rate.over(left_out, _beyond),
+        f"pairs, both d >= {CLEAR:g}: both right": Rate.over(pairs, _right),
+        f"pairs, both d >= {CLEAR:g}: a wrong name": Rate.over(pairs, _wrong),
         "confusable and detected: truth among the causes": Rate.over(group, _holds),
     }
 
@@ -149,33 +146,29 @@ def _abstains(pair: Pair) -> bool:
 
 
 def _beyond(pair: Pair) -> bool:
-    """Whether it names what could not have stood in for the cause, told before the answer."""
+    """Whether it names what the cause cannot be taken for, told before the answer."""
     truth, answer = pair
-    likes = [set(labels) for labels in truth.stand_ins]
-    return answer.verdict in NAMES and set(answer.causes) not in likes
+    aliases = [set(labels) for labels in truth.aliases]
+    return answer.verdict in NAMES and set(answer.causes) not in aliases
 
 
-def _exact_firm(pair: Pair) -> bool:
-    return _exact(pair) and all(pair[1].firm)
+def _right_firm(pair: Pair) -> bool:
+    return _right(pair) and all(pair[1].firm)
 
 
 def _firm(answer: Answer) -> bool:
     return answer.verdict in NAMES and any(answer.firm or [True])
 
 
-def _exact(pair: Pair) -> bool:
+def _right(pair: Pair) -> bool:
     truth, answer = pair
-    return answer.verdict == "named" and list(answer.causes) == [truth.causes[0].label]
-
-
-def _both(pair: Pair) -> bool:
-    truth, answer = pair
-    return answer.verdict == "several" and set(answer.causes) == {c.label for c in truth.causes}
+    return judge(answer, truth.labels, outside=False) is Judgement.RIGHT
 
 
 def _wrong(pair: Pair) -> bool:
     truth, answer = pair
-    return answer.verdict in NAMES and bool(set(answer.causes) - {c.label for c in truth.causes})
+    judged = judge(answer, truth.labels, outside=False)
+    return answer.verdict in NAMES and judged is Judgement.WRONG
 
 
 def _holds(pair: Pair) -> bool:
@@ -192,13 +185,13 @@ def _reliability(named: Sequence[Pair]) -> dict[str, Rate]:
     for low, high in ((0.0, 0.5), (0.5, 0.9), (0.9, 0.99), (0.99, 1.01)):
         some = [pair for pair in named if low <= pair[1].probability < high]
         if some:
-            found[f"{low:g} to {min(high, 1.0):g}"] = Rate.over(some, _exact)
+            found[f"{low:g} to {min(high, 1.0):g}"] = Rate.over(some, _right)
     return found
 
 
 def _coverage(single: Sequence[Pair]) -> Rate:
     inside = []
-    for truth, answer in filter(_exact, single):
+    for truth, answer in filter(_right, single):
         for name, departure in truth.causes[0].departures.items():
             for said, (_, low, high, nominal) in (answer.sizes or {}).items():
                 if said.split(":")[-1] == name.split(":")[-1]:

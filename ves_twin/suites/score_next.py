@@ -1,4 +1,4 @@
-"""mark_next: what the next experiment of ambiguous cases was worth."""
+"""score_next: what the next experiment of ambiguous cases was worth."""
 
 from __future__ import annotations
 
@@ -9,12 +9,13 @@ import numpy as np
 
 from ves_twin.core.types import FloatArray
 from ves_twin.suites.answers import Answer
+from ves_twin.suites.judgement import Judgement, judge
 from ves_twin.suites.rate import Rate
 from ves_twin.suites.truth import Truth
 
 
 @dataclass(frozen=True)
-class NextMarks:
+class NextScores:
     """How next experiments did.
 
     Attributes:
@@ -34,12 +35,12 @@ class NextMarks:
         return float(np.corrcoef(logs.T)[0, 1])
 
 
-def mark_next(
+def score_next(
     truths: Sequence[Truth],
     first: Mapping[str, Answer],
     after: Mapping[str, Mapping[str, Answer]],
     played: Mapping[str, Mapping[str, str]],
-) -> NextMarks:
+) -> NextScores:
     """Count, of cases with one hidden cause that were ambiguous at first.
 
     Args:
@@ -50,7 +51,7 @@ def mark_next(
     """
     rows: dict[str, Rate] = {}
     points = []
-    hidden = {t.case: t.causes[0].label for t in truths if len(t.causes) == 1 and not t.stand_ins}
+    hidden = {t.case: t.causes[0].label for t in truths if len(t.causes) == 1 and not t.aliases}
     ambiguous = [case for case in hidden if case in first and first[case].verdict == "ambiguous"]
     holds = [case for case in ambiguous if hidden[case] in first[case].causes]
     rows["ambiguous: truth among the causes"] = Rate(len(holds), len(ambiguous))
@@ -69,11 +70,11 @@ def mark_next(
             predicted = (first[case].programmes or {})[played[choice][case]]
             if realised is not None:
                 points.append((predicted, realised))
-    return NextMarks(rows, np.array(points).reshape(-1, 2))
+    return NextScores(rows, np.array(points).reshape(-1, 2))
 
 
 def _names(answer: Answer, label: str) -> bool:
-    return answer.verdict == "named" and list(answer.causes) == [label]
+    return judge(answer, {label}, outside=False) is Judgement.RIGHT
 
 
 def _realised(first: Answer, after: Answer, label: str) -> float | None:

@@ -1,14 +1,16 @@
-"""Suite: the public part of a blind suite: which cases, which plant, what a diagnosis may read."""
+"""Suite: the public part of a blind suite: which cases, what machine, what a diagnosis reads."""
 
 from __future__ import annotations
 
 import json
+import os
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass, field
 from pathlib import Path
 
 from ves_twin.core.errors import FileAccessError, InvalidInputError, UnknownNameError
 from ves_twin.core.whole_file import write_whole
+from ves_twin.machines.mjcf.description import shipped_rigs
 
 SCHEMA = 1
 """Version of suite.json."""
@@ -33,7 +35,7 @@ class Suite:
     """What everybody may know.
 
     Attributes:
-        bench: which plant with which library: a name of BENCHES.
+        machine: a name that `check_machine` knows, or the file of an MJCF machine.
         cases: names, in order.
         excluded: case -> causes that its diagnosis must not consider.
         commissioned: recordings of other rigs in order.
@@ -41,7 +43,7 @@ class Suite:
         schema: version.
     """
 
-    bench: str
+    machine: str
     cases: tuple[str, ...]
     excluded: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
     commissioned: int = 0
@@ -54,7 +56,8 @@ class Suite:
         Raises:
             FileAccessError: not writable.
         """
-        write_whole(folder / FILE, json.dumps(asdict(self), indent=1) + "\n")
+        content = asdict(self) | {"machine": from_folder(self.machine, folder)}
+        write_whole(folder / FILE, json.dumps(content, indent=1) + "\n")
 
 
 def load_suite(folder: Path) -> Suite:
@@ -74,8 +77,9 @@ def load_suite(folder: Path) -> Suite:
     if not isinstance(content, dict) or content.get("schema") != SCHEMA:
         raise InvalidInputError(str(path), content, f"a suite of schema {SCHEMA}")
     try:
+        name = str(content["machine"] if "machine" in content else content["bench"])
         return Suite(
-            str(content["bench"]),
+            str(folder / name) if _is_file(name) else name,
             tuple(map(str, content["cases"])),
             {case: tuple(map(str, names)) for case, names in content["excluded"].items()},
             int(content.get("commissioned", 0)),
@@ -83,18 +87,28 @@ def load_suite(folder: Path) -> Suite:
         )
     except (KeyError, TypeError, ValueError, AttributeError, OverflowError) as error:
         came = f"{type(error).__name__} at {error}"
-        raise InvalidInputError(str(path), came, "bench, cases, excluded") from None
+        raise InvalidInputError(str(path), came, "machine, cases, excluded") from None
 
 
-BENCHES = ("pendulum", "ves2", "ves2_fast")
-"""Plants of blind suites: the pendulum; VES II with pressure hydraulics; the same in `fast`."""
+OF_VES2 = {"ves2": "ves2_pressure", "ves2_fast": "ves2_pressure_fast"}
+"""VES II in blind suites: with pressure hydraulics, and the same in `fast`."""
 
 
-def check_bench(name: str) -> None:
-    """Refuse an unknown plant.
+def check_machine(name: str) -> None:
+    """Refuse an unknown machine.
 
     Raises:
-        UnknownNameError: not in BENCHES.
+        UnknownNameError: neither VES II, nor a shipped MJCF machine, nor a TOML file.
     """
-    if name not in BENCHES:
-        raise UnknownNameError("plant of blind suites", name, BENCHES)
+    known = (*shipped_rigs(), *OF_VES2)
+    if not _is_file(name) and name not in known:
+        raise UnknownNameError("machine of blind suites", name, known)
+
+
+def from_folder(name: str, folder: Path) -> str:
+    """A machine's file as seen from a folder, so that both can be moved together; a name as is."""
+    return os.path.relpath(name, folder) if _is_file(name) else name
+
+
+def _is_file(name: str) -> bool:
+    return Path(name).suffix == ".toml"

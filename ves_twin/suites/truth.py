@@ -6,9 +6,8 @@ import json
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass, field
 from enum import StrEnum
-from typing import Any
 
-from ves_twin.effects.registry import label_of_today
+from ves_twin.suites.old_names import current_label, current_size
 
 
 class Hidden(StrEnum):
@@ -45,10 +44,16 @@ class HiddenCause:
         """effect@target."""
         return f"{self.effect}@{self.target}"
 
+    @staticmethod
+    def of(effect: str, target: str, departures: Mapping[str, float], d: float) -> HiddenCause:
+        """From a file, whose names may be older."""
+        effect, _, target = current_label(f"{effect}@{target}").partition("@")
+        return HiddenCause(effect, target, _current(departures), d)
+
 
 @dataclass(frozen=True)
 class Truth:
-    """What was hidden, and how loud it is.
+    """What was hidden, and how well it can be seen.
 
     Attributes:
         case: name of the case.
@@ -59,7 +64,7 @@ class Truth:
         spread: commissioning errors, in declared sd.
         values: of every parameter that was drawn or hidden; empty until it is recorded.
         background: kinds outside the library that the rig has besides, with their sizes.
-        stand_ins: causes, alone or together, that would leave hardly anything of a cause which
+        aliases: causes, alone or together, that would leave hardly anything of a cause which
             the diagnosis must leave out.
         repaired: whether nothing is hidden any more in the held-out recording.
     """
@@ -72,8 +77,13 @@ class Truth:
     spread: float = 1.0
     values: Mapping[str, float] = field(default_factory=dict)
     background: Mapping[str, float] = field(default_factory=dict)
-    stand_ins: tuple[tuple[str, ...], ...] = ()
+    aliases: tuple[tuple[str, ...], ...] = ()
     repaired: bool = False
+
+    @property
+    def labels(self) -> frozenset[str]:
+        """effect@target of each cause."""
+        return frozenset(cause.label for cause in self.causes)
 
     @property
     def d(self) -> float:
@@ -86,19 +96,15 @@ class Truth:
 
     @staticmethod
     def from_json(text: str) -> Truth:
-        """From text; names of effects that were others when it was sealed are today's."""
+        """From text, also of earlier suites."""
         content = json.loads(text)
-        causes = tuple(_hidden(cause) for cause in content.pop("causes"))
-        twins = tuple(tuple(map(label_of_today, one)) for one in content.pop("stand_ins", ()))
-        content["values"] = _today(content.pop("values", {}))
+        causes = tuple(HiddenCause.of(**cause) for cause in content.pop("causes"))
+        groups = content.pop("aliases" if "aliases" in content else "stand_ins", ())
+        aliases = tuple(tuple(map(current_label, labels)) for labels in groups)
+        content["values"] = _current(content.get("values", {}))
         sort = Hidden(content.pop("hidden"))
-        return Truth(causes=causes, hidden=sort, stand_ins=twins, **content)
+        return Truth(causes=causes, hidden=sort, aliases=aliases, **content)
 
 
-def _hidden(content: dict[str, Any]) -> HiddenCause:
-    effect, target = label_of_today(f"{content['effect']}@{content['target']}").split("@")
-    return HiddenCause(effect, target, _today(content["departures"]), content["d"])
-
-
-def _today(values: Mapping[str, float]) -> dict[str, float]:
-    return {label_of_today(name): value for name, value in values.items()}
+def _current(sizes: Mapping[str, float]) -> dict[str, float]:
+    return dict(current_size(name, value) for name, value in sizes.items())

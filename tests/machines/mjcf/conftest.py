@@ -16,4 +16,4 @@ def data_folder() -> Path:
     for folder in FOLDERS:
         if folder is not None and (Path(folder) / "emps" / "emps_train.csv").is_file():
             return Path(folder)
-    pytest.skip("public data are absent: see models/rigs/README.md, or set VES_TWIN_DATA")
+    pytest.skip("public data are absent: see models/machines/README.md, or set VES_TWIN_DATA")

@@ -68,3 +68,30 @@ def test_a_run_that_mujoco_had_to_reset_is_none(forwards, mode, more, tmp_path, 
     monkeypatch.chdir(tmp_path)  # MuJoCo writes its log where it runs
     found = forwards[mode].simulate(FED, {"body_mass@arm:mass": -0.5, **more})
     assert np.isnan(found).all()
+
+
+def test_a_steady_effort_is_the_same_in_mujocos_own_loop_and_in_ours(tmp_path):
+    """Friction that differs by direction needs our loop; at a size next to nothing it is none."""
+    forward = MjcfForward.of(rig(tmp_path))
+    pushed = {"force_offset@rail:offset": 2.0, "force_offset@swing:offset": -0.1}
+    inside = forward.simulate(programme(), pushed)
+    outside = forward.simulate(programme(), pushed | {"viscous_asymmetry@rail:slope": 1e-12})
+    # to the rounding that a second of motion makes of it
+    assert np.abs(inside - outside)[:500].max() < 1e-6
+    assert np.abs(inside - forward.simulate(programme(), {})).max() > 1e-2
+
+
+def test_one_computer_reads_all_signals_of_a_part_late(tmp_path):
+    more = '\n[[effects]]\nkind = "sensor_delay"\non = ["cart"]\nlow = "-1 ms"\nsd = "0.1 ms"\n'
+    forward = MjcfForward.of(rig(tmp_path, more=more))
+    plain = forward.simulate(programme(), {})
+    late = forward.simulate(programme(), {"sensor_delay@cart:delay": 0.004})
+    names = [c.signal for c in forward.channels]
+    for i, name in enumerate(names):
+        whole = name.startswith("cart.")
+        expected = (
+            np.concatenate([plain[:1, i], plain[:1, i], plain[:-2, i]]) if whole else plain[:, i]
+        )
+        assert late[:, i] == pytest.approx(expected, abs=1e-12), name
+    (delay,) = [p for p in forward.parameters if p.name == "sensor_delay@cart:delay"]
+    assert (delay.low, delay.sd) == (-0.001, 0.0001)

@@ -127,7 +127,7 @@ def test_dry_friction_of_a_given_motion_asks_for_the_typical_speed_when_the_rig_
 
 def test_a_rig_is_told_from_a_form_of_ves_ii(tmp_path):
     assert is_rig(str(write_files(tmp_path)))
-    assert shipped_rigs() == ["emps", "ft_wrist"]
+    assert shipped_rigs() == ["emps", "ft_wrist", "pendulum"]
     assert all(is_rig(name) for name in shipped_rigs())
     assert not is_rig("ves2")
 
@@ -136,6 +136,12 @@ def test_a_rig_is_told_from_a_form_of_ves_ii(tmp_path):
 def test_every_rig_that_comes_with_the_twin_loads(name):
     """A set of rigs, or any other file that is none, does not lie among them."""
     assert Rig.load(name).description.name == name
+
+
+def test_rigs_that_moved_are_still_found_where_they_were():
+    for name in ("emps", "ft_wrist"):
+        before, now = Rig.load(f"models/rigs/{name}.toml"), Rig.load(name)
+        assert before.identity == now.identity
 
 
 def test_a_set_of_rigs_is_no_rig(tmp_path, capsys):
@@ -220,7 +226,7 @@ def test_public_data_are_found_by_folder_and_checked_by_content(tmp_path, monkey
 
 def test_a_model_that_mujoco_cannot_move_is_refused_in_one_line(tmp_path):
     for name in ("emps.toml", "emps.xml"):
-        text = (resource_folder("models/rigs") / name).read_text()
+        text = (resource_folder("models/machines/emps") / name).read_text()
         (tmp_path / name).write_text(text.replace('mass="90"', f'mass="1{40 * "0"}"'))
     with pytest.raises(VesTwinError, match="a model that can move") as caught:
         Rig.load(str(tmp_path / "emps.toml"))

@@ -2,17 +2,13 @@
 
 import numpy as np
 import pytest
+from pendulum import BLIND, PLANT, SPRING
 
 from ves_twin.core.errors import InvalidInputError
 from ves_twin.diagnosis.diagnose import diagnose
 from ves_twin.diagnosis.settings import Settings
 from ves_twin.diagnosis.verdict import Kind
-from ves_twin.machines.pendulum.forward import Pendulum
-from ves_twin.suites.bench import BlindRig
-from ves_twin.suites.pendulum import BlindPendulum
-
-PLANT = Pendulum()
-BENCH = BlindPendulum()
+from ves_twin.suites.machine import BlindRig
 
 
 @pytest.fixture(scope="module")
@@ -22,20 +18,20 @@ def settings(tmp_path_factory):
 
 def record(seed, programme="train", hidden=None):
     """One rig, always with drag that the library lacks; noise anew for each recording."""
-    values = BENCH.commissioned(np.random.default_rng(7))
+    values = BLIND.commissioned(np.random.default_rng(7))
     for name, size in (hidden or {}).items():
         values[name] = values.get(name, 0.0) + size
     rig = BlindRig(values, "quadratic_drag", 0.005)
-    return BENCH.record(rig, programme, np.random.default_rng(seed))
+    return BLIND.record(rig, programme, np.random.default_rng(seed))
 
 
 @pytest.mark.slow
 def test_what_is_always_there_is_no_fault_and_what_came_is_named(settings):
-    sick = record(1, hidden={"joint.stiffness": 0.02})
+    sick = record(1, hidden={SPRING: 0.02})
     assert diagnose(PLANT, [sick], settings=settings).verdict is not Kind.NAMED
     usual = [record(2)]
     verdict = diagnose(PLANT, [sick], baseline=usual, settings=settings)
-    assert (verdict.verdict, verdict.causes[0].effect) == (Kind.NAMED, "joint_stiffness")
+    assert (verdict.verdict, verdict.causes[0].effect) == (Kind.NAMED, "joint_spring")
     assert verdict.basis.baseline == "measured"
     same = diagnose(PLANT, [record(3)], baseline=usual, settings=settings)
     assert same.verdict is Kind.NOTHING

@@ -14,8 +14,8 @@ from ves_twin.machines.ves2.forward import DRIVE, RigForward
 from ves_twin.machines.ves2.inputs import one_step
 from ves_twin.scenario.schema import Scenario
 from ves_twin.simulator.replay import replay_scenario
-from ves_twin.suites.bench import BlindRig
-from ves_twin.suites.rig import BlindVes2
+from ves_twin.suites.machine import BlindRig
+from ves_twin.suites.ves2 import BlindVes2
 
 SHORT = {"run.duration": 1.5, "run.settle": 0.3, "arm.moves": []}
 
@@ -85,7 +85,7 @@ def test_an_edge_is_left_out_where_there_is_no_filter(plant):
 def test_a_recording_says_the_scenario_as_it_is_written_not_as_it_is_deployed():
     bench = BlindVes2("ves2_pressure_fast")
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr("ves_twin.suites.rig.SECONDS", 1.0)
+        patch.setattr("ves_twin.suites.ves2.SECONDS", 1.0)
         plain, odd = (
             bench.record(BlindRig(deployed=deployed), "train", np.random.default_rng(0))
             for deployed in ({}, {"legs.filter": "feedback"})

@@ -10,23 +10,22 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from pendulum import BIAS, BLIND, FRICTION, LATE_COMMAND, SPRING, exact
 from scipy.signal import lfilter
 
 from ves_twin.core.recording.recording import Recording
 from ves_twin.diagnosis.diagnose import diagnose
 from ves_twin.diagnosis.settings import Settings
-from ves_twin.machines.pendulum.forward import PARAMETERS, Pendulum
 from ves_twin.suites.answers import Answer
-from ves_twin.suites.bench import BlindRig
-from ves_twin.suites.pendulum import BlindPendulum
-from ves_twin.suites.score import mark
+from ves_twin.suites.machine import BlindRig
+from ves_twin.suites.score import score as scored
 from ves_twin.suites.truth import Hidden, HiddenCause, Truth
 
-BENCH = BlindPendulum()
+PLANT = exact()
 SINGLES = {
-    "coulomb_friction@joint": ("joint.friction", 0.006),
-    "joint_stiffness@joint": ("joint.stiffness", 0.03),
-    "encoder_offset@sensor": ("encoder.bias", -0.018),
+    "coulomb_friction@joint": (FRICTION, 0.006),
+    "joint_spring@joint": (SPRING, 0.03),
+    "sensor_offset@joint.angle.1": (BIAS, -0.018),
 }
 """Each about 15 sigma."""
 
@@ -43,13 +42,13 @@ def truth(n: int, hidden: Hidden, label: str = "") -> Truth:
 
 def measured(seed: int, departure: tuple[str, float] | None = None, outside: str = "") -> Recording:
     rng = np.random.default_rng([seed, 5])
-    values = BENCH.commissioned(rng)
-    values["command.delay"] = 0.0  # a twin of the sensor's delay, and no part of this library
+    values = BLIND.commissioned(rng)
+    values[LATE_COMMAND] = 0.0  # a twin of the sensor's delay, and no part of this library
     if departure:
         name, size = departure
         values[name] = values.get(name, 0.0) + size
     rig = BlindRig(values, outside, OUTSIDE.get(outside, 0.0))
-    return BENCH.record(rig, "train", rng)
+    return BLIND.record(rig, "train", rng)
 
 
 def slow_noise(recording: Recording, seed: int) -> Recording:
@@ -82,17 +81,17 @@ def settings(tmp_path_factory):
 @pytest.fixture(scope="module")
 def still():
     rng = np.random.default_rng(40)
-    return slow_noise(BENCH.record(BlindRig(), "standstill", rng), 40)
+    return slow_noise(BLIND.record(BlindRig(), "standstill", rng), 40)
 
 
 def score(cases, settings, plant=None, **material) -> dict[str, tuple[int, int]]:
-    """Counts of hits, as `ves-twin blind score` marks these answers."""
-    plant = plant or Pendulum()
+    """Counts of hits, as `ves-twin blind score` scores these answers."""
+    plant = plant or PLANT
     answers = {
         t.case: Answer.of(diagnose(plant, [recording], settings=settings, **material), 0.0)
         for t, recording in cases
     }
-    rows = mark([t for t, _ in cases], answers).rows
+    rows = scored([t for t, _ in cases], answers).rows
     return {name: (rate.hits, rate.of) for name, rate in rows.items()}
 
 
@@ -116,10 +115,9 @@ def test_intact_noise_with_a_memory_is_left_in_peace(settings, still, cases):
 @pytest.mark.slow
 def test_without_nuisances_every_rig_in_order_is_called_faulty(tmp_path, cases):
     """What scales, a stop watch and a datasheet leave open then has to be some cause."""
-    exact = Pendulum(tuple(replace(p, sd=0.0) for p in PARAMETERS))
-    count = cases(3)
+    count, sure = cases(3), exact(sd=0.0)
     settings = Settings(nulls=40, cache=tmp_path)
-    assert score(NONE[:count], settings, exact)[QUIET] == (0, count)
+    assert score(NONE[:count], settings, sure)[QUIET] == (0, count)
 
 
 @pytest.mark.slow

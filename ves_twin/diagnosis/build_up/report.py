@@ -19,6 +19,10 @@ from ves_twin.diagnosis.build_up.stand_ins import stand_ins
 ALONG = 0.3
 """Correlation from which channels are said to go along with what another one leaves."""
 
+SHAKEN = 0.25
+"""Share of a cause's amplitude from which a law of the same motion in what is left shakes its
+name. Chosen on EMPS, whose three frictions are published and leave a law of a tenth of theirs."""
+
 
 def report_of(halves: Halves, proof: Proof, ends: tuple[FloatArray, FloatArray]) -> BuildUp:
     """Everything that is told of a proof, sizes excepted.
@@ -60,7 +64,11 @@ def _proved(
     acts = np.flatnonzero(bench.acts(trial))
     own = max(acts, key=lambda c: before[c] - after[c])
     motion = same_motion(bench.regression.half, trial, int(own))
-    ruled = any(law.channel == own and law.variable in motion for law in laws)
+    taken = SHAKEN**2 * float(before[own] ** 2 - after[own] ** 2)
+    ruled = any(
+        law.channel == own and law.variable in motion and law.share * after[own] ** 2 > taken
+        for law in laws
+    )
     cause, difference = trials[trial].cause, proof.differences[trial]
     return Proved(
         effect=cause.effect,

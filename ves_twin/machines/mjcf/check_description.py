@@ -106,6 +106,11 @@ def _starts(told: RigDescription, model: mujoco.MjModel) -> None:
         if start.position == "measured" and joint not in {*positions, *told.drive.joints}:
             raise InvalidInputError(f"start.{joint}", "measured", "a signal of its position")
         place, speed = joint_units(model, joint)
-        if start.position != "measured":
+        if start.position not in ("measured", "recorded"):
             to_si(start.position, place, f"start.{joint}.position")
         to_si(start.speed, speed, f"start.{joint}.speed")
+        if (there := start.elsewhere) is not None:
+            for value in (there.position, there.sd):
+                to_si(value, place, f"start.{joint}.elsewhere")
+            for value in (there.speed, there.speed_sd):
+                to_si(value, speed, f"start.{joint}.elsewhere")

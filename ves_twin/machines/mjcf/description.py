@@ -121,13 +121,39 @@ class Controller(Part):
     source: str = ""
 
 
+class Elsewhere(Part):
+    """Recordings whose first rows are not at the start: it is read off them.
+
+    Beyond `position` or `speed` from the start a recording is taken to be cut out of a longer
+    motion. Its first rows (`within`) tell the start to `sd` and `speed_sd`, and nothing else: what
+    delays held back from before is in them.
+    """
+
+    position: Number
+    speed: Number
+    sd: Number
+    speed_sd: Number
+    within: Seconds
+
+
 class Start(Part):
-    """Where a joint begins in forward simulation: "measured" takes the first rows of its signal."""
+    """Where a joint begins in forward simulation.
+
+    "measured" takes the first rows of its signal, "recorded" what the recording says itself, in
+    the first row of a signal JOINT.start (position, speed). Rows before `settling` tell nothing.
+    """
 
     position: Number = 0.0
     sd: Number = 0.0
     speed: Number = 0.0
     speed_sd: Number = 0.0
+    settling: Seconds = 0.0
+    elsewhere: Elsewhere | None = None
+
+    @property
+    def told(self) -> bool:
+        """Whether a recording may say its own start."""
+        return self.elsewhere is not None or self.position == "recorded"
 
 
 class Setting(Part):
@@ -165,7 +191,8 @@ class Setting(Part):
 class Allowed(Part):
     """A kind of effect that may be at work, where, and sizes other than the typical ones.
 
-    `sd` makes it a commissioning error as well; 0 is "absent by declaration".
+    `sd` makes it a commissioning error as well; 0 is "absent by declaration". `low` and `high`
+    bound its size, where not by the largest one: a delay that is known to 0.2 ms may be below zero.
     """
 
     kind: str
@@ -173,6 +200,8 @@ class Allowed(Part):
     sd: Number = 0.0
     smallest: Number | None = None
     largest: Number | None = None
+    low: Number | None = None
+    high: Number | None = None
     cause: bool = True
     per_recording: bool = False
     source: str = ""
@@ -210,6 +239,25 @@ class Data(Part):
     source: str
 
 
+class MultisineRange(Part):
+    """What multisines of this machine are made of; what is not said follows from typical sizes.
+
+    `amplitude` is that of a tone, as a share of the typical effort or travel; tones lie in `band`.
+    Rows are a `period` apart, or a step of the model.
+    """
+
+    amplitude: Annotated[float, Field(gt=0, le=1)] = 0.45
+    band: tuple[Hertz, Hertz] | None = None
+    duration: Annotated[Seconds, Field(gt=0, le=600)] = 4.0
+    period: Annotated[Seconds, Field(gt=0)] | None = None
+
+    @model_validator(mode="after")
+    def _band_is_one(self) -> Self:
+        if self.band is not None and not 0.0 < self.band[0] < self.band[1]:
+            raise ValueError(f"excitation.band: got {self.band}, expected 0 < lowest < highest")
+        return self
+
+
 class RigDescription(Part):
     """The whole file, see docs/bring-your-own-rig.md."""
 
@@ -227,6 +275,7 @@ class RigDescription(Part):
     effects: tuple[Allowed, ...] = ()
     typical: Typical = Typical()
     drift: Drift | None = None
+    excitation: MultisineRange = MultisineRange()
     present: dict[str, dict[str, dict[str, float]]] = Field(default_factory=dict)
     data: tuple[Data, ...] = ()
     causes: Annotated[int, Field(ge=1, le=6)] = 4
@@ -243,7 +292,7 @@ def is_rig(name_or_path: str) -> bool:
 
 def shipped_rigs() -> list[str]:
     """Names of the rigs that come with the twin."""
-    return sorted(p.stem for p in (resource_folder("models") / "rigs").glob("*.toml"))
+    return sorted(p.name for p in _machines().iterdir() if _shipped(p.name).is_file())
 
 
 def load_description(name_or_path: str) -> tuple[RigDescription, Path]:
@@ -266,8 +315,12 @@ def load_description(name_or_path: str) -> tuple[RigDescription, Path]:
         raise refusal(error, path.name, RigDescription) from None
 
 
+def _machines() -> Path:
+    return resource_folder("models") / "machines"
+
+
 def _shipped(name: str) -> Path:
-    return resource_folder("models") / "rigs" / f"{name}.toml"
+    return _machines() / name / f"{name}.toml"
 
 
 def _content(path: Path, depth: int) -> tuple[dict[str, Any], Path]:

@@ -189,11 +189,11 @@ def _drive(
     forward: MjcfForward, rows: Mapping[str, FloatArray], like: Recording | None
 ) -> dict[str, FloatArray]:
     """What is fed in, and the start of each joint whose start is measured, held."""
-    found = dict(rows)
+    told, found = forward.rig.description.signals, dict(rows)
     count = len(next(iter(rows.values())))
     for name in forward.drive:
         if name not in found:
-            width = len(forward.rig.description.signals[name].columns)
+            width = len(told[name].columns) if name in told else 2
             known = like is not None and name in like.signals
             first = like[name][0] if like is not None and known else np.zeros(width)
             found[name] = np.tile(first, (count, 1))

@@ -17,6 +17,7 @@ from ves_twin.machines.mjcf.description import Compared, Mode
 from ves_twin.machines.mjcf.inverse import efforts_of_motion
 from ves_twin.machines.mjcf.joint_units import joint_units
 from ves_twin.machines.mjcf.machine import Rig
+from ves_twin.machines.mjcf.started import start_signal
 from ves_twin.machines.mjcf.stepping import motion_of_drive
 from ves_twin.machines.mjcf.work import Work
 
@@ -62,7 +63,9 @@ class MjcfForward:
         if self.mode is Mode.MOTION:
             return self.fed
         measured = [j for j, start in told.start.items() if start.position == "measured"]
-        return tuple(dict.fromkeys([*self.fed, *filter(None, map(self.position_of, measured))]))
+        positions = filter(None, map(self.position_of, measured))
+        recorded = [start_signal(j) for j, s in told.start.items() if s.position == "recorded"]
+        return tuple(dict.fromkeys([*self.fed, *positions, *recorded]))
 
     def position_of(self, joint: str) -> str:
         """The signal that a joint's position is read from; empty if there is none."""
@@ -107,6 +110,8 @@ class MjcfForward:
     def channels(self) -> tuple[Channel, ...]:
         """Measured columns with the noise that the file declares."""
         found = []
+        moving = () if self.mode is Mode.MOTION else self.rig.description.start.values()
+        settling = max((start.settling for start in moving), default=0.0)
         for name in self.compared:
             signal = self.rig.description.signals[name]
             noises = signal.noise if isinstance(signal.noise, tuple) else (signal.noise,)
@@ -115,7 +120,7 @@ class MjcfForward:
             for i, noise in enumerate(noises[:width]):
                 label = name if width == 1 else f"{name}.{i + 1}"
                 sd = to_si(noise, signal.unit, f"noise of {name}")
-                found.append(Channel(label, name, i, signal.unit, sd))
+                found.append(Channel(label, name, i, signal.unit, sd, settling=settling))
         return tuple(found)
 
     @cached_property

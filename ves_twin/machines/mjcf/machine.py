@@ -36,6 +36,7 @@ class Entry:
         cause: whether it may be named.
         per_recording: drawn anew for each recording.
         source: of the sizes.
+        allowed: what the file says of it.
     """
 
     effect: Effect
@@ -45,6 +46,7 @@ class Entry:
     cause: bool
     per_recording: bool
     source: str
+    allowed: Allowed
 
     @property
     def key(self) -> tuple[str, str]:
@@ -151,7 +153,8 @@ class Rig:
         settings = {self._key(s): s for s in self.description.parameters}
         for entry in self.entries:
             for m, nominal in zip(entry.magnitudes, entry.nominal, strict=True):
-                low, high = _bounds(entry, m, nominal, settings.get(entry.key))
+                told = settings.get(entry.key) or entry.allowed
+                low, high = _bounds(entry, m, nominal, told)
                 name = entry.name(m)
                 one = entry.per_recording
                 found.append(Parameter(name, m.unit, nominal, low, high, m.sd, one))
@@ -237,9 +240,8 @@ class Rig:
                     what = f"present.{effect.kind}.{target}.{m.name}"
                     raise InvalidInputError(what, value, f"at least {effect.least(0.0):g}")
         source = allowed.source or (setting.source if setting else "") or anywhere(effect).source
-        return Entry(
-            effect, place, magnitudes, nominal, allowed.cause, allowed.per_recording, source
-        )
+        one = allowed.per_recording
+        return Entry(effect, place, magnitudes, nominal, allowed.cause, one, source, allowed)
 
     def _effect_of(self, setting: Setting, model: mujoco.MjModel) -> tuple[Effect, Place]:
         kind, target = self._key(setting)
@@ -264,19 +266,19 @@ class Rig:
 
 
 def _bounds(
-    entry: Entry, m: Magnitude, nominal: float, setting: Setting | None
+    entry: Entry, m: Magnitude, nominal: float, told: Setting | Allowed
 ) -> tuple[float, float]:
     """Of a parameter: what the file says, else the largest departure; never what cannot be."""
     one_sided = m.sign is Sign.POSITIVE
     low, high = 0.0 if one_sided else nominal - m.largest, nominal + m.largest
-    least = 0.0 if one_sided else entry.effect.least(nominal)
+    native = bool(entry.effect.attribute)
+    least = 0.0 if one_sided and native else entry.effect.least(nominal)
     what = f"{entry.effect.kind} of {entry.effect.target}"
-    if setting and setting.low is not None:
-        low = to_si(setting.low, m.unit, f"low of {what}")
-    if setting and setting.high is not None:
-        high = to_si(setting.high, m.unit, f"high of {what}")
-    told = setting is not None and (setting.low, setting.high) != (None, None)
-    if told and not low <= nominal <= high:
+    if told.low is not None:
+        low = to_si(told.low, m.unit, f"low of {what}")
+    if told.high is not None:
+        high = to_si(told.high, m.unit, f"high of {what}")
+    if (told.low, told.high) != (None, None) and not low <= nominal <= high:
         raise InvalidInputError(f"low, high of {what}", (low, high), f"{nominal:g} within them")
     return min(max(low, least), nominal), high
 

@@ -30,9 +30,14 @@ from ves_twin.machines.mjcf.extend import extended, write_rig
 from ves_twin.machines.mjcf.forward import MjcfForward
 from ves_twin.machines.mjcf.interleaved_split import alternate
 from ves_twin.machines.mjcf.machine import Rig
+from ves_twin.machines.mjcf.programmes import releases
 from ves_twin.machines.mjcf.read import read_recording
 from ves_twin.machines.mjcf.signals import rig_ranges, rig_signals
+from ves_twin.machines.mjcf.started import started
 from ves_twin.scenario.experiment_file import BY_NUMBERS, ExperimentFile
+
+SORTS = ("measured", "held_out", "commissioning", "baseline")
+"""Recordings of `Material` that begin somewhere."""
 
 WORTH_A_PROCESS = 0.3
 """Time of one prediction [s] from which other processes, which take seconds to begin, pay."""
@@ -111,6 +116,10 @@ class MjcfMachine(Machine):
                 material = replace(material, standstill=self.read(source))
             material = material.with_told([recording for recording, _, _ in made])
             machine = replace(self, rig=first)
+        begun, groups = started(machine.rig, *(_recordings(material, sort) for sort in SORTS))
+        for sort, recordings in zip(SORTS, groups, strict=True):
+            material = material.with_sort(sort, recordings)
+        machine = replace(machine, rig=begun)
         for one in material.measured:
             machine.forward.check_noise(one.recording.signals)
         return Prepared(machine, material, flaws)
@@ -148,8 +157,8 @@ class MjcfMachine(Machine):
         write_rig(self.rig, path, note)
 
     def excitations(self, like: Recording | None = None) -> tuple[Excitation, ...]:
-        """Multisines within the typical sizes of the file."""
-        return offered(self.forward, like)
+        """Multisines within the typical sizes of the file, and releases."""
+        return (*offered(self.forward, like), *releases(self.rig))
 
     def excitation(
         self, name: str = "", seconds: float | None = None
@@ -170,6 +179,10 @@ class MjcfMachine(Machine):
     def save_excitation(self, excitation: Excitation, folder: Path) -> None:
         """Columns as the machine's file names and scales them."""
         write_inputs(self.forward, excitation, folder)
+
+
+def _recordings(material: Material, sort: str) -> list[Recording]:
+    return [one.recording for one in getattr(material, sort)]
 
 
 def _of_mjcf(experiment: ExperimentFile) -> MjcfExperiment:

@@ -130,6 +130,10 @@ def tendon_joints(model: mujoco.MjModel, tendon: str) -> list[tuple[str, float]]
 
 def _signal(kind: str, target: str, on: Anywhere, told: RigDescription) -> Place:
     count, parts = on.columns, target.split(".")
+    if not count:
+        groups = {signal.partition(".")[0] for signal in told.signals}
+        _known("signal", target, {*told.signals, *groups})
+        return Place(Element.SIGNAL, target, unit="s")
     name = ".".join(parts[:-count] if count else parts)
     _known("signal", name, told.signals)
     column = told.signals[name]

@@ -14,6 +14,7 @@ from ves_twin.effects.element import Element
 from ves_twin.machines.mjcf.description import Controller, Mode
 from ves_twin.machines.mjcf.inverse import smoothed
 from ves_twin.machines.mjcf.joint_units import joint_units
+from ves_twin.machines.mjcf.started import start_signal
 from ves_twin.machines.mjcf.work import Work, sensor_rows
 
 FAILED = (
@@ -74,6 +75,8 @@ def _measured_start(work: Work, joint: str) -> tuple[float, float]:
     """Given by the file, or by the first rows of the joint's signal."""
     told = work.rig.description
     start = told.start[joint]
+    if (recorded := work.programme.drive.get(start_signal(joint))) is not None:
+        return float(recorded[0, 0]), float(recorded[0, 1])
     if start.position != "measured":
         units, what = joint_units(work.model, joint), f"start.{joint}"
         at = to_si(start.position, units[0], f"{what}.position")
@@ -96,7 +99,15 @@ def position_signal(work: Work, joint: str) -> tuple[str, int]:
 def _resisted(work: Work) -> bool:
     """Whether an effect depends on speed or place in a way that the model itself lacks."""
     plain = (Effect.resist, Effect.hold)
-    return any((type(e).resist, type(e).hold) != plain for e, _ in work.effects)
+    return any((type(e).resist, type(e).hold) != plain and not e.steady for e, _ in work.effects)
+
+
+def _steady(work: Work) -> FloatArray:
+    """Efforts (nv,) of the effects that are the same at any speed."""
+    effort, still = np.zeros(work.model.nv), np.zeros(1)
+    for name in {e.target for e, _ in work.effects if e.steady}:
+        effort[int(work.model.joint(name).dofadr[0])] -= work.resistance(name, still)[0]
+    return effort
 
 
 def _open(work: Work, data: mujoco.MjData, steps: int) -> tuple[FloatArray, FloatArray, FloatArray]:
@@ -106,8 +117,12 @@ def _open(work: Work, data: mujoco.MjData, steps: int) -> tuple[FloatArray, Floa
     size = mujoco.mj_stateSize(model, mujoco.mjtState.mjSTATE_FULLPHYSICS)
     state = np.zeros(size)
     mujoco.mj_getState(model, data, state, mujoco.mjtState.mjSTATE_FULLPHYSICS)
-    control = np.repeat(commands, steps, axis=0)[None]
-    path, sensed = rollout.rollout(model, data, initial_state=state[None], control=control)
+    steady = np.tile(_steady(work), (len(commands), 1))
+    control = np.repeat(np.hstack([commands, steady]), steps, axis=0)[None]
+    fed = mujoco.mjtState.mjSTATE_CTRL | mujoco.mjtState.mjSTATE_QFRC_APPLIED
+    path, sensed = rollout.rollout(
+        model, data, initial_state=state[None], control=control, control_spec=int(fed)
+    )
     rows = np.concatenate([state[None], path[0][steps - 1 :: steps][:-1]])
     width = model.nq + model.nv
     return rows[:, 1 : 1 + width], np.asarray(sensed[0][::steps]), commands

@@ -123,9 +123,14 @@ class Work:
         reading = true
         for effect, place in self.effects:
             name = effect.target
-            if effect.element is Element.SIGNAL and (name == signal or _of(name, signal)):
+            if effect.element is Element.SIGNAL and (_covers(name, signal) or _of(name, signal)):
                 reading = effect.edit_reading(reading, true, self.programme.time, place)
         return reading
+
+
+def _covers(target: str, signal: str) -> bool:
+    """Whether a target is the signal, or the part whose signal it is."""
+    return target in (signal, signal.partition(".")[0])
 
 
 def _of(target: str, signal: str) -> bool:

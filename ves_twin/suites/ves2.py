@@ -23,7 +23,7 @@ from ves_twin.scenario.schema import Scenario
 from ves_twin.simulator.recorder import MemorySink
 from ves_twin.simulator.simulate import recording_info
 from ves_twin.simulator.simulator import Simulator
-from ves_twin.suites.bench import BlindBench, BlindRig
+from ves_twin.suites.machine import BlindMachine, BlindRig
 
 SECONDS = 10.0
 """Length of a record [s]."""
@@ -57,7 +57,7 @@ gear [N m]; a soft stop within the range of q2 [N m/rad]; square-law drag on the
 
 
 @final
-class BlindVes2(BlindBench):
+class BlindVes2(BlindMachine):
     """VES II, measured.
 
     Args:
@@ -117,7 +117,7 @@ class BlindVes2(BlindBench):
 
     def play(self, rig: BlindRig, programme: Excitation, rng: np.random.Generator) -> Recording:
         """Not built for this rig; raises InvalidInputError."""
-        raise InvalidInputError("a next experiment", "VES II", "the pendulum")
+        raise InvalidInputError("a next experiment", "VES II", "an MJCF machine")
 
     def _programme(self, name: str, more: Mapping[str, object] | None = None) -> Scenario:
         changes: dict[str, object] = {"plant": self.plant.name, "run.duration": SECONDS}

@@ -1,4 +1,4 @@
-"""BlindBench: a plant that makes measured recordings: another step, noise, rig than the model."""
+"""BlindMachine: what makes measured recordings: another step, noise, rig than the model."""
 
 from __future__ import annotations
 
@@ -10,6 +10,7 @@ import numpy as np
 
 from ves_twin.core.recording.recording import Recording
 from ves_twin.diagnosis.forward import Excitation, Forward
+from ves_twin.diagnosis.grid import RATE
 
 
 @dataclass(frozen=True)
@@ -35,8 +36,8 @@ class BlindRig:
         return self.background.get(kind, 0.0) + (self.size if kind == self.outside else 0.0)
 
 
-class BlindBench(ABC):
-    """What a generator needs of a plant."""
+class BlindMachine(ABC):
+    """What a generator needs of a machine."""
 
     @property
     @abstractmethod
@@ -53,6 +54,16 @@ class BlindBench(ABC):
     def confusable(self) -> tuple[str, ...]:
         """Causes, effect@target, that the programme hardly tells from another one."""
 
+    @property
+    def rate(self) -> float:
+        """Of the analysis grid [Hz]."""
+        return RATE
+
+    @property
+    def excitations(self) -> Mapping[str, Excitation]:
+        """What it can play next, by name; nothing unless it says so."""
+        return {}
+
     @abstractmethod
     def record(
         self, rig: BlindRig, programme: str, rng: np.random.Generator, lead: float = 0.0
@@ -66,7 +77,7 @@ class BlindBench(ABC):
             lead: motion that comes before and is not recorded [s].
 
         Raises:
-            InvalidInputError: a programme or a lead that this plant has not.
+            InvalidInputError: a programme or a lead that this machine has not.
         """
 
     @abstractmethod
@@ -74,7 +85,7 @@ class BlindBench(ABC):
         """What the rig measures while it is fed given set-points.
 
         Raises:
-            InvalidInputError: a plant that plays none.
+            InvalidInputError: a machine that plays none.
         """
 
     def commissioned(self, rng: np.random.Generator, spread: float = 1.0) -> dict[str, float]:

@@ -1,1 +1,0 @@
-"""Pendulum: one link on a hinge, the smallest machine of the diagnosis."""
