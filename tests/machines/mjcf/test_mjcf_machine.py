@@ -184,6 +184,20 @@ def test_causes_that_cannot_be_told_apart_get_a_next_experiment_in_the_log_s_own
     assert max(abs(float(row.split(",")[1])) for row in rows) <= 15.0  # typical effort
 
 
+def test_nothing_is_offered_where_an_actuator_drives_no_joint(tmp_path):
+    """Its numbers of typical effort and travel are those of joints."""
+    path = write_files(tmp_path)
+    model = tmp_path / "two_link.xml"
+    text = model.read_text().replace(
+        '<motor name="hinge" joint="swing"/>', '<motor name="hinge" tendon="rope"/>'
+    )
+    rope = '<tendon><fixed name="rope"><joint joint="swing" coef="1"/></fixed></tendon><actuator>'
+    model.write_text(text.replace("<actuator>", rope))
+    forward = MjcfForward.of(Machine.load(str(path)).rig)
+    assert forward.joint_of("hinge") == ""
+    assert offered(forward) == ()
+
+
 @pytest.mark.parametrize("name", ["ves2_fast", "emps", "ft_wrist"])
 def test_every_machine_has_the_protocol(name):
     machine = Machine.load(name)

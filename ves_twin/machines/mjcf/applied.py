@@ -4,12 +4,14 @@ from __future__ import annotations
 
 from dataclasses import replace
 
+import mujoco
 import numpy as np
 
 from ves_twin.core.errors import InvalidInputError, UnknownNameError
 from ves_twin.core.recording.recording import Recording
 from ves_twin.core.recording.stretch import compared_stretch
 from ves_twin.core.units import to_si
+from ves_twin.effects.element import Element
 from ves_twin.effects.registry import attributes
 from ves_twin.machines.mjcf.description import Compared, Drive, Mode, RigDescription, Setting, Start
 from ves_twin.machines.mjcf.experiment import MjcfExperiment
@@ -124,9 +126,22 @@ def _estimated(told: RigDescription, compare: dict[str, Compared]) -> dict[str, 
 
 
 def _setting(key: str, value: object, rig: Rig) -> Setting:
-    """A key such as "load.mass" as an attribute of the element that has it."""
+    """A key such as "load.mass" as an attribute of the element that has it: joint before tendon."""
     name, _, attribute = key.rpartition(".")
-    known = {attribute: element for element, attribute in attributes()}
-    if attribute not in known:
-        raise UnknownNameError("attribute in parameters", attribute, known)
-    return Setting.model_validate({"attribute": attribute, str(known[attribute]): name})
+    owners = [element for element, found in attributes() if found == attribute]
+    if not owners:
+        raise UnknownNameError("attribute in parameters", attribute, {a for _, a in attributes()})
+    element = next((one for one in owners if name in _names(rig.model, one)), owners[0])
+    return Setting.model_validate({"attribute": attribute, str(element): name})
+
+
+def _names(model: mujoco.MjModel, element: Element) -> set[str]:
+    """Of all elements of a kind that a model has."""
+    counts = {
+        Element.BODY: (model.nbody, model.body),
+        Element.JOINT: (model.njnt, model.joint),
+        Element.ACTUATOR: (model.nu, model.actuator),
+        Element.TENDON: (model.ntendon, model.tendon),
+    }
+    count, access = counts[element]
+    return {access(i).name for i in range(count)}

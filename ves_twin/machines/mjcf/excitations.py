@@ -121,14 +121,13 @@ def _inputs(forward: MjcfForward, like: Recording | None) -> list[_Input]:
     told, model = forward.rig.description, forward.rig.model
     places = {
         Mode.MOTION: [(s, j) for j, s in told.drive.joints.items()],
-        Mode.CONTROL: [
-            (s, model.joint(int(model.actuator(a).trnid[0])).name)
-            for a, s in told.drive.actuators.items()
-        ],
+        Mode.CONTROL: [(s, forward.joint_of(a)) for a, s in told.drive.actuators.items()],
         Mode.REFERENCE: [(c.reference, c.joint) for c in told.controllers.values()],
     }[forward.mode]
     found = []
     for signal, joint in places:
+        if not joint:
+            return []
         effort, speed, travel = _sizes(forward, joint)
         needed = (effort, speed, travel) if forward.mode is Mode.CONTROL else (speed, travel)
         watched = forward.mode is Mode.MOTION or forward.position_of(joint) in forward.compared

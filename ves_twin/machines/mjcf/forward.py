@@ -6,6 +6,7 @@ from collections.abc import Container, Mapping
 from dataclasses import dataclass
 from functools import cached_property
 
+import mujoco
 import numpy as np
 
 from ves_twin.core.errors import InvalidInputError
@@ -72,10 +73,16 @@ class MjcfForward:
         compared = (n for n, c in told.compare.items() if c.joint == joint and c.of == "position")
         return next(compared, told.drive.joints.get(joint, ""))
 
+    def joint_of(self, actuator: str) -> str:
+        """The joint that an actuator drives; empty where it drives a tendon or a site."""
+        part = self.rig.model.actuator(actuator)
+        on_joint = int(part.trntype[0]) == int(mujoco.mjtTrn.mjTRN_JOINT)
+        return str(self.rig.model.joint(int(part.trnid[0])).name) if on_joint else ""
+
     @cached_property
     def leaders(self) -> dict[str, str]:
         """Compared signal -> the signal fed in for its own joint, where there is one."""
-        told, model = self.rig.description, self.rig.model
+        told = self.rig.description
         of_joint = dict(told.drive.joints) if self.mode is Mode.MOTION else {}
         if self.mode is Mode.REFERENCE:
             of_joint = {c.joint: c.reference for c in told.controllers.values()}
@@ -83,7 +90,7 @@ class MjcfForward:
         for name, one in self.compared.items():
             joint = one.joint
             if one.actuator:
-                joint = model.joint(int(model.actuator(one.actuator).trnid[0])).name
+                joint = self.joint_of(one.actuator)
             leader = of_joint.get(joint, "")
             if leader and len(told.signals[leader].columns) == 1:
                 found[name] = leader
