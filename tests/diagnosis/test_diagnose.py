@@ -218,6 +218,23 @@ def test_two_recordings_count_as_one_record(settings):
     assert (v.verdict, v.causes[0].effect) == (Kind.NAMED, "lag")
 
 
+def test_a_name_that_held_out_recordings_do_not_confirm_is_not_firm(settings):
+    """The fault was repaired before the held-out recording was made."""
+    rng = np.random.default_rng(1)
+    data, kept, repaired = (
+        record(rng, sizes, fed=programme(k))
+        for k, sizes in enumerate(({"friction.size": 0.03}, {"friction.size": 0.03}, {}), 3)
+    )
+    confirmed = diagnose(Toy(), [data], held_out=[kept], settings=settings)
+    assert confirmed.causes[0].firm
+    assert not confirmed.unconfirmed
+    refused = diagnose(Toy(), [data], held_out=[repaired], settings=settings)
+    assert refused.causes[0].effect == "friction"
+    assert refused.unconfirmed
+    assert not refused.causes[0].firm
+    assert refused.words.endswith("which the held-out recordings do not confirm.")
+
+
 def test_bad_input_is_one_clear_line(settings):
     data = record(np.random.default_rng(1))
     with pytest.raises(UnknownNameError, match="did you mean 'friction'"):

@@ -101,7 +101,7 @@ def assemble_verdict(
         naming_odds=findings.settings.odds,
         widened=findings.widened,
     )
-    return Verdict(
+    verdict = Verdict(
         verdict=kind,
         basis=basis,
         statistics=statistics,
@@ -129,6 +129,15 @@ def assemble_verdict(
         left=built.left if built else {},
         inseparable=built.inseparable if built else (),
         nearest=nearest,
+    )
+    return _provisional(verdict) if verdict.unconfirmed else verdict
+
+
+def _provisional(verdict: Verdict) -> Verdict:
+    """No name is firm that held-out recordings could have confirmed and did not."""
+    causes = tuple(replace(cause, firm=False) for cause in verdict.causes)
+    return replace(
+        verdict, causes=causes, proved=tuple(replace(one, firm=False) for one in verdict.proved)
     )
 
 

@@ -73,6 +73,15 @@ class Gain:
         return self.without is None or self.after < self.without
 
     @property
+    def unconfirmed(self) -> bool:
+        """Whether the held-out recordings speak against the causes.
+
+        Where they show no excess that could be gained, a cause that is there still predicts them
+        better, by d^2 of its own loudness there, and one that was fitted to noise as much worse.
+        """
+        return self.after > self.before if self.share is None else not self.passed
+
+    @property
     def carries_on(self) -> bool:
         """The gate for a forecast: a gain, and no channel's bare error grows by half.
 

@@ -278,6 +278,11 @@ class Verdict:
                 return f"{begin}{every}."
 
     @property
+    def unconfirmed(self) -> bool:
+        """Whether held-out recordings could have confirmed the causes, and did not."""
+        return self.gain is not None and self.gain.unconfirmed
+
+    @property
     def proving(self) -> str:
         """The sentences of a verdict whose causes were proved one by one."""
         names = {f"{c.effect}@{c.target}": self._name(i) for i, c in enumerate(self.causes)}
@@ -319,6 +324,8 @@ class Verdict:
         text = f"{cause.effect} at {cause.target}: {told}{sizes}"
         if cause.firm or (cause.sigmas is None and self.proved):
             return text
+        if self.unconfirmed:
+            return f"{text}, which the held-out recordings do not confirm"
         if changed:
             return f"{text}, {cause.sigmas:.1f} sigmas of a change since then: fault or drift"
         return f"{text}, {cause.sigmas:.1f} declared sigmas off: fault or commissioning error"

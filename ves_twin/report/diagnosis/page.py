@@ -100,7 +100,9 @@ def _origin(verdict: Verdict) -> str:
 
 
 def _cause(cause: Cause, verdict: Verdict) -> list[tuple[str, ...]]:
-    standing = "firm" if cause.firm else f"provisional, {cause.sigmas or 0.0:.1f} tolerances off"
+    off = f"{cause.sigmas or 0.0:.1f} tolerances off"
+    why = "not confirmed on held-out recordings" if verdict.unconfirmed else off
+    standing = "firm" if cause.firm else f"provisional, {why}"
     if verdict.verdict is Kind.AMBIGUOUS:
         standing = f"one of {len(verdict.alternatives)}, {standing}"
     return [

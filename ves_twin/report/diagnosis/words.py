@@ -108,6 +108,10 @@ def _begin(verdict: Verdict) -> str:
 
 def _doubt(verdict: Verdict) -> str:
     loose = [cause for cause in verdict.causes if not cause.firm]
+    if verdict.unconfirmed and verdict.gain is not None:
+        if not verdict.gain.by_causes:
+            return " The held-out recordings are explained better without it."
+        return " The held-out recordings do not confirm it."
     if loose:
         most = max(cause.sigmas or 0.0 for cause in loose)
         which = "It is" if len(verdict.causes) == 1 else f"{name_of(loose[0])} is"
@@ -127,10 +131,6 @@ def _doubt(verdict: Verdict) -> str:
         return f" {it} fits these recordings; no other recording has tested it."
     if verdict.gain is None or verdict.gain.share is None:
         return " The held-out recordings can neither confirm nor refute it."
-    if not verdict.gain.by_causes:
-        return " The held-out recordings are explained better without it."
-    if not verdict.gain.passed:
-        return " The held-out recordings do not confirm it."
     return " Held-out recordings confirm it."
 
 
