@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
-
 import numpy as np
 
 from ves_twin.control.arm_servo import servo_torque, spline
@@ -35,41 +33,12 @@ from ves_twin.simulator.codes import (
 from ves_twin.simulator.engine import NO_CALL, call_engine
 
 
-class Views(NamedTuple):
-    """Live views of mjData; `slides` and `speeds` hold the rods' travel and speed, see `Layout`."""
-
-    qpos: FloatArray
-    qvel: FloatArray
-    slides: FloatArray
-    speeds: FloatArray
-    ctrl: FloatArray
-    sensordata: FloatArray
-
-
-class Stepper(NamedTuple):
-    """Addresses of what advances the physics: `then` is called after `step`, unless NO_CALL."""
-
-    step: int
-    then: int
-    model: int
-    data: int
-
-
-class Memory(NamedTuple):
-    """PARAMETERS and STATE (1,), the signals of this instant (1,), and the same as numbers."""
-
-    parameters: Block
-    state: Block
-    board: Block
-    row: FloatArray
-
-
 @compiled
 def _drive_arm(
-    p: Record, s: Record, board: Record, tick: int, views: Views, slow: SingleArray
-) -> None:
+    p: Record, s: Record, board: Record, tick: int, qpos: FloatArray, qvel: FloatArray,
+    ctrl: FloatArray, slow: SingleArray,
+) -> None:  # fmt: skip
     work = s.work
-    qpos, qvel, ctrl = views.qpos, views.qvel, views.ctrl
     u = (tick - s.cycle_start) / p.clock.admittance
     spline(s.servo.points, u, p.servo.cycle, work.q_set, work.rate_set)
     for j in range(3):
@@ -107,9 +76,10 @@ def _read_truth(p: Record, s: Record, board: Record, qpos: FloatArray) -> None:
 
 
 @compiled
-def _push_legs(p: Record, s: Record, views: Views, step: float) -> None:
+def _push_legs(
+    p: Record, s: Record, slides: FloatArray, speeds: FloatArray, ctrl: FloatArray, step: float
+) -> None:
     work = s.work
-    slides, speeds, ctrl = views.slides, views.speeds, views.ctrl
     for i in range(6):
         work.slide[i] = slides[p.layout.slide_at[i]] - p.layout.slide_home[i]
         work.speed[i] = speeds[p.layout.speed_at[i]]
@@ -128,18 +98,17 @@ def _push_legs(p: Record, s: Record, views: Views, step: float) -> None:
 
 @compiled
 def _read_and_command(
-    p: Record, s: Record, board: Record, tick: int, views: Views, fast: SingleArray,
-    slow: SingleArray,
+    p: Record, s: Record, board: Record, tick: int, qpos: FloatArray, qvel: FloatArray,
+    slides: FloatArray, ctrl: FloatArray, fast: SingleArray, slow: SingleArray,
 ) -> None:  # fmt: skip
     """Transducers, gauge, arm servo, and the leg loop and amplifiers when their clocks strike."""
-    slides = views.slides
     for i in range(6):
         s.work.slide[i] = slides[p.layout.slide_at[i]] - p.layout.slide_home[i]
     if p.late.slide.kept > 0:
         take_late(p.late.slide, s.late.slide_past, s.work.slide, s.work.slide)
     read_lengths(p.transducer, s.work.slide, fast[LENGTH:], board.leg_length)
     board.supply_pressure[0] = s.supply.manifold + p.noise.pressure * slow[PRESSURE]
-    _drive_arm(p, s, board, tick, views, slow)
+    _drive_arm(p, s, board, tick, qpos, qvel, ctrl, slow)
     if tick % p.clock.leg == 0:
         control_legs(p.legs, s.legs, board.leg_length, board.valve_command)
     output = s.late.sent if p.late.current.kept > 0 else s.current
@@ -152,16 +121,18 @@ def _read_and_command(
 
 @compiled
 def _move_rig(
-    p: Record, s: Record, time: float, stepper: Stepper, views: Views, fast: SingleArray
-) -> bool:
+    p: Record, s: Record, time: float, mj_step: int, mj_next: int, model: int, data: int,
+    slides: FloatArray, speeds: FloatArray, ctrl: FloatArray, sensordata: FloatArray,
+    fast: SingleArray,
+) -> bool:  # fmt: skip
     """The physics of one tick, and the force sensor's sample of its start."""
-    inside, sensordata = True, views.sensordata
+    inside = True
     step = p.clock.tick / p.clock.substeps
     for k in range(p.clock.substeps):
-        _push_legs(p, s, views, step)
-        call_engine(stepper.step, stepper.model, stepper.data)
-        if stepper.then != NO_CALL:
-            call_engine(stepper.then, stepper.model, stepper.data)
+        _push_legs(p, s, slides, speeds, ctrl, step)
+        call_engine(mj_step, model, data)
+        if mj_next != NO_CALL:
+            call_engine(mj_next, model, data)
         if k == 0:  # later sub-steps carry the forces of later instants
             for i in range(6):
                 s.work.wrench[i] = -sensordata[p.layout.wrench_sensor + i]
@@ -190,9 +161,27 @@ def _verdict(p: Record, qpos: FloatArray, slides: FloatArray, inside: bool) -> i
 
 @compiled
 def run_ticks(
-    start: int, count: int, stepper: Stepper, views: Views, memory: Memory,
-    fast_normal: SingleArray, slow_normal: SingleArray, log: FloatArray, logged: int,
-) -> tuple[int, int, int]:  # fmt: skip
+    start: int,
+    count: int,
+    mj_step: int,
+    mj_next: int,
+    model: int,
+    data: int,
+    qpos: FloatArray,
+    qvel: FloatArray,
+    slides: FloatArray,
+    speeds: FloatArray,
+    ctrl: FloatArray,
+    sensordata: FloatArray,
+    parameters: Block,
+    state: Block,
+    board: Block,
+    row: FloatArray,
+    fast_normal: SingleArray,
+    slow_normal: SingleArray,
+    log: FloatArray,
+    logged: int,
+) -> tuple[int, int, int]:
     """Run ticks: transducer, arm servo, leg loop, amplifier, log, hydraulics and mechanics, sensor.
 
     At tick k every reading is of the state at t_k; the force sensor's sample of t_k is ready at
@@ -201,9 +190,20 @@ def run_ticks(
     Args:
         start: first tick, negative while settling; nothing is logged before 0.
         count: how many ticks, not beyond the next admittance cycle.
-        stepper: of the physics.
-        views: of its data.
-        memory: the numbers of the loop.
+        mj_step: address of the function that advances the physics by a step.
+        mj_next: address of one that is called after it, or NO_CALL.
+        model: address of mjModel.
+        data: address of mjData.
+        qpos: live view of mjData.
+        qvel: live view of mjData.
+        slides: live view of mjData that holds the rods' travel, see `Layout`.
+        speeds: the same for the rods' speed.
+        ctrl: live view of mjData.
+        sensordata: live view of mjData.
+        parameters: PARAMETERS (1,).
+        state: STATE (1,).
+        board: signals of this instant (1,).
+        row: the same as plain numbers.
         fast_normal: standard normal numbers of these ticks (count, FAST_CHANNELS).
         slow_normal: a number per SLOW ticks, from that of `start` on (n, SLOW_CHANNELS).
         log: buffer of rows (capacity, width).
@@ -212,23 +212,25 @@ def run_ticks(
     Returns:
         Code of the outcome, ticks done, rows in the buffer.
     """
-    p, s, b = memory.parameters[0], memory.state[0], memory.board[0]
+    p, s, b = parameters[0], state[0], board[0]
     for n in range(count):
         tick = start + n
         time = tick * p.clock.tick
         fast, slow = fast_normal[n], slow_normal[(start % SLOW + n) // SLOW]
         if tick % SLOW == 0:
             wander_on(p.sensor, s.sensor, slow[WANDER:])
-        _read_and_command(p, s, b, tick, views, fast, slow)
+        _read_and_command(p, s, b, tick, qpos, qvel, slides, ctrl, fast, slow)
         if tick >= 0 and tick % p.clock.log == 0:
-            _read_truth(p, s, b, views.qpos)
+            _read_truth(p, s, b, qpos)
             log[logged, 0] = time
-            log[logged, 1:] = memory.row
+            log[logged, 1:] = row
             logged += 1
-        inside = _move_rig(p, s, time, stepper, views, fast)
+        inside = _move_rig(
+            p, s, time, mj_step, mj_next, model, data, slides, speeds, ctrl, sensordata, fast
+        )  # fmt: skip
         for i in range(6):
             b.sensor_wrench[i] = s.sensor.reading[i]
-        code = _verdict(p, views.qpos, views.slides, inside)
+        code = _verdict(p, qpos, slides, inside)
         if code != RUNNING:
             return code, n + 1, logged
     return RUNNING, count, logged

@@ -13,8 +13,6 @@ for any M, B, K, also a non-symmetric B, which no MuJoCo element can hold.
 
 from __future__ import annotations
 
-from typing import NamedTuple
-
 import mujoco
 import numpy as np
 from scipy.linalg import block_diag
@@ -22,7 +20,7 @@ from scipy.linalg import block_diag
 from ves_twin.control.arm_servo import servo_torque, spline
 from ves_twin.core.compiled import compiled
 from ves_twin.core.errors import InvalidInputError
-from ves_twin.core.types import Block, ComplexArray, FloatArray, IntArray, Record
+from ves_twin.core.types import Block, ComplexArray, FloatArray, Record
 from ves_twin.mechanics.emulated import EmulatedSystem
 from ves_twin.mechanics.kinematics.rotations import rate_matrix
 from ves_twin.plant.assembly import assemble_free_arm, compile_model
@@ -75,12 +73,13 @@ class ZeroGravityReference:
     ) -> None:
         self._model = compile_model(assemble_free_arm(plant))
         self._data = mujoco.MjData(self._model)
-        self._arm = _Arm.of(self._model, self._data)
-        self._base = _Base(emulated.mass, emulated.damping, emulated.stiffness, home)
+        self._engine = (address_of("mj_fwdPosition"), address_of("mj_fwdVelocity"))
+        self._system = (emulated.mass, emulated.damping, emulated.stiffness)
         self._servo = servo
         self._lag = np.zeros(1, LAG)
         if legs is not None:
             self._lag[0] = (PLATFORM_LAGS, *legs)
+        self._home = home
         self._state = np.zeros(SIZE)
         self._state[:6] = self._state[12:18] = start - home
         self._state[24:27] = arm_start
@@ -96,7 +95,7 @@ class ZeroGravityReference:
     @property
     def pose(self) -> FloatArray:
         """Pose of the platform now, from home [m, rad] (6,)."""
-        return self._base.home + self._state[12:18]
+        return self._home + self._state[12:18]
 
     @property
     def arm_q(self) -> FloatArray:
@@ -116,11 +115,30 @@ class ZeroGravityReference:
             cycle: length of the cycle [s].
         """
         steps = int(np.ceil(cycle / self._longest_step))
-        _advance(self._state, points, cycle, steps, self._lag, self._base, self._servo, self._arm)
+        _advance(
+            self._state,
+            points,
+            cycle,
+            steps,
+            self._lag,
+            *self._system,
+            self._home,
+            self._servo,
+            *self._engine,
+            *handles(self._model, self._data),
+            self._data.qpos,
+            self._data.qvel,
+            self._data.qfrc_bias,
+            self._data.qfrc_passive,
+            self._data.M,
+            self._model.M_rowadr,
+            self._model.M_rownnz,
+            self._model.M_colind,
+        )
 
     def _fastest_pole(self) -> float:
         """Largest |s| [1/s] of base, arm and servo together, of the bare base, and of the legs."""
-        mass, damping, stiffness, _ = self._base
+        mass, damping, stiffness = self._system
         data = self._data
         data.qpos[6:] = self._state[24:27]
         mujoco.mj_forward(self._model, data)
@@ -159,77 +177,51 @@ def _poles(mass: FloatArray, damping: FloatArray, stiffness: FloatArray) -> Comp
     return np.asarray(np.linalg.eigvals(a), dtype=complex)
 
 
-class _Base(NamedTuple):
-    """M, B and K of the emulated base (6, 6), and the pose at which it is at zero (6,)."""
-
-    mass: FloatArray
-    damping: FloatArray
-    stiffness: FloatArray
-    home: FloatArray
-
-
-class _Arm(NamedTuple):
-    """MuJoCo's arm: two stages of mj_step by address, live views, M in sparse rows."""
-
-    position: int
-    velocity: int
-    model: int
-    data: int
-    qpos: FloatArray
-    qvel: FloatArray
-    bias: FloatArray
-    passive: FloatArray
-    mass: FloatArray
-    row_start: IntArray
-    row_length: IntArray
-    column: IntArray
-
-    @staticmethod
-    def of(model: mujoco.MjModel, data: mujoco.MjData) -> _Arm:
-        stages = (address_of("mj_fwdPosition"), address_of("mj_fwdVelocity"))
-        views = (data.qpos, data.qvel, data.qfrc_bias, data.qfrc_passive, data.M)
-        rows = (model.M_rowadr, model.M_rownnz, model.M_colind)
-        return _Arm(*stages, *handles(model, data), *views, *rows)
-
-
 @compiled
-def _mass_matrix(arm: _Arm) -> FloatArray:
+def _mass_matrix(
+    sparse: FloatArray, row_start: FloatArray, row_length: FloatArray, column: FloatArray
+) -> FloatArray:
     full = np.zeros((9, 9))
     for i in range(9):
-        for k in range(arm.row_start[i], arm.row_start[i] + arm.row_length[i]):
-            full[i, arm.column[k]] = arm.mass[k]
-            full[arm.column[k], i] = arm.mass[k]
+        for k in range(row_start[i], row_start[i] + row_length[i]):
+            full[i, column[k]] = sparse[k]
+            full[column[k], i] = sparse[k]
     return full
 
 
 @compiled
-def _rates(x: FloatArray, torque: FloatArray, lag: Record, base: _Base, arm: _Arm) -> FloatArray:
+def _rates(
+    x: FloatArray, torque: FloatArray, lag: Record, mass: FloatArray, damping: FloatArray,
+    stiffness: FloatArray, home: FloatArray, position: int, velocity: int, model: int, data: int,
+    qpos: FloatArray, qvel: FloatArray, bias: FloatArray, passive: FloatArray,
+    sparse: FloatArray, row_start: FloatArray, row_length: FloatArray, column: FloatArray,
+) -> FloatArray:  # fmt: skip
     order = np.array([0, 1, 2, 5, 4, 3, 6, 7, 8])
     for i in range(6):
-        arm.qpos[order[i]] = base.home[i] + x[12 + i]
-        arm.qvel[order[i]] = x[18 + i]
+        qpos[order[i]] = home[i] + x[12 + i]
+        qvel[order[i]] = x[18 + i]
     for j in range(3):
-        arm.qpos[6 + j] = x[24 + j]
-        arm.qvel[6 + j] = x[27 + j]
-    call_engine(arm.position, arm.model, arm.data)
-    call_engine(arm.velocity, arm.model, arm.data)
-    full = _mass_matrix(arm)
+        qpos[6 + j] = x[24 + j]
+        qvel[6 + j] = x[27 + j]
+    call_engine(position, model, data)
+    call_engine(velocity, model, data)
+    full = _mass_matrix(sparse, row_start, row_length, column)
     h = np.empty((9, 9))
     c = np.empty(9)
     for i in range(9):
-        c[i] = arm.bias[order[i]] - arm.passive[order[i]]
+        c[i] = bias[order[i]] - passive[order[i]]
         for j in range(9):
             h[i, j] = full[order[i], order[j]]
     t = np.eye(6)
-    angles = np.array([arm.qpos[5], arm.qpos[4], arm.qpos[3]])
+    angles = np.array([qpos[5], qpos[4], qpos[3]])
     t[3:, 3:] = rate_matrix(angles).T
-    spring = base.damping @ x[6:12] + base.stiffness @ x[:6]
+    spring = damping @ x[6:12] + stiffness @ x[:6]
     derivative = np.zeros(SIZE)
     derivative[:6] = x[6:12]
     derivative[12:18] = x[18:24]
     derivative[24:27] = x[27:30]
     if lag.kind == PLATFORM_IS_BASE:
-        h[:6, :6] += t @ base.mass
+        h[:6, :6] += t @ mass
         load = np.concatenate((-c[:6] - t @ spring, torque - c[6:]))
         acceleration = np.linalg.solve(h, load)
         derivative[6:12] = acceleration[:6]
@@ -243,7 +235,7 @@ def _rates(x: FloatArray, torque: FloatArray, lag: Record, base: _Base, arm: _Ar
         joints = np.linalg.solve(h_arm, torque - c[6:] - h_both.T @ above)
         reaction = -(h_base @ above + h_both @ joints + c[:6])
         wrench = np.linalg.solve(t, reaction)
-        derivative[6:12] = np.linalg.solve(base.mass, wrench - spring)
+        derivative[6:12] = np.linalg.solve(mass, wrench - spring)
         derivative[18:24] = above
         derivative[27:30] = joints
     return derivative
@@ -252,7 +244,10 @@ def _rates(x: FloatArray, torque: FloatArray, lag: Record, base: _Base, arm: _Ar
 @compiled
 def _advance(
     x: FloatArray, points: FloatArray, cycle: float, steps: int, lag_block: Block,
-    base: _Base, servo_block: Block, arm: _Arm,
+    mass: FloatArray, damping: FloatArray, stiffness: FloatArray, home: FloatArray,
+    servo_block: Block, position: int, velocity: int, model: int, data: int,
+    qpos: FloatArray, qvel: FloatArray, bias: FloatArray, passive: FloatArray,
+    sparse: FloatArray, row_start: FloatArray, row_length: FloatArray, column: FloatArray,
 ) -> None:  # fmt: skip
     lag, servo = lag_block[0], servo_block[0]
     step = cycle / steps
@@ -269,7 +264,10 @@ def _advance(
                 return
             spline(points, (n + ahead[stage]) / steps, cycle, q_set, rate_set)
             servo_torque(servo, y[30:33], q_set, rate_set, y[24:27], y[27:30], torque)
-            slope = _rates(y, torque, lag, base, arm)
+            slope = _rates(
+                y, torque, lag, mass, damping, stiffness, home, position, velocity, model, data,
+                qpos, qvel, bias, passive, sparse, row_start, row_length, column,
+            )  # fmt: skip
             for j in range(3):
                 slope[30 + j] = servo.integral[j] * (q_set[j] - y[24 + j])
             total += weights[stage] * slope

@@ -18,7 +18,7 @@ from ves_twin.scenario.schema import Legs
 from ves_twin.simulator.blocks import STATE, parameter_block
 from ves_twin.simulator.clock import Clock
 from ves_twin.simulator.engine import NO_CALL, address_of, handles
-from ves_twin.simulator.loop import Memory, Stepper, Views, run_ticks
+from ves_twin.simulator.loop import run_ticks
 from ves_twin.simulator.noise import NoiseStreams
 from ves_twin.simulator.signal_bus import SignalBus
 
@@ -70,10 +70,14 @@ class Rig:
         self.board = SignalBus()
         self.noise = noise
         self.tick = 0
-        self._stepper = Stepper(*_step_of(self.layout), *handles(self.model, self.data))
-        data, slides = self.data, self.layout.slide_arrays(self.data)
-        self._views = Views(data.qpos, data.qvel, *slides, data.ctrl, data.sensordata)
-        self._memory = Memory(self.parameters, self.state, self.board.block, self.board.row)
+        self._engine = (*_step_of(self.layout), *handles(self.model, self.data))
+        self._arrays = (
+            self.data.qpos,
+            self.data.qvel,
+            *self.layout.slide_arrays(self.data),
+            self.data.ctrl,
+            self.data.sensordata,
+        )
 
     @property
     def time(self) -> float:
@@ -94,9 +98,12 @@ class Rig:
         code, done, logged = run_ticks(
             self.tick,
             count,
-            self._stepper,
-            self._views,
-            self._memory,
+            *self._engine,
+            *self._arrays,
+            self.parameters,
+            self.state,
+            self.board.block,
+            self.board.row,
             *self.noise.window(self.tick, count),
             log,
             logged,
