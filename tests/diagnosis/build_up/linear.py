@@ -47,10 +47,11 @@ class Linear:
     kinds: tuple[str, ...] = KINDS
     drive: tuple[str, ...] = ("q",)
     noise: float = 0.001
+    couplings: tuple[str, ...] = ()
 
     @property
     def identity(self) -> str:
-        return repr(self.kinds)
+        return repr((self.kinds, self.couplings))
 
     @property
     def channels(self) -> tuple[Channel, ...]:
@@ -63,6 +64,7 @@ class Linear:
         sizes = [
             Parameter(f"{k}@{j}:size", "1", 0.0, -50.0, 50.0) for k in self.kinds for j in JOINTS
         ]
+        sizes += [Parameter(f"coupling@{s}:size", "1", 0.0, -50.0, 50.0) for s in self.couplings]
         return (MASS, *sizes)
 
     @property
@@ -71,6 +73,9 @@ class Linear:
             Hypothesis(k, j, (f"{k}@{j}:size",), (0.001,), (0.8 if k == "gap" else 5.0,))
             for k in self.kinds
             for j in JOINTS
+        ) + tuple(
+            Hypothesis("coupling", sign, (f"coupling@{sign}:size",), (0.001,), (5.0,))
+            for sign in self.couplings
         )
 
     def simulate(
@@ -86,6 +91,10 @@ class Linear:
                     rows[:, c] += gap(x, size) if size else 0.0
                 elif size:
                     rows[:, c] += size * shape(kind, x)
+        speeds = np.gradient(programme.drive["q"], PERIOD, axis=0)
+        for name in self.couplings:  # viscous, on the sum or the difference of both speeds
+            ways = np.array([1.0, 1.0 if name == "sum" else -1.0])
+            rows += values.get(f"coupling@{name}:size", 0.0) * np.outer(speeds @ ways, ways)
         return rows
 
 

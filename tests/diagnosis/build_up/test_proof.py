@@ -15,6 +15,7 @@ from ves_twin.diagnosis.build_up.paired import paired
 from ves_twin.diagnosis.build_up.proof import FALSE_SHARE, prove
 from ves_twin.diagnosis.build_up.report import report_of
 from ves_twin.diagnosis.build_up.select import Selector
+from ves_twin.diagnosis.build_up.spanned import spanned_by
 from ves_twin.diagnosis.build_up.stand_ins import stand_ins
 from ves_twin.diagnosis.build_up.trials import Trial, columns_of, trials_at
 
@@ -128,6 +129,47 @@ def test_a_twin_is_a_stand_in_and_takes_the_firm_name_away():
     assert firm["coulomb@b"]
     apart = [set(one.names) for one in inseparable(proof, others)]
     assert any(pair <= names for names in apart)
+
+
+def proved_together(plant, hidden, names):
+    """The proof of named causes, and its report by label."""
+    two = halves(plant, hidden, 4)
+    trials = two.regression.trials
+    proof = prove(two.regression, two.held, [n for n, t in enumerate(trials) if label(t) in names])
+    assert {label(trials[n]) for n in proof.proved} == set(names)
+    return proof, {one.label: one for one in told(two, proof).proved}
+
+
+def test_a_coupling_that_friction_at_each_joint_spans_is_not_firm():
+    """Friction at both joints alike is that on the sum with that on the difference of speeds."""
+    plant = Linear(couplings=("sum", "difference"))
+    names = ("coupling@sum:size", "coupling@difference:size", "coulomb@b:size")
+    hidden = {"viscous@a:size": 1.2, "viscous@b:size": 1.2, "coulomb@b:size": 0.6}
+    _, report = proved_together(plant, hidden, names)
+    assert not report["coupling@sum"].firm
+    assert report["coulomb@b"].firm
+
+
+def test_a_coupling_alone_is_what_three_others_are():
+    plant = Linear(couplings=("sum", "difference"))
+    names = ("coupling@sum:size", "coulomb@b:size")
+    proof, report = proved_together(plant, {names[0]: 0.8, names[1]: 0.6}, names)
+    trials = proof.bench.regression.trials
+    (one,) = [n for n in proof.proved if trials[n].cause.effect == "coupling"]
+    few = {trials[n].cause.label for n in spanned_by(proof, one)}
+    assert few == {"viscous@a", "viscous@b", "coupling@difference"}
+    assert report["coupling@sum"].acts_like[0].split(" + ") == [
+        trials[n].cause.label for n in spanned_by(proof, one)
+    ]
+    assert not report["coupling@sum"].firm
+    assert report["coulomb@b"].firm
+
+
+def test_a_coupling_is_firm_where_the_library_has_nothing_that_spans_it():
+    plant = Linear(tuple(k for k in KINDS if k != "viscous"), couplings=("sum",))
+    names = ("coupling@sum:size", "coulomb@b:size")
+    _, report = proved_together(plant, {names[0]: 0.8, names[1]: 0.6}, names)
+    assert report["coupling@sum"].firm
 
 
 def test_the_report_says_what_each_takes_and_what_is_left():

@@ -19,7 +19,9 @@ WHITE = 0.01
 range to 20 dB, beyond which slow causes would be whitened away. Chosen on TX40 and the damper."""
 
 
-def discrepancy(runs: Runs, residual: FloatArray, white: float = WHITE) -> Whitening:
+def discrepancy(
+    runs: Runs, residual: FloatArray, white: float = WHITE, memory: bool = True
+) -> Whitening:
     """Whitening by which a residual is white: sensor noise and model error together.
 
     An autoregression of each channel by Yule-Walker, pooled over all recordings, then the inverse
@@ -30,6 +32,7 @@ def discrepancy(runs: Runs, residual: FloatArray, white: float = WHITE) -> White
         runs: whose rows these are.
         residual: measured less predicted (rows, c).
         white: noise that is added, as a share of the variance.
+        memory: whether rows are whitened in time; plain squares of each channel's size if not.
     """
     covariance = _autocovariance(runs, residual)
     channels = [runs.forward.channels[c] for c in runs.columns]
@@ -37,6 +40,7 @@ def discrepancy(runs: Runs, residual: FloatArray, white: float = WHITE) -> White
     quiet = covariance[:, 0] < declared[:, 0]
     covariance[quiet] = declared[quiet]
     covariance[:, 0] *= 1.0 + white
+    covariance[:, 1:] *= memory
     copies, width = len(runs.slices), len(channels)
     plain = Whitening(
         runs,

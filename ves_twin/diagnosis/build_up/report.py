@@ -13,7 +13,8 @@ from ves_twin.diagnosis.build_up.inseparable import inseparable
 from ves_twin.diagnosis.build_up.leftover_laws import Law, by_channel, laws_left, same_motion
 from ves_twin.diagnosis.build_up.proof import FALSE_SHARE, Bench, Proof
 from ves_twin.diagnosis.build_up.regression import Half
-from ves_twin.diagnosis.build_up.result import BuildUp, Left, Proved
+from ves_twin.diagnosis.build_up.result import TOGETHER, BuildUp, Left, Proved
+from ves_twin.diagnosis.build_up.spanned import spanned_by
 from ves_twin.diagnosis.build_up.stand_ins import stand_ins
 
 ALONG = 0.3
@@ -70,6 +71,9 @@ def _proved(
         for law in laws
     )
     cause, difference = trials[trial].cause, proof.differences[trial]
+    like = [trials[n].cause.label for n in others]
+    if not like:
+        like = [TOGETHER.join(trials[n].cause.label for n in spanned_by(proof, trial))]
     return Proved(
         effect=cause.effect,
         target=cause.target,
@@ -77,8 +81,8 @@ def _proved(
         p=difference.p,
         blocks=difference.blocks,
         takes={names[c]: (float(before[c]), float(after[c])) for c in acts},
-        firm=not others and not ruled,
-        acts_like=tuple(dict.fromkeys(trials[n].cause.label for n in others)),
+        firm=not any(like) and not ruled,
+        acts_like=tuple(dict.fromkeys(filter(None, like))),
     )
 
 

@@ -5,6 +5,9 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
+TOGETHER = " + "
+"""Between names of causes that only together do what another one does."""
+
 
 @dataclass(frozen=True)
 class Size:
@@ -29,10 +32,11 @@ class Proved:
         blocks: stretches of time that the improvement was compared on.
         takes: rms error of each channel on held-out data without and with it, of the channels
             where it acts.
-        firm: whether the name is the mechanism: no other cause does as well in its place, it is
-            known apart from the others, what is left shows no law of the same motion, and no
-            commissioning error explains it.
-        acts_like: causes that do as well in its place on held-out data.
+        firm: whether the name is the mechanism: no other cause and no few others together do as
+            well in its place, it is known apart from the others, what is left shows no law of the
+            same motion, and no commissioning error explains it.
+        acts_like: causes that do as well in its place on held-out data; or the few, with TOGETHER
+            between, whose columns together are its own.
     """
 
     effect: str

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 from ves_twin.core.quantity import UNSURE, digits, percent, quantity
-from ves_twin.diagnosis.build_up.result import Left, Proved
+from ves_twin.diagnosis.build_up.result import TOGETHER, Left, Proved
 from ves_twin.diagnosis.verdict import Verdict
 from ves_twin.report.diagnosis.words import spoken
 from ves_twin.report.html import Html, bullets, paragraph, section, table
@@ -48,7 +48,8 @@ def standing_words(one: Proved) -> str:
     if one.firm:
         return "firm"
     if one.acts_like:
-        return f"acts like it, or like {' or '.join(map(spoken, one.acts_like))}"
+        like = [" with ".join(map(spoken, name.split(TOGETHER))) for name in one.acts_like]
+        return f"acts like it, or like {' or '.join(like)}"
     return "acts like it: what is left, a tolerance or another extension follows the same motion"
 
 
