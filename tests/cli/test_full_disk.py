@@ -7,6 +7,7 @@ import subprocess
 import sys
 
 import pytest
+from told import without_progress
 
 from ves_twin.core.recording.files import load_recording
 
@@ -32,7 +33,7 @@ def on_a_disk_of(limit: int, tmp_path, words: list[str]) -> str:
     )  # fmt: skip
     assert done.returncode == 2, done.stderr
     assert done.stdout == ""
-    lines = done.stderr.strip().split("\n")
+    lines = without_progress(done.stderr).strip().split("\n")
     assert len(lines) == 1, done.stderr
     assert lines[0].startswith("ves-twin: cannot write")
     assert "File too large" in lines[0]

@@ -6,6 +6,7 @@ import sys
 import numpy as np
 import pytest
 from mcap.writer import Writer
+from told import without_progress
 
 DECOUPLED = """schema = 1
 coupling = "decoupled"
@@ -42,7 +43,7 @@ def told(*words, folder):
     """Exit code and stderr of a command, run as a user runs it."""
     command = [sys.executable, "-m", "ves_twin.cli.main", *map(str, words)]
     done = subprocess.run(command, capture_output=True, text=True, check=False, cwd=folder)
-    return done.returncode, done.stderr
+    return done.returncode, without_progress(done.stderr)
 
 
 def rows(path, count=100, scale=1.0):

@@ -102,7 +102,7 @@ def test_info_writes_the_file_and_tells_the_differences_in_words(capsys, tmp_pat
     out = tmp_path / "rig.xml"
     assert main(["info", "--plant", str(rig), "--mjcf", str(out)]) == 0
     text = capsys.readouterr().out
-    assert "level = 60 N. Dry friction of a piston" in text
+    assert "level = 60 N. Dry friction: a joint or piston" in text
     assert "leg.dry_friction" in text[text.index("numbers that the effects change") :]
     lost = text[text.index("changes that it cannot carry") :]
     assert "valve_null on leg.2" in lost

@@ -42,7 +42,7 @@ def test_a_base_file_may_carry_a_name(write):
         ('schema = 1\nbase = "ves2"\n[parameters]\n"leg.rod_mass" = -2.7\n', "at least 0"),
         ('schema = 1\nbase = "ves2"\n[leg.rod_mass]\nvalue = 2.7\n', "'leg'"),
         ('schema = 1\nbase = "ves2"\nparameters = 3\n', "a table of changed values"),
-        ('schema = 1\nkind = "rig"\nname = "crane"\n', "compare, diagnose and trend take"),
+        ('schema = 1\nkind = "rig"\nname = "crane"\n', "compare, diagnose, trend and plan take"),
         ('schema = 2\nbase = "ves2"\n', "schema version 2"),
     ],
 )

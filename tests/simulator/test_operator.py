@@ -223,7 +223,7 @@ def test_a_session_runs_on_every_form_of_the_rig(plant):
 def test_a_script_that_cannot_be_is_refused_in_one_line(changes, says):
     with pytest.raises(Exception, match=says) as caught:
         vt.Scenario.load("operation_panic", changes)
-    assert isinstance(caught.value, __import__("ves_twin.core.errors").errors.VesTwinError)
+    assert isinstance(caught.value, vt.VesTwinError)
     assert "\n" not in str(caught.value)
 
 

@@ -109,12 +109,18 @@ def diagnose(
     causes = tuple(cause.shortened for cause in verdict.causes)
     near = tuple(cause.shortened for cause in verdict.nearest)
     verdict = replace(verdict, causes=causes, nearest=near, quality=prepared.flaws)
+    return _concluded(verdict, machine, offered)
+
+
+def _concluded(verdict: Verdict, machine: Machine, offered: Sequence[Excitation]) -> Diagnosis:
+    """With the extended machine where causes are named, else with what comes nearest."""
     if verdict.verdict.names_a_plant:
         new = machine.extended(verdict)
         return Diagnosis(verdict, machine, new, machine.refusal(verdict))
     best = verdict.next_experiment[0].programme if verdict.next_experiment else ""
     chosen = next((one for one in offered if one.name == best), None)
     why = f"the verdict is {verdict.verdict.value}"
+    near = verdict.nearest
     nearest = machine.extended(replace(verdict, causes=near)) if near else None
     return Diagnosis(verdict, machine, None, why, chosen, nearest)
 

@@ -125,7 +125,7 @@ def test_without_whitening_noise_with_a_memory_is_called_a_fault(
     monkeypatch, tmp_path, still, cases
 ):
     """Samples are then taken as independent: the slow part of the noise is counted many times."""
-    monkeypatch.setattr("ves_twin.diagnosis.whitening._filters", unfiltered)
+    monkeypatch.setattr("ves_twin.diagnosis.whitening.prediction_filters", unfiltered)
     monkeypatch.setattr("ves_twin.diagnosis.whitening.COLOURS", np.zeros(1))
     settings, count = Settings(nulls=40, cache=tmp_path), cases(3)
     assert score(SLOW_NONE[:count], settings, standstill=still)[QUIET] == (0, count)
