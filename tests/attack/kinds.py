@@ -122,7 +122,7 @@ def _files(folder: str, pattern: str) -> Callable[[], list[bytes]]:
 
 def _machine(path: Path) -> object:
     """A rig of two files: beside the models it may name."""
-    for xml in resource_folder("models/rigs").glob("*.xml"):
+    for xml in resource_folder("models/machines").glob("*/*.xml"):
         shutil.copy(xml, path.parent)
     try:
         return Rig.load(str(path)).model.nq
@@ -134,7 +134,7 @@ def _machine(path: Path) -> object:
 def _model(path: Path) -> object:
     """The MJCF model of a rig whose file is in order."""
     rig = path.with_name("rig.toml")
-    text = (resource_folder("models/rigs") / "emps.toml").read_text(encoding="utf-8")
+    text = (resource_folder("models/machines") / "emps" / "emps.toml").read_text(encoding="utf-8")
     rig.write_text(text.replace("emps.xml", path.name), encoding="utf-8")
     try:
         return Rig.load(str(rig)).model.nq
@@ -178,8 +178,8 @@ SETPOINTS = ("t,leg.command.1,leg.command.2,leg.command.3,leg.command.4,leg.comm
              + "".join(f"{0.01 * i:.2f},1,1,1,1,1,1,0.1,0,0\n" for i in range(20))).encode()  # fmt: skip
 
 OWN = (
-    Kind("rig.toml", 0.06, _text(_files("models/rigs", "*.toml"), True), _machine),
-    Kind("model.xml", 0.03, _text(_files("models/rigs", "emps.xml"), False), _model),
+    Kind("rig.toml", 0.06, _text(_files("models/machines", "*/*.toml"), True), _machine),
+    Kind("model.xml", 0.03, _text(_files("models/machines", "emps/emps.xml"), False), _model),
     Kind("rig_experiment.toml", 0.04, _text(lambda: [RIG_EXPERIMENT], True), MjcfExperiment.load),
     Kind("set.toml", 0.03, _text(_files("models/rig_sets", "*.toml"), True),
          lambda p: RigSet.load(str(p))),
