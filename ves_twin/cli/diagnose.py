@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -42,6 +43,12 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         help="hold out every second stretch of LENGTH s, or poses, of each recording (without"
         " LENGTH: that of the machine's file)",
     )
+    parser.add_argument(
+        "--law",
+        action=argparse.BooleanOptionalAction,
+        help="where no cause explains the recordings, look for a law (default: if that takes"
+        " minutes at most)",
+    )
     parser.add_argument("--out", metavar="DIR", help="output folder (default: runs/diagnosis)")
     parser.add_argument("--json", action="store_true", help="the verdict as JSON on stdout")
 
@@ -78,7 +85,7 @@ def _diagnose(arguments: argparse.Namespace) -> Diagnosis:
             exclude=arguments.exclude,
             experiment=given.experiment,
             alternate=arguments.alternate,
-            settings=bank_settings(),
+            settings=replace(bank_settings(), laws=arguments.law),
             progress=progress.share,
         )
 
@@ -110,6 +117,9 @@ def _write(found: Diagnosis, folder: Path, names: str) -> None:
 
 def _plant_sentence(found: Diagnosis) -> str:
     """What became of the extended plant."""
+    law = found.verdict.law
+    if law is not None and law.claimed and found.refused:
+        return f"The plant with the law is a candidate, plant.candidate.toml: {found.refused}."
     if found.extended is None and found.verdict.causes:
         return f"No extended plant was written: {found.refused}."
     if found.nearest is not None:
@@ -126,6 +136,7 @@ def _plant_sentence(found: Diagnosis) -> str:
 
 def _text(found: Diagnosis, folder: Path) -> str:
     from ves_twin.core.quantity import shares
+    from ves_twin.report.diagnosis.law import law_sentences
     from ves_twin.report.diagnosis.proved import (
         inseparable_sentences,
         proof_sentence,
@@ -146,6 +157,8 @@ def _text(found: Diagnosis, folder: Path) -> str:
         gain = verdict.gain
         share, low, high = shares(gain.share, gain.low, gain.high)
         lines.append(f"gain      {share} of the excess on held-out recordings ({low} to {high})")
+    if verdict.law is not None:
+        lines += [f"law       {text}" for text in law_sentences(verdict.law)[:2]]
     if verdict.put_to_proof is not None:
         lines += ["", f"  {proof_sentence(verdict)}", *map(proved_line, verdict.proved)]
         lines += [f"  not separated: {text}" for text in inseparable_sentences(verdict)]

@@ -7,7 +7,7 @@ from enum import StrEnum
 
 import numpy as np
 
-from ves_twin.core.types import FloatArray
+from ves_twin.core.types import FloatArray, IntArray
 
 
 class LawKind(StrEnum):
@@ -91,7 +91,7 @@ class Law:
         return float(np.mean(np.any([(x < k[0]) | (x > k[-1]) for x, k in pairs], axis=0)))
 
 
-def _between(x: FloatArray, knots: tuple[float, ...]) -> tuple[FloatArray, FloatArray]:
+def _between(x: FloatArray, knots: tuple[float, ...]) -> tuple[IntArray, FloatArray]:
     """Number of the knot below, and the share of the way to the next, held at the ends."""
     at = np.asarray(knots)
     held = np.clip(x, at[0], at[-1])

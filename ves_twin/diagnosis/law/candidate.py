@@ -1,17 +1,17 @@
-"""Candidate: a family of laws with numbers that a fit finds, and what is believed of them before."""
+"""Candidate: a family of laws with numbers that a fit finds, and what is believed of them."""
 
 from __future__ import annotations
 
 import re
 from abc import ABC, abstractmethod
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
 
 from ves_twin.core.types import FloatArray
 from ves_twin.diagnosis.forward import Hypothesis, Parameter
-from ves_twin.diagnosis.law.forms import SHARP, Form
+from ves_twin.diagnosis.law.forms import SHARP, TONE, Form
 from ves_twin.diagnosis.law.place import LawPlace, Variable
 from ves_twin.effects.law import Law, LawShape
 
@@ -29,6 +29,9 @@ MESH_LENGTHS = (0.25, 0.6)
 
 DENSE = 129
 """Knots that a closed form is simulated with, beside those where it bends."""
+
+A_PERIOD, MOST = 24, 5000
+"""Knots in a period of a tone, which are within 0.3 % of a sine; and at most."""
 
 JITTER = 1e-6
 """Added to a prior's diagonal: its inverse is needed."""
@@ -130,9 +133,7 @@ class Table(Candidate):
         """A table."""
         names = tuple(v.name for v in self.of)
         values = tuple(numbers.tolist())
-        return Law(
-            self.place.name, self.place.kind, LawShape.TABLE, names, (self.knots,), values
-        )
+        return Law(self.place.name, self.place.kind, LawShape.TABLE, names, (self.knots,), values)
 
 
 @dataclass(frozen=True)
@@ -154,7 +155,7 @@ class Mesh(Candidate):
     @property
     def kernels(self) -> tuple[FloatArray, ...]:
         """Products of Matern 3/2."""
-        first, second = (np.array(k) for k in self.knots)
+        first, second = (np.asarray(k, float) for k in self.knots)
         return tuple(
             np.kron(matern(first, length), matern(second, length)) for length in MESH_LENGTHS
         )
@@ -199,6 +200,12 @@ class Closed(Candidate):
         return np.array(found)
 
     @property
+    def each(self) -> tuple[Closed, ...]:
+        """Its forms one by one."""
+        pairs = zip(self.forms, self.inner, strict=True)
+        return tuple(replace(self, forms=(form,), inner=(inner,)) for form, inner in pairs)
+
+    @property
     def _points(self) -> FloatArray:
         return np.linspace(*self.span, DENSE)
 
@@ -227,14 +234,17 @@ class Closed(Candidate):
     def _dense(self, numbers: FloatArray) -> FloatArray:
         """Even knots, and close ones about zero and about inner places."""
         low, high = self.span
-        about, k = [0.0], 0
+        about, k, dense = [0.0], 0, DENSE
         for form, inner in zip(self.forms, self.inner, strict=True):
-            about += [float(p) for p in numbers[k + 1 : k + 1 + len(inner)] if form.relative]
+            own = numbers[k + 1 : k + 1 + len(inner)].tolist()
+            about += own if form.relative else []
+            if form is TONE:
+                dense = max(dense, int(A_PERIOD * abs(own[0]) * (high - low) / (2.0 * np.pi)))
             k += 1 + len(inner)
         close = SHARP * (high - low) * np.array([-3.0, -1.5, -1.0, -0.6, -0.5, -0.3, -0.1, 0.0])
         close = np.concatenate([close, -close[-2::-1]])
         more = np.concatenate([p + close for p in about])
-        x = np.unique(np.concatenate([np.linspace(low, high, DENSE), more]).round(9))
+        x = np.unique(np.concatenate([np.linspace(low, high, min(dense, MOST)), more]).round(9))
         return np.asarray(x[(x >= low) & (x <= high)])
 
     @property
@@ -257,4 +267,3 @@ def written(form: Form, size: float, inner: list[float]) -> str:
         text = re.sub(rf"\b{letter}\b", f"{value:.4g}", text)
     text = text.replace("- -", "+ ").replace("+ -", "- ")
     return f"{size:.4g}" if form.formula == "1" else f"{size:.4g} {text}"
-

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 
@@ -13,9 +13,9 @@ from ves_twin.diagnosis.law.candidate import Candidate, Closed, Table
 from ves_twin.diagnosis.law.fit_law import LawFit, fit_law
 from ves_twin.diagnosis.law.forms import FORMS
 from ves_twin.diagnosis.law.screen import columns_about
+from ves_twin.diagnosis.law.sizes import Sizes
 from ves_twin.diagnosis.law.smoothness import projected
 from ves_twin.diagnosis.runs import Progress, silent
-from ves_twin.effects.law import Law
 
 COST = 7.0
 """Chi^2 that a number must take away to be worth it, before the full fit weighs it in nats."""
@@ -36,12 +36,13 @@ def closed_forms(
     """Fits of the best closed forms of a table's place and variable.
 
     Each form's column is computed beside the table, all of one or two forms are ranked by
-    chi^2 = -g' G^-1 g + COST for each number, and the best are fitted with the full forward.
+    chi^2 = -g' G^-1 g + COST for each number, and the best are fitted with the full forward; of
+    the best sum each form alone too, since loud laws bend what the quadratic form foretells.
     """
     if not isinstance(table.candidate, Table):
         return []
     entries = _entries(table.candidate, ends)
-    every = _Every(table.candidate.place, table.candidate.of, tuple(entries))
+    every = Sizes(table.candidate.place, table.candidate.of, tuple(entries))
     columns = columns_about(evidence, every, table)
     z = table.fit.residual + table.jacobian @ table.point
     gram, slope = projected(columns, table.jacobian[:, table.count :], z, table.temper)
@@ -49,6 +50,11 @@ def closed_forms(
     for n, candidate in enumerate(chosen):
         progress(n / len(chosen), "closed forms")
         found.append(fit_law(evidence, candidate, table.fit))
+    best = max(found, key=lambda fit: fit.log_evidence)
+    if isinstance(best.candidate, Closed) and len(best.candidate.forms) > 1:
+        tried = {fit.candidate.label for fit in found if fit.candidate is not None}
+        alone = [one for one in best.candidate.each if one.label not in tried]
+        found += [fit_law(evidence, one, best.fit) for one in alone]
     return found
 
 
@@ -61,35 +67,8 @@ def _entries(candidate: Candidate, ends: Mapping[str, tuple[float, float]]) -> l
         for start in form.starts:
             base = low if form.relative else 0.0
             inner = tuple(base + share * (high - low) for share in start)
-            found.append(
-                Closed(candidate.place, candidate.of, (form,), (inner,), (low, high))
-            )
+            found.append(Closed(candidate.place, candidate.of, (form,), (inner,), (low, high)))
     return found
-
-
-@dataclass(frozen=True)
-class _Every(Candidate):
-    """All entries side by side, each with its size alone open."""
-
-    entries: tuple[Closed, ...]
-
-    @property
-    def start(self) -> FloatArray:
-        return np.zeros(len(self.entries))
-
-    @property
-    def sd(self) -> FloatArray:
-        return np.array([entry.sd[0] for entry in self.entries])
-
-    def law(self, numbers: FloatArray) -> Law:
-        at_work = np.flatnonzero(numbers)
-        laws = [
-            self.entries[n].law(np.array([numbers[n], *self.entries[n].inner[0]]))
-            for n in (at_work if len(at_work) else [0])
-        ]
-        x = np.unique(np.concatenate([law.knots[0] for law in laws]))
-        total = sum((law.at(x) for law in laws), np.zeros(len(x)))
-        return replace(laws[0], knots=(tuple(x.tolist()),), values=tuple(total.tolist()), form="")
 
 
 def _ranked(gram: FloatArray, slope: FloatArray, entries: Sequence[Closed]) -> list[Closed]:

@@ -58,9 +58,7 @@ class Stop(Candidate):
         names = tuple(v.name for v in self.of)
         sign = ">" if self.side > 0 else "<"
         form = f"stop at x {sign} {begin:.4g}, stiffness {values[2]:.3g}, damping {values[3]:.3g}"
-        return Law(
-            self.place.name, self.place.kind, LawShape.STOP, names, (), values, form=form
-        )
+        return Law(self.place.name, self.place.kind, LawShape.STOP, names, (), values, form=form)
 
     @property
     def label(self) -> str:
@@ -119,9 +117,7 @@ class Hold(Candidate):
     def law(self, numbers: FloatArray) -> Law:
         """A hold."""
         kind, form = self.place.kind, f"renewed every {self.rows} rows"
-        return Law(
-            self.place.name, kind, LawShape.HOLD, (), (), (float(self.rows),), form=form
-        )
+        return Law(self.place.name, kind, LawShape.HOLD, (), (), (float(self.rows),), form=form)
 
     @property
     def label(self) -> str:

@@ -1,4 +1,4 @@
-"""fit_law: numbers of a law, its prior's smoothness and commissioning errors by the full forward."""
+"""fit_law: numbers of a law, its prior's smoothness, commissioning errors, by the full forward."""
 
 from __future__ import annotations
 
@@ -231,9 +231,7 @@ class _Fitter:
         count = len(self.law)
         others = look.jacobian[:, count:]
         z = look.residual + look.jacobian @ look.point
-        return smoothest(
-            look.jacobian[:, :count], others, z, look.temper, self.candidate
-        )
+        return smoothest(look.jacobian[:, :count], others, z, look.temper, self.candidate)
 
     def step(self, look: _Look, smoothness: Smoothness | None) -> _Bare | None:
         """The best of a few shares of the Gauss-Newton step; None if none helps."""
@@ -323,5 +321,3 @@ def _solved(hessian: FloatArray, slope: FloatArray) -> FloatArray:
 
 def _logdet(matrix: FloatArray) -> float:
     return float(np.linalg.slogdet(matrix)[1])
-
-

@@ -119,8 +119,7 @@ def columns_about(evidence: Evidence, candidate: Candidate, about: LawFit) -> Fl
     shift[: len(about.fit.shift)] = about.fit.shift
     law = np.arange(len(shift) - len(candidate.sd), len(shift))
     moved = [
-        runs.depart(shift, law[[n]], shift[law[n]] + step)
-        for n, step in enumerate(candidate.steps)
+        runs.depart(shift, law[[n]], shift[law[n]] + step) for n, step in enumerate(candidate.steps)
     ]
     share = (1.0 / candidate.steps).astype(np.float32)[:, None, None]
     change = (runs.many(moved) - about.fit.prediction) * share

@@ -66,5 +66,7 @@ def _commands(rig: Rig, joint: str, mode: Mode) -> tuple[Variable, ...]:
         return ()
     told, model = rig.description, rig.model
     names = [*told.drive.actuators, *told.controllers]
-    own = [n for n in dict.fromkeys(names) if int(model.actuator(n).trnid[0]) == model.joint(joint).id]
+    own = [
+        n for n in dict.fromkeys(names) if int(model.actuator(n).trnid[0]) == model.joint(joint).id
+    ]
     return tuple(Variable(f"command@{name}", "") for name in own)

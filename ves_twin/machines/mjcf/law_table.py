@@ -63,18 +63,3 @@ class LawTable(Part):
             self.form,
             self.source,
         )
-
-    @staticmethod
-    def of_law(law: Law, seen: tuple[tuple[float, float], ...]) -> LawTable:
-        """As a file has it."""
-        return LawTable(
-            place=law.place,
-            kind=law.kind,
-            shape=law.shape,
-            of=law.of,
-            knots=law.knots,
-            values=law.values,
-            form=law.form,
-            seen=seen,
-            source=law.source,
-        )

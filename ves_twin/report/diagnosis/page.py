@@ -6,6 +6,7 @@ from ves_twin.core.quantity import UNSURE, digits, quantity
 from ves_twin.diagnosis.report_traces import ReportTraces
 from ves_twin.diagnosis.rivals import Rival
 from ves_twin.diagnosis.verdict import MANY, Cause, Kind, Verdict
+from ves_twin.report.diagnosis.law import law_parts
 from ves_twin.report.diagnosis.limits import limit_sentences, next_sentences, rival_words
 from ves_twin.report.diagnosis.pictures import (
     cells_figure,
@@ -52,6 +53,8 @@ def diagnosis_page(verdict: Verdict, title: str = "Diagnosis", plant: str = "") 
     if exhibit:
         parts += _pictures(verdict, exhibit)
     parts += proved_parts(verdict)
+    if verdict.law is not None:
+        parts.insert(1, section("A law in place of a cause", *law_parts(verdict.law)))
     if verdict.rivals:
         parts.append(section("Rivals, and why they lost", _rivals(verdict.rivals)))
     parts += [

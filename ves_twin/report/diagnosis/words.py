@@ -83,6 +83,8 @@ def _unknown(verdict: Verdict) -> str:
             "These recordings do not agree. Each alone is in order or has one cause, but nothing"
             " explains all of them."
         )
+    if verdict.law is not None and verdict.law.claimed:
+        return f"No cause in the library explains it. A law does: {verdict.law.words}."
     return "Something is wrong that no cause in the library explains."
 
 
