@@ -12,6 +12,9 @@ if TYPE_CHECKING:
 
 from ves_twin.cli.given import Given, add_machine_options, bank_settings
 
+LAW_PICTURE = "law.png"
+"""File with the picture of a law."""
+
 SUMMARY = "name what the simulation gets wrong in recordings, extend the plant, measure the gain"
 
 
@@ -92,16 +95,27 @@ def _diagnose(arguments: argparse.Namespace) -> Diagnosis:
 
 def _write(found: Diagnosis, folder: Path, names: str) -> None:
     from ves_twin.machines.machine import SCENARIO, SETPOINTS
+    from ves_twin.report.diagnosis.law import draw_law
     from ves_twin.report.diagnosis.page import diagnosis_page
     from ves_twin.report.page import write_page
+    from ves_twin.report.picture import save_picture
     from ves_twin.report.rerun.diagnosis import write_diagnosis_rrd
 
-    for name in ("plant.toml", "plant.candidate.toml", SETPOINTS, SCENARIO):  # of an earlier run
+    for name in (
+        "plant.toml",
+        "plant.candidate.toml",
+        LAW_PICTURE,
+        SETPOINTS,
+        SCENARIO,
+    ):  # of an earlier run
         (folder / name).unlink(missing_ok=True)
     found.verdict.save(folder / "verdict.json")
     page = diagnosis_page(found.verdict, f"Diagnosis of {names}", _plant_sentence(found))
     write_page(folder / "report.html", page)
     write_diagnosis_rrd(found.verdict, folder / "diagnosis.rrd")
+    law = found.verdict.law
+    if law is not None and law.shape == "table":
+        save_picture(draw_law(law), folder / LAW_PICTURE)
     note = f"Extended by ves-twin diagnose: {found.verdict.words}"
     if found.extended is not None and found.refused:
         path = folder / "plant.candidate.toml"

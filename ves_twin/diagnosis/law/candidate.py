@@ -155,9 +155,10 @@ class Mesh(Candidate):
     @property
     def kernels(self) -> tuple[FloatArray, ...]:
         """Products of Matern 3/2."""
-        first, second = (np.asarray(k, float) for k in self.knots)
+        first, second = np.array(self.knots[0]), np.array(self.knots[1])
         return tuple(
-            np.kron(matern(first, length), matern(second, length)) for length in MESH_LENGTHS
+            np.asarray(np.kron(matern(first, length), matern(second, length)))
+            for length in MESH_LENGTHS
         )
 
     def law(self, numbers: FloatArray) -> Law:

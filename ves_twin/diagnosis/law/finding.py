@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 from scipy.stats import norm
@@ -155,6 +155,15 @@ def _rival(search: Search, fit: LawFit) -> LawRival:
     return LawRival(fit.candidate.label, form, behind, search.leaves_noise(fit))
 
 
+@dataclass(frozen=True)
+class _Trace(Table):
+    """A table of time beside a law, which may be one of time too."""
+
+    @property
+    def label(self) -> str:
+        return f"{super().label}: trace"
+
+
 def _along(search: Search, law: Law) -> list[FloatArray]:
     """Each variable of a law (n,) along all recordings."""
     runs, plant = search.best.fit.local.runs, search.evidence.runs.forward
@@ -195,7 +204,7 @@ def _points(search: Search, law: Law, along: list[FloatArray]) -> tuple[tuple[fl
         return ()
     time = runs.programmes[0].time - runs.programmes[0].time[0]
     knots = np.linspace(0.0, float(time[-1]), PLOTTED)
-    clock = Table(best.candidate.place, (Variable("time", "s"),), tuple(knots.tolist()))
+    clock = _Trace(best.candidate.place, (Variable("time", "s"),), tuple(knots.tolist()))
     columns = columns_about(search.evidence, clock, best)
     at = np.interp(knots, time, along[0])
     others = best.jacobian[:, best.count :]

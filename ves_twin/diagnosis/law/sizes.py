@@ -31,6 +31,11 @@ class Sizes(Candidate):
         """As each has it."""
         return np.array([entry.sd[0] for entry in self.entries])
 
+    @property
+    def label(self) -> str:
+        """Apart from a table of the same variable."""
+        return f"{super().label}: sizes of {len(self.entries)} forms"
+
     def law(self, numbers: FloatArray) -> Law:
         """A table of the sum."""
         at_work = np.flatnonzero(numbers)

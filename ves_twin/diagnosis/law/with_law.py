@@ -8,6 +8,7 @@ from functools import cached_property
 
 import numpy as np
 
+from ves_twin.core.errors import InvalidInputError
 from ves_twin.core.types import FloatArray
 from ves_twin.diagnosis.forward import Channel, Excitation, Hypothesis, Parameter
 from ves_twin.diagnosis.law.candidate import Candidate
@@ -46,6 +47,11 @@ class WithLaw:
         """Of the plant, and the numbers of the laws."""
         own = (p for one in self.candidates for p in one.parameters)
         return (*self.plant.parameters, *own)
+
+    def __post_init__(self) -> None:
+        names = [p.name for p in self.parameters]
+        if len(set(names)) < len(names):
+            raise InvalidInputError("laws", [c.label for c in self.candidates], "other labels each")
 
     @property
     def hypotheses(self) -> tuple[Hypothesis, ...]:

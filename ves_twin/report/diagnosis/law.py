@@ -2,13 +2,20 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from typing import TYPE_CHECKING
+
 import numpy as np
 
 from ves_twin.core.quantity import digits, percent, quantity
+from ves_twin.core.types import FloatArray
 from ves_twin.diagnosis.law.result import LawFinding, LawRival
 from ves_twin.report.figure import new_figure, svg
 from ves_twin.report.html import Html, bullets, folded, paragraph, table
 from ves_twin.report.plots import MEASURED, SIMULATED
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 EQUAL = 3.0
 """Nats within which another law is as good: odds below 20."""
@@ -89,7 +96,21 @@ def law_parts(law: LawFinding) -> list[Html]:
 
 
 def law_figure(law: LawFinding) -> Html:
-    """The law against its variable, its band, and what the recordings ask for."""
+    """The picture of a law in a page."""
+    caption = (
+        f"{capital(law.kind)} at {law.place} against {law.of[0]}. Points: what the recordings ask"
+        " for along time, without any law. Line and band: the law."
+    )
+    return svg(draw_law(law), "law", caption)
+
+
+def draw_law(law: LawFinding, truth: Callable[[FloatArray], FloatArray] | None = None) -> Figure:
+    """A law against its variable, its band, and what the recordings ask for.
+
+    Args:
+        law: a table.
+        truth: the law itself, where somebody knows it.
+    """
     figure = new_figure(3.6)
     axes = figure.subplots()
     low, high = law.seen[0]
@@ -106,13 +127,11 @@ def law_figure(law: LawFinding) -> Html:
             along, least, most, color=SIMULATED, alpha=0.25, linewidth=0, label="90 % band"
         )
     axes.plot(x[inside], np.array(law.values)[inside], color=SIMULATED, lw=1.4, label="law")
+    if truth is not None:
+        axes.plot(x[inside], truth(x[inside]), "--", color="black", lw=1.0, label="truth")
     axes.set_xlabel(f"{law.of[0]}, {law.units[0].replace('*', ' ')}".rstrip(", "), fontsize=8)
     axes.set_ylabel(f"{law.kind} at {law.place}, {law.units[-1].replace('*', ' ')}", fontsize=8)
     axes.tick_params(labelsize=8)
     axes.grid(color="#e8ebee", linewidth=0.6)
     axes.legend(fontsize=7, frameon=False)
-    caption = (
-        f"{capital(law.kind)} at {law.place} against {law.of[0]}. Points: what the recordings ask"
-        " for along time, without any law. Line and band: the law."
-    )
-    return svg(figure, "law", caption)
+    return figure
