@@ -46,7 +46,8 @@ def main(arguments: Sequence[str] | None = None) -> None:
     if not truth_file(told.out).is_file():
         make_laws(kinds, told.out, told.seed)
     answers = answer_laws(told.out, replace(bank_settings(), laws=True), _say)
-    scores = [score_law(t, answers[t.case]) for t in read_law_truths(told.out)]
+    truths = [truth for truth in read_law_truths(told.out) if truth.case in answers]
+    scores = [score_law(truth, answers[truth.case]) for truth in truths]
     print("\n".join(table(scores)))
 
 

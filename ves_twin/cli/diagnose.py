@@ -172,7 +172,9 @@ def _text(found: Diagnosis, folder: Path) -> str:
         share, low, high = shares(gain.share, gain.low, gain.high)
         lines.append(f"gain      {share} of the excess on held-out recordings ({low} to {high})")
     if verdict.law is not None:
-        lines += [f"law       {text}" for text in law_sentences(verdict.law)[:2]]
+        said = law_sentences(verdict.law)
+        first, *rest = said[1:] if verdict.law.claimed else said
+        lines += [f"law       {first}", *(f"          {text}" for text in rest)]
     if verdict.put_to_proof is not None:
         lines += ["", f"  {proof_sentence(verdict)}", *map(proved_line, verdict.proved)]
         lines += [f"  not separated: {text}" for text in inseparable_sentences(verdict)]

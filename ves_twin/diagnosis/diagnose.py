@@ -199,7 +199,7 @@ class _View:
             shown=lawful.explanation if lawful else None,
             found=found,
             built=end.built,
-            gain=end.gain,
+            gain=lawful.gain if lawful and lawful.explanation else end.gain,
             forecast=end.forecast,
             proposals=proposals,
             apart=apart,

@@ -190,8 +190,9 @@ class Verdict:
     prove one by one, out of `put_to_proof`, with the false-discovery rate that this keeps; `left`
     is what then stays of each channel, `inseparable` what is known only in combination. `nearest`
     are the causes that come nearest where none is named. `law` is what was found where no cause
-    explains the record and a law was looked for; if it is claimed, `tuned`, `residuals` and
-    `leftover` are with it. `exhibit` has the traces of the report, and stays out of verdict.json.
+    explains the record and a law was looked for; if it is claimed, `tuned`, `residuals`,
+    `leftover` and `gain` are with it. `exhibit` has the traces of the report, and stays out of
+    verdict.json.
     """
 
     verdict: Kind

@@ -8,6 +8,7 @@ from time import perf_counter
 from ves_twin.diagnosis.assess import Assessment
 from ves_twin.diagnosis.evidence import Evidence
 from ves_twin.diagnosis.explain import Explanation
+from ves_twin.diagnosis.gain import Gain
 from ves_twin.diagnosis.law.finding import law_finding
 from ves_twin.diagnosis.law.place import LawForward
 from ves_twin.diagnosis.law.propose import Limits, Search, search_laws
@@ -31,6 +32,11 @@ class Lawful:
 
     finding: LawFinding
     explanation: Explanation | None
+
+    @property
+    def gain(self) -> Gain | None:
+        """Of the law on held-out recordings."""
+        return self.finding.gain
 
 
 def lawful_explanation(

@@ -15,7 +15,14 @@ from ves_twin.diagnosis.law.closed import closed_forms
 from ves_twin.diagnosis.law.fit_law import LawFit, fit_law
 from ves_twin.diagnosis.law.memories import memory_laws, stop_laws
 from ves_twin.diagnosis.law.place import LawForward, LawPlace
-from ves_twin.diagnosis.law.screen import Suspect, law_screen, ranges, smooth_candidates
+from ves_twin.diagnosis.law.screen import (
+    Suspect,
+    both,
+    knots,
+    law_screen,
+    ranges,
+    smooth_candidates,
+)
 from ves_twin.diagnosis.law.tones import tone_laws
 from ves_twin.diagnosis.refine import Fit
 from ves_twin.diagnosis.runs import Progress, silent
@@ -147,7 +154,8 @@ def search_laws(
     best = max([*tables, *others], key=lambda fit: fit.log_evidence)
     second = adapted(evidence, best.fit)
     none = _again(second, none)
-    tables = _first([_again(second, fit) for fit in _first(tables, 3)], 3)
+    ends = both(ends, ranges(plant, best))
+    tables = _first([_further(second, fit, ends) for fit in _first(tables, 3)], 3)
     others = [_again(second, fit) for fit in _first(others, 3)]
     worth = [f for f in tables if f.log_evidence > none.log_evidence + WORTH]
     plain = [fit for fit in worth if isinstance(fit.candidate, Table)]
@@ -157,6 +165,17 @@ def search_laws(
     if not any(_quiet(second, none, fit, limits) for fit in _first(pool, 3)):
         pool += stop_laws(second, none, _joints(worth), ends, progress)
     return _chosen(second, none, pool, smooth, ends, limits, progress)
+
+
+def _further(evidence: Evidence, fit: LawFit, ends: Mapping[str, tuple[float, float]]) -> LawFit:
+    """A table once more, to the ends that the motion has with the law in it."""
+    table = fit.candidate
+    if not isinstance(table, Table):
+        return _again(evidence, fit)
+    variable = table.of[0]
+    wider = replace(table, knots=knots(variable, ends[variable.name]))
+    law = table.law(fit.numbers)
+    return fit_law(evidence, wider, fit.fit, law.at(np.array(wider.knots)))
 
 
 def _quiet(evidence: Evidence, none: LawFit, fit: LawFit, limits: Limits) -> bool:

@@ -23,6 +23,9 @@ KNOTS = {"position": 19, "speed": 21, "time": 25, "command": 13}
 MESHED = 8
 """Knots of each variable of a mesh."""
 
+LEAST = 1e-3
+"""Distance of a knot from the ends, as a share of the largest speed."""
+
 CROWDED = 3.0
 """Knots of speed are m sinh(CROWDED z) / sinh(CROWDED), z even."""
 
@@ -52,6 +55,16 @@ def ranges(forward: LawForward, found: LawFit) -> Mapping[str, tuple[float, floa
     return ends
 
 
+def both(
+    one: Mapping[str, tuple[float, float]], other: Mapping[str, tuple[float, float]]
+) -> Mapping[str, tuple[float, float]]:
+    """Ends that hold both ranges."""
+    return {
+        name: (min(low, other[name][0]), max(high, other[name][1]))
+        for name, (low, high) in one.items()
+    }
+
+
 def values_of(runs: Runs, shift: FloatArray) -> list[dict[str, float]]:
     """Parameter -> value, of each recording."""
     return [
@@ -71,7 +84,7 @@ def smooth_candidates(
     found: list[Candidate] = []
     for place in places:
         moving = [v for v in place.variables if v.name in ends and _wide(ends[v.name])]
-        found += [Table(place, (v,), _knots(v, ends[v.name])) for v in moving]
+        found += [Table(place, (v,), knots(v, ends[v.name])) for v in moving]
         own = {v.what: v for v in reversed(moving)}
         if place.kind is LawKind.EFFORT and {"position", "speed"} <= own.keys():
             pair = own["position"], own["speed"]
@@ -138,12 +151,13 @@ def _wide(ends: tuple[float, float]) -> bool:
     return bool(np.isfinite(ends).all()) and ends[1] > ends[0]
 
 
-def _knots(variable: Variable, ends: tuple[float, float]) -> tuple[float, ...]:
+def knots(variable: Variable, ends: tuple[float, float]) -> tuple[float, ...]:
+    """Of a table: even, those of speed closer about zero."""
     low, high = ends
     count = KNOTS[variable.what]
     if variable.what != "speed":
         return tuple(np.linspace(low, high, count).tolist())
     most = max(-low, high)
-    knots = most * np.sinh(CROWDED * np.linspace(-1.0, 1.0, count)) / np.sinh(CROWDED)
-    inside = knots[(knots > low + 1e-3 * most) & (knots < high - 1e-3 * most)]
+    every = most * np.sinh(CROWDED * np.linspace(-1.0, 1.0, count)) / np.sinh(CROWDED)
+    inside = every[(every > low + LEAST * most) & (every < high - LEAST * most)]
     return tuple([low, *inside.tolist(), high])

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ves_twin.core.quantity import digits, percent, quantity
+from ves_twin.core.quantity import digits, quantity, shares
 from ves_twin.core.types import FloatArray
 from ves_twin.diagnosis.law.result import LawFinding, LawRival
 from ves_twin.report.figure import new_figure, svg
@@ -56,8 +56,8 @@ def _worth(law: LawFinding) -> str:
         return f"It is {odds}. No held-out recording has tried it."
     if gain.share is None:
         return f"It is {odds}. The held-out recordings show nothing that it could improve."
-    low, high = (percent(x) if x is not None else "?" for x in (gain.low, gain.high))
-    taken = f"{percent(gain.share)} of the excess on held-out recordings ({low} to {high})"
+    share, low, high = shares(gain.share, gain.low, gain.high)
+    taken = f"{share} of the excess on held-out recordings ({low} to {high})"
     return f"It takes away {taken}, and is {odds}."
 
 
