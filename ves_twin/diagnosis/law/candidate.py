@@ -30,6 +30,9 @@ MESH_LENGTHS = (0.25, 0.6)
 DENSE = 129
 """Knots that a closed form is simulated with, beside those where it bends."""
 
+CLOSE = np.array([0.0, 0.1, 0.3, 0.5, 0.6, 1, 1.5, 2, 3, 4, 5, 6.5, 8, 10, 12, 15, 18, 22, 27, 33])
+"""Distances of the close ones, in widths of what is sharp."""
+
 A_PERIOD, MOST = 24, 5000
 """Knots in a period of a tone, which are within 0.3 % of a sine; and at most."""
 
@@ -242,8 +245,7 @@ class Closed(Candidate):
             if form is TONE:
                 dense = max(dense, int(A_PERIOD * abs(own[0]) * (high - low) / (2.0 * np.pi)))
             k += 1 + len(inner)
-        close = SHARP * (high - low) * np.array([-3.0, -1.5, -1.0, -0.6, -0.5, -0.3, -0.1, 0.0])
-        close = np.concatenate([close, -close[-2::-1]])
+        close = SHARP * (high - low) * np.concatenate([-CLOSE[::-1], CLOSE])
         more = np.concatenate([p + close for p in about])
         x = np.unique(np.concatenate([np.linspace(low, high, min(dense, MOST)), more]).round(9))
         return np.asarray(x[(x >= low) & (x <= high)])
