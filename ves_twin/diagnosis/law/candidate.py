@@ -27,7 +27,7 @@ LENGTHS = (0.08, 0.25, 0.8)
 MESH_LENGTHS = (0.25, 0.6)
 """The same of a mesh, whose knots are further apart."""
 
-DENSE = 129
+DENSE = 201
 """Knots that a closed form is simulated with, beside those where it bends."""
 
 CLOSE = np.array([0.0, 0.1, 0.3, 0.5, 0.6, 1, 1.5, 2, 3, 4, 5, 6.5, 8, 10, 12, 15, 18, 22, 27, 33])
