@@ -86,12 +86,13 @@ def assemble_verdict(
     causes = tuple(replace(c, firm=firm.get(f"{c.effect}@{c.target}", c.firm)) for c in causes)
     nearest = _causes(findings, found)[0] if found and not named else ()
     exhibit = exhibit_of(findings.seen, first, found)
-    sizes = findable_sizes(first.screen, limits.effect)
+    least = first.limit(limits.effect)
+    sizes = findable_sizes(first.screen, least)
     units = {h.label: _unit(findings, h) for h in first.screen.bank.hypotheses}
     suspect = "" if found is None or named else _label(found.best)
     statistics = Statistics(
         effect=first.score,
-        effect_threshold=limits.effect,
+        effect_threshold=least,
         misfit=first.misfit,
         misfit_threshold=limits.misfit,
         misfit_after=found.score if found else None,
