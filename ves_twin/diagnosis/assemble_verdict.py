@@ -262,7 +262,10 @@ def _leftover(findings: Findings) -> ResidualStructure:
     found, first = findings.found, findings.first
     limit = findings.limits.misfit
     if found:
-        return describe(found.evidence, found.best.residual, found.after, limit)
-    fit = first.commissioning
-    residual = first.left if fit is None else fit.residual
-    return describe(first.evidence, residual, cells(first.evidence.whitening, residual), limit)
+        best = found.best
+        return describe(found.evidence, best.prediction, best.residual, found.after, limit)
+    fit, base = first.commissioning, first.screen.bank.base
+    predicted, left = (
+        (base.prediction, first.left) if fit is None else (fit.prediction, fit.residual)
+    )
+    return describe(first.evidence, predicted, left, cells(first.evidence.whitening, left), limit)

@@ -19,7 +19,15 @@ PLANT = vt.Plant.load("ves2_pressure_fast")
 BELIEVED = PLANT.parameters.number("hydraulics.full_speed")
 LEGS = vt.Scenario.load("identify_slow").legs
 
-FIRST = [(k, row.targets[0]) for k in EFFECTS for row in EFFECTS[k].rows]
+ELSEWHERE = {"leg_bending", "filter_edge", "model_mass"}
+"""Need legs with bodies, a filter, or an emulated system."""
+
+FIRST = [
+    (kind, row.targets[0])
+    for kind in EFFECTS
+    if kind not in ELSEWHERE
+    for row in EFFECTS[kind].rows
+]
 
 
 def run(*effects, **legs):
@@ -66,6 +74,7 @@ def test_an_offset_of_a_fiftieth_of_a_millimetre_is_borne_and_a_third_is_not():
         build_effect("valve_null", "leg.3", {"null": 0.02}),
         build_effect("transducer_delay", "leg.2", {"delay": 0.01}),
         build_effect("valve_gain", "leg.4", {"gain": -0.3}),
+        build_effect("command_limit", "legs", {"tightness": 9.0}),
     ],
     ids=lambda effect: effect.kind,
 )
@@ -94,7 +103,7 @@ def test_rows_that_are_cut_off_or_empty_count_for_nothing():
     recording = run()
     lengths, valves = recording["leg.length"].copy(), recording["valve.command"].copy()
     lengths[100:140, 2] = np.nan
-    valves[200:220, 1] = 1.0
+    valves[200:220, 1] = 0.9
     signals = {**recording.signals, "leg.length": lengths, "valve.command": valves}
     assert check(replace(recording, signals=signals)).grade is Grade.PASSED
     few = Recording(recording.time[:30], {n: r[:30] for n, r in signals.items()}, recording.info)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from ves_twin.core.recording.recording import Recording
-from ves_twin.core.types import FloatArray
+from ves_twin.core.types import BoolArray, FloatArray
 from ves_twin.data.quality.check import Check, failed, passed, unknown
 from ves_twin.scenario.schema import Legs
 
@@ -19,8 +19,8 @@ SHARE = 0.1
 CLEAR = 10.0
 """Standard errors of an offset that count; rows of a motion are coloured, about three as one."""
 
-OPEN = 0.99
-"""Share of full opening from which a command may be cut off."""
+CUT = 3
+"""Rows of one leg with its very largest command from which that is taken for a limit."""
 
 FEWEST = 50
 """Rows from which an offset is told."""
@@ -49,9 +49,9 @@ def check_leg_program(recording: Recording, legs: Legs, full_speed: float) -> Ch
     told = valve * full_speed / legs.gain - error
     rates = np.gradient(command, axis=0), np.gradient(length, axis=0)
     finite = np.isfinite(told) & np.isfinite(rates[0]) & np.isfinite(rates[1])
-    rows = np.all(finite & (np.abs(valve) < OPEN), axis=1)
+    rows = np.all(finite & ~_cut_off(valve), axis=1)
     if rows.sum() < FEWEST:
-        return unknown(NAME, f"{rows.sum()} rows with valves not fully open", *SIGNALS)
+        return unknown(NAME, f"{rows.sum()} rows whose valve commands are not cut off", *SIGNALS)
     offset, sd = _offsets(told[rows], [rate[rows] for rate in rates])
     borne = SHARE * np.abs(error[rows].mean(axis=0)) + CLEAR * sd
     off = [
@@ -62,6 +62,13 @@ def check_leg_program(recording: Recording, legs: Legs, full_speed: float) -> Ch
         why = "is off what its valve commands say that it was: the log is wrong, not the rig"
         return failed(NAME, f"{', '.join(off)} {why}", "leg.length")
     return passed(NAME, "leg.length: as the leg program read it", "leg.length")
+
+
+def _cut_off(valve: FloatArray) -> BoolArray:
+    """Where commands stand at a limit, that of the program or a lower one (n, 6)."""
+    size = np.abs(valve)
+    at = size >= np.nanmax(size, axis=0, initial=0.0)
+    return np.asarray(at & (at.sum(axis=0) >= CUT))
 
 
 def _offsets(told: FloatArray, rates: list[FloatArray]) -> tuple[FloatArray, FloatArray]:
