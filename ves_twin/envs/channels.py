@@ -93,7 +93,7 @@ class Channels:
     def shares(self, vector: FloatArray) -> SingleArray:
         """A vector (n,) in its units as shares of the bounds: -1 at `low`, 1 at `high`."""
         middle, half = (self.high + self.low) / 2.0, (self.high - self.low) / 2.0
-        return np.clip((vector - middle) / half, -1.0, 1.0).astype(np.float32)
+        return np.asarray(np.clip((vector - middle) / half, -1.0, 1.0), np.float32)
 
     def physical(self, shares: FloatArray | SingleArray) -> FloatArray:
         """The vector (n,) in its units whose `shares` these are, to single precision."""

@@ -41,7 +41,7 @@ OPTIONS = ("goal", "plant", "scenario")
 Observation = FloatArray | SingleArray
 
 
-class RigEnv(gym.Env[Observation, FloatArray], abc.ABC, Generic[Hand]):
+class RigEnv(gym.Env[Any, FloatArray], abc.ABC, Generic[Hand]):
     """One rig under one task; a step is CYCLES admittance cycles.
 
     Actions are shares of a scale, -1 to 1. A finite action beyond that is clipped and `info` says
@@ -334,9 +334,7 @@ class RigEnv(gym.Env[Observation, FloatArray], abc.ABC, Generic[Hand]):
         if self.sim.outcome is not Outcome.DIVERGED:
             self._board_pose = self._geometry.pose(board["leg.length"], self._board_pose)
         self.reading = self.observations.vector(self.readings(board))
-        return (
-            self.observations.shares(self.reading) if self._scaled else self.reading.copy()
-        )
+        return self.observations.shares(self.reading) if self._scaled else self.reading.copy()
 
     def _info(self, clipped: bool) -> dict[str, Any]:
         sim = self.sim
@@ -360,7 +358,7 @@ class RigEnv(gym.Env[Observation, FloatArray], abc.ABC, Generic[Hand]):
         return self._rig
 
 
-def _shares(width: int, dtype: type[np.float32 | np.float64]) -> gym.spaces.Box:
+def _shares(width: int, dtype: type[np.float32 | np.float64]) -> Any:
     return gym.spaces.Box(-1.0, 1.0, (width,), dtype)
 
 
