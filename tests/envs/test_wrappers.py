@@ -111,7 +111,7 @@ def test_rerun_files_are_written_beside_them(tmp_path):
 def test_environments_in_processes_equal_single_ones_to_the_last_bit():
     scenario = short("vibration_damping")
     envs = gym.make_vec(
-        DAMPING,
+        f"ves_twin.envs:{DAMPING}",
         num_envs=2,
         vectorization_mode="async",
         vector_kwargs={"context": "spawn"},

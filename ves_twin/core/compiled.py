@@ -61,5 +61,4 @@ def say_that_it_compiles() -> None:
     The rig's loop is by far the longest to compile, so it stands for all of the cache.
     """
     if not any(compiled_folder().rglob("loop.run_ticks-*.nbi")):
-        words = "compiling the simulation loop: about a minute, once on this machine"
-        print(f"ves_twin: {words}", file=sys.stderr, flush=True)
+        print("compiling the inner loop, once: about a minute", file=sys.stderr, flush=True)
