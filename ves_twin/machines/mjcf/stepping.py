@@ -12,6 +12,7 @@ from ves_twin.core.units import to_si
 from ves_twin.effects.effect import Effect
 from ves_twin.effects.element import Element
 from ves_twin.machines.mjcf.description import Controller, Mode
+from ves_twin.machines.mjcf.imposed import Imposed
 from ves_twin.machines.mjcf.inverse import smoothed
 from ves_twin.machines.mjcf.joint_units import joint_units
 from ves_twin.machines.mjcf.started import start_signal
@@ -45,8 +46,8 @@ def motion_of_drive(work: Work, mode: Mode, refined: bool = False) -> dict[str, 
     steps = max(1, round(period / model.opt.timestep)) * (2 if refined else 1)
     model.opt.timestep = period / steps
     state = _start(work)
-    closed = mode is Mode.REFERENCE
-    if not closed and not _resisted(work):
+    closed, drive = mode is Mode.REFERENCE, work.rig.description.drive
+    if not (closed or drive.imposed or drive.locked or _resisted(work)):
         path, sensed, commands = _open(work, state, steps)
     else:
         path, sensed, commands = _stepped(work, state, steps, closed)
@@ -173,8 +174,10 @@ def _stepped(
     ]
     holders = {n: [e.holder() for e, _ in work.at(Element.JOINT, n)] for n, _, _ in resisted}
     path, sensed = np.zeros((rows, model.nq + model.nv)), np.zeros((rows, model.nsensordata))
+    pull, imposed = np.zeros((rows, model.nv)), Imposed.of(work, steps)
     speed, reach = np.zeros(1), _Reach(work)
     for k in range(rows):
+        imposed.move(data, k * steps)
         path[k, : model.nq], path[k, model.nq :] = data.qpos, data.qvel
         for loop in loops:
             asked[k, loop.actuator] = loop.command(k, data)
@@ -184,11 +187,14 @@ def _stepped(
                 speed[0], q = data.qvel[dof], float(data.qpos[at])
                 held = sum(holder(q) for holder in holders[name])
                 data.qfrc_applied[dof] = -work.resistance(name, speed)[0] - held
+            imposed.move(data, k * steps + n)
             mujoco.mj_step(model, data)
             if n == 0:
-                sensed[k] = data.sensordata
+                sensed[k], pull[k] = data.sensordata, data.qacc
         if _failed(data):
             break
+    for name in imposed.actuators:
+        asked[:, model.actuator(name).id] = imposed.command(name, path, pull)
     return path, sensed, asked
 
 
