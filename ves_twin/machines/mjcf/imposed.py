@@ -10,7 +10,7 @@ import numpy as np
 from scipy.interpolate import CubicSpline
 
 from ves_twin.core.types import FloatArray, IntArray
-from ves_twin.machines.mjcf.inverse import effort_along, smoothed
+from ves_twin.machines.mjcf.inverse import efforts_along, smoothed
 from ves_twin.machines.mjcf.places import driven_joint
 from ves_twin.machines.mjcf.work import Work
 
@@ -80,23 +80,25 @@ class Imposed:
             inertia,
         )
 
-    @property
-    def actuators(self) -> list[str]:
-        """Compared actuators whose joint is imposed."""
-        model, drive = self.work.model, self.work.rig.description.drive
-        names = (c.actuator for c in self.work.rig.description.compare.values() if c.actuator)
-        return [n for n in names if driven_joint(model, n) in drive.imposed]
-
     def move(self, data: mujoco.MjData, step: int) -> None:
         """Set place and speed of a step, and the effort that keeps the recorded acceleration."""
         data.qpos[self.places] = self.position[step]
         data.qvel[self.dofs] = self.speed[step]
         data.qfrc_applied[self.dofs] = self.inertia * self.pull[step]
 
-    def command(self, actuator: str, path: FloatArray, pull: FloatArray) -> FloatArray:
-        """What an actuator gives (n,) along qpos and qvel (n, nq + nv) with accelerations."""
-        nq = self.work.model.nq
-        return effort_along(self.work, actuator, path[:, :nq], path[:, nq:], pull)
+    def commands(self, path: FloatArray, pull: FloatArray) -> dict[str, FloatArray]:
+        """What the actuators of imposed joints give (n,), where they are compared.
+
+        Args:
+            path: qpos and qvel of the rows (n, nq + nv).
+            pull: accelerations (n, nv).
+        """
+        told, model = self.work.rig.description, self.work.model
+        compared = (c.actuator for c in told.compare.values() if c.actuator)
+        names = [n for n in compared if driven_joint(model, n) in told.drive.imposed]
+        if not names:
+            return {}
+        return efforts_along(self.work, names, path[:, : model.nq], path[:, model.nq :], pull)
 
 
 def _coordinates(model: mujoco.MjModel, joint: int) -> IntArray:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import copy
 import hashlib
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import lru_cache
 
@@ -48,11 +48,16 @@ def efforts_of_motion(work: Work) -> dict[str, FloatArray]:
     return found
 
 
-def effort_along(
-    work: Work, actuator: str, position: FloatArray, speed: FloatArray, pull: FloatArray
-) -> FloatArray:
-    """The command (n,) that an actuator needs along qpos (n, nq), qvel and qacc (n, nv)."""
-    return _command(work, actuator, _inverted(_rigid(work.model), position, speed, pull))
+def efforts_along(
+    work: Work,
+    actuators: Sequence[str],
+    position: FloatArray,
+    speed: FloatArray,
+    pull: FloatArray,
+) -> dict[str, FloatArray]:
+    """The command (n,) that each actuator needs along qpos (n, nq), qvel and qacc (n, nv)."""
+    moved = _inverted(_rigid(work.model), position, speed, pull)
+    return {name: _command(work, name, moved) for name in actuators}
 
 
 def _rigid(model: mujoco.MjModel) -> mujoco.MjModel:

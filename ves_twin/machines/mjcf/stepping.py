@@ -193,8 +193,8 @@ def _stepped(
                 sensed[k], pull[k] = data.sensordata, data.qacc
         if _failed(data):
             break
-    for name in imposed.actuators:
-        asked[:, model.actuator(name).id] = imposed.command(name, path, pull)
+    for name, command in imposed.commands(path, pull).items():
+        asked[:, model.actuator(name).id] = command
     return path, sensed, asked
 
 
