@@ -131,7 +131,8 @@ def _command(work: Work, name: str, moved: _Moved) -> FloatArray:
     joint = model.joint(int(actuator.trnid[0]))
     dof = int(joint.dofadr[0])
     speed = moved.speed[:, dof]
-    effort = moved.effort[:, dof] + float(model.dof_damping[dof]) * speed
+    effort = moved.effort[:, dof] + work.carried(joint.name, moved.effort[:, dof], speed)
+    effort = effort + float(model.dof_damping[dof]) * speed
     effort = effort + work.dry(joint.name, speed) + work.resistance(joint.name, speed)
     effort = effort + work.held(joint.name, moved.position[:, int(joint.qposadr[0])])
     effort = effort + work.coupled(joint.name, moved.speed)

@@ -30,6 +30,9 @@ def place_of(effect: Effect, told: RigDescription, model: mujoco.MjModel) -> Pla
     element = on.element
     if element is Element.SIGNAL:
         return _signal(kind, target, on, told)
+    if element is Element.WORLD:
+        _known("axis of the world", target, ("x", "y"))
+        return Place(element, target)
     if element is Element.BODY:
         name, _, axis = target.rpartition(".") if on.axis else (target, "", "")
         if on.axis and axis not in tuple("xyz"):
