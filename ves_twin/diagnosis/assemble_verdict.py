@@ -143,7 +143,11 @@ def _provisional(verdict: Verdict) -> Verdict:
 
 
 def _sized(built: BuildUp, causes: Sequence[Cause]) -> tuple[Proved, ...]:
-    """What is proved with its sizes; firm only where no commissioning error explains it either."""
+    """What is proved with its sizes.
+
+    Firm only where no commissioning error explains it either, and no interval holds the value that
+    the model has already: a shape that is known so little is not known by name.
+    """
     named = {f"{cause.effect}@{cause.target}": cause for cause in causes}
     found = []
     for one in built.proved:
@@ -152,7 +156,8 @@ def _sized(built: BuildUp, causes: Sequence[Cause]) -> tuple[Proved, ...]:
             name: Size(e.value, e.low, e.high, e.unit, e.nominal)
             for name, e in cause.shortened.parameters.items()
         }
-        found.append(replace(one, parameters=sizes, firm=one.firm and cause.firm))
+        known = all(not s.low <= s.nominal <= s.high for s in sizes.values())
+        found.append(replace(one, parameters=sizes, firm=one.firm and cause.firm and known))
     return tuple(found)
 
 
