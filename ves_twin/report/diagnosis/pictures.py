@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -15,6 +16,9 @@ from ves_twin.report.colours import AFTER, BEFORE, MEASURED, RESIDUAL, TOLERANCE
 from ves_twin.report.figure import new_figure, svg
 from ves_twin.report.html import Html
 from ves_twin.report.plots import Band, Trace, draw_cells, draw_change, draw_traces
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 ALONE = "best without a cause, within tolerances"
 """What the model is called that has its tolerances fitted and nothing else."""
@@ -56,13 +60,33 @@ def _ends(cell: Cell) -> str:
 
 
 def answer_figure(exhibit: ReportTraces, fitted: str) -> Html:
+    """`draw_answer` as a part of a page."""
+    traces, column = _telling(exhibit)
+    caption = (
+        f"{exhibit.channels[column].name} of {traces.name}, the channel that tells most; below, the"
+        " same less the model before. Grey: where a machine in order may lie, by noise and"
+        " tolerances (95 % of the rows)."
+    )
+    return svg(draw_answer(exhibit, fitted), "answer", caption)
+
+
+def _telling(exhibit: ReportTraces) -> tuple[Traces, int]:
+    """Recording and channel that tell most."""
+    column = int(exhibit.telling[0])
+    return max(exhibit.traces, key=lambda t: np.nansum(np.square(t.before[:, column]))), column
+
+
+def draw_answer(exhibit: ReportTraces, fitted: str) -> Figure:
     """The channel that tells most: measured, model before and after, and where it may lie in order.
 
     Below the same less the model before, since a fault is often too small to see beside a motion.
+
+    Args:
+        exhibit: traces of a verdict.
+        fitted: what the model after is called, for instance "with the cause".
     """
-    column = int(exhibit.telling[0])
+    traces, column = _telling(exhibit)
     channel = exhibit.channels[column]
-    traces = max(exhibit.traces, key=lambda t: float(np.nansum(np.square(t.before[:, column]))))
     figure = new_figure(3.8)
     above, below = figure.subplots(2, 1, sharex=True)
     nominal = traces.nominal[:, column].astype(float)
@@ -79,12 +103,7 @@ def answer_figure(exhibit: ReportTraces, fitted: str) -> Html:
     draw_traces(below, traces.time, gaps, f"less model before, {unit}", Band("", -reach, reach))
     below.get_legend().remove()
     below.set_xlabel("t, s", fontsize=8)
-    caption = (
-        f"{channel.name} of {traces.name}, the channel that tells most; below, the same less the"
-        " model before. Grey: where a machine in order may lie, by noise and tolerances (95 % of"
-        " the rows)."
-    )
-    return svg(figure, "answer", caption)
+    return figure
 
 
 def trace_figure(
