@@ -56,6 +56,7 @@ class Findings:
         apart: what each recording says alone.
         widened: factor on the declared commissioning sd in this view.
         built: what building up proved.
+        before: the model without a cause, within its tolerances; None where nothing was found.
     """
 
     seen: Dataset
@@ -71,6 +72,7 @@ class Findings:
     apart: tuple[Alone, ...] = ()
     widened: float = 1.0
     built: BuildUp | None = None
+    before: Fit | None = None
 
 
 def assemble_verdict(
@@ -85,7 +87,7 @@ def assemble_verdict(
     firm = {one.label: one.firm for one in proved}
     causes = tuple(replace(c, firm=firm.get(f"{c.effect}@{c.target}", c.firm)) for c in causes)
     nearest = _causes(findings, found)[0] if found and not named else ()
-    exhibit = exhibit_of(findings.seen, first, found)
+    exhibit = exhibit_of(findings.seen, first, found, findings.before)
     least = first.limit(limits.effect)
     sizes = findable_sizes(first.screen, least)
     units = {h.label: _unit(findings, h) for h in first.screen.bank.hypotheses}
