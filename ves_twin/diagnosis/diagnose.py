@@ -201,6 +201,7 @@ class _View:
             built=end.built,
             gain=lawful.gain if lawful and lawful.explanation else end.gain,
             forecast=end.forecast,
+            before=end.before,
             proposals=proposals,
             apart=apart,
         )

@@ -24,7 +24,7 @@ EQUAL = 3.0
 def law_sentences(law: LawFinding) -> list[str]:
     """What was found, what it is worth, where it was seen, what else it could be."""
     said = [capital(f"{law.words}.") if law.claimed else _missing(law)]
-    said.append(_worth(law))
+    said.append(worth_sentence(law))
     if law.seen:
         spans = [
             f"{name} from {quantity(low, unit)} to {quantity(high, unit)}"
@@ -49,7 +49,8 @@ def _missing(law: LawFinding) -> str:
     )
 
 
-def _worth(law: LawFinding) -> str:
+def worth_sentence(law: LawFinding) -> str:
+    """What a law is worth, on held-out recordings and by odds."""
     odds = f"{law.nats:.0f} nats more probable than no law"
     gain = law.gain
     if gain is None:
@@ -57,7 +58,7 @@ def _worth(law: LawFinding) -> str:
     if gain.share is None:
         return f"It is {odds}. The held-out recordings show nothing that it could improve."
     share, low, high = shares(gain.share, gain.low, gain.high)
-    taken = f"{share} of the excess on held-out recordings ({low} to {high})"
+    taken = f"{share} of the error beyond noise on held-out recordings ({low} to {high})"
     return f"It takes away {taken}, and is {odds}."
 
 
