@@ -130,13 +130,14 @@ def test_every_closed_form_is_finite_over_its_range_and_written_with_its_numbers
     span = (0.0, 4.0) if variable == "time" else (-3.0, 5.0)
     of = next(v for v in JOINT.variables if v.what == variable)
     for form in (*FORMS[variable], TONE):
-        start = form.starts[0] if form is not TONE else (9.0, 0.5)
-        inner = tuple(span[0] + s * (span[1] - span[0]) if form.relative else s for s in start)
+        wide = span[1] - span[0]
+        shares = form.starts[0] if form is not TONE else (9.0 / wide, 0.5 / wide)
+        inner = tuple((span[0] if form.relative else 0.0) + s * wide for s in shares)
         law = Closed(JOINT, (of,), (form,), (inner,), span).law(np.array([2.0, *inner]))
         assert np.all(np.isfinite(law.values))
         assert np.all(np.diff(law.knots[0]) > 0.0)
         x = np.linspace(*span, 50)
-        exact = 2.0 * form.at(x, span[1] - span[0], *inner)
+        exact = 2.0 * form.at(x, wide, *inner)
         assert_allclose(law.at(x), exact, atol=0.02 * np.max(np.abs(exact)) + 1e-12)
         assert law.form.startswith("2")
         assert "p" not in law.form.replace("exp", "").replace("step", "")

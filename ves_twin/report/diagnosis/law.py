@@ -10,9 +10,9 @@ import numpy as np
 from ves_twin.core.quantity import digits, quantity, shares
 from ves_twin.core.types import FloatArray
 from ves_twin.diagnosis.law.result import LawFinding, LawRival
+from ves_twin.report.colours import AFTER, MEASURED
 from ves_twin.report.figure import new_figure, svg
 from ves_twin.report.html import Html, bullets, folded, paragraph, table
-from ves_twin.report.plots import MEASURED, SIMULATED
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -31,6 +31,11 @@ def law_sentences(law: LawFinding) -> list[str]:
             for name, (low, high), unit in zip(law.of, law.seen, law.units, strict=False)
         ]
         said.append(f"Seen: {'; '.join(spans)}. Beyond that it is held, and was never measured.")
+    if law.form and law.of:
+        unit = law.units[0].replace("*", " ") or "units of the command"
+        said.append(
+            f"In the formula x is {law.of[0]} in {unit}, the {law.kind} is in {_unit(law)}."
+        )
     if law.transient:
         said.append("It depends on time: it holds for these recordings, and foretells nothing.")
     said.append(_else(law))
@@ -40,6 +45,10 @@ def law_sentences(law: LawFinding) -> list[str]:
 def capital(text: str) -> str:
     """With a capital first letter."""
     return text[:1].upper() + text[1:]
+
+
+def _unit(law: LawFinding) -> str:
+    return law.units[-1].replace("*", " ")
 
 
 def _missing(law: LawFinding) -> str:
@@ -125,9 +134,9 @@ def draw_law(law: LawFinding, truth: Callable[[FloatArray], FloatArray] | None =
     if law.band:
         along, least, most = law.band
         axes.fill_between(
-            along, least, most, color=SIMULATED, alpha=0.25, linewidth=0, label="90 % band"
+            along, least, most, color=AFTER, alpha=0.25, linewidth=0, label="90 % band"
         )
-    axes.plot(x[inside], np.array(law.values)[inside], color=SIMULATED, lw=1.4, label="law")
+    axes.plot(x[inside], np.array(law.values)[inside], color=AFTER, lw=1.4, label="law")
     if truth is not None:
         axes.plot(x[inside], truth(x[inside]), "--", color="black", lw=1.0, label="truth")
     axes.set_xlabel(f"{law.of[0]}, {law.units[0].replace('*', ' ')}".rstrip(", "), fontsize=8)
