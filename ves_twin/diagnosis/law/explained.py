@@ -13,14 +13,12 @@ from ves_twin.diagnosis.law.finding import law_finding
 from ves_twin.diagnosis.law.place import LawForward
 from ves_twin.diagnosis.law.propose import Limits, Search, search_laws
 from ves_twin.diagnosis.law.result import LawFinding
+from ves_twin.diagnosis.law.screen import runs_of
 from ves_twin.diagnosis.preprocess import Dataset
 from ves_twin.diagnosis.refine import Fit
 from ves_twin.diagnosis.runs import Progress
 from ves_twin.diagnosis.settings import Settings
 from ves_twin.diagnosis.whitening import Whitening
-
-RUNS = 2500
-"""Predictions that a search takes, about."""
 
 LONGEST = 300.0
 """Time [s] that a search nobody asked for may take."""
@@ -68,10 +66,13 @@ def lawful_explanation(
         return None
     begin = perf_counter()
     runs.one(commissioning.shift)
-    if settings.laws is None and RUNS * (perf_counter() - begin) > LONGEST * runs.workers.count:
+    once = (perf_counter() - begin) / runs.workers.count
+    if settings.laws is None and runs_of(plant.law_places()) * once > LONGEST:
         return None
     evidence = found.evidence if found else first.evidence
     search = search_laws(evidence, commissioning, limits, progress)
+    if search is None:
+        return None
     finding = law_finding(search, settings, held)
     if not finding.claimed or found is None:
         return Lawful(finding, None)

@@ -77,7 +77,7 @@ def law_finding(
         numbers=_numbers(best),
         knots=law.knots,
         values=law.values,
-        band=_band(best, along[0]) if law.shape is LawShape.TABLE else (),
+        band=_bands(search, along[0]) if law.shape is LawShape.TABLE else (),
         seen=tuple((float(np.min(x)), float(np.max(x))) for x in along),
         points=_points(search, law, along) if law.shape is LawShape.TABLE else (),
         transient="time" in law.of,
@@ -176,6 +176,19 @@ def _along(search: Search, law: Law) -> list[FloatArray]:
         )
     ]
     return [np.concatenate([one[name] for one in seen]) for name in law.of]
+
+
+def _bands(search: Search, x: FloatArray) -> tuple[tuple[float, ...], ...]:
+    """Of the law, and of the best table of the same variable: a form may only come near."""
+    best = search.best
+    found = _band(best, x)
+    for fit in search.pool[1:]:
+        if isinstance(fit.candidate, Table) and best.candidate is not None:
+            same = fit.candidate.place, fit.candidate.of
+            if same == (best.candidate.place, best.candidate.of):
+                at, low, high = _band(fit, x)
+                found = at, tuple(map(min, low, found[1])), tuple(map(max, high, found[2]))
+    return found
 
 
 def _band(best: LawFit, x: FloatArray) -> tuple[tuple[float, ...], ...]:

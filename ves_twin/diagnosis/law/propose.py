@@ -127,7 +127,7 @@ class Search:
 
 def search_laws(
     evidence: Evidence, commissioning: Fit, limits: Limits, progress: Progress = silent
-) -> Search:
+) -> Search | None:
     """Fit laws of every place and variable, and closed forms, memories and stops beside them.
 
     Args:
@@ -135,6 +135,9 @@ def search_laws(
         commissioning: fit of commissioning errors alone.
         limits: of a claim.
         progress: told how far it is.
+
+    Returns:
+        None where no place has a variable that moves, or no law can be simulated.
     """
     plant = evidence.runs.forward
     if not isinstance(plant, LawForward):
@@ -143,9 +146,13 @@ def search_laws(
     none = fit_law(evidence, None, commissioning)
     ends = ranges(plant, none)
     smooth = smooth_candidates(places, ends)
+    if not smooth:
+        return None
     suspects = law_screen(evidence, smooth, none, progress)
     single = [s for s in suspects if isinstance(s.candidate, Table)]
     tables = _tables(evidence, single, none, progress)
+    if not tables:
+        return None
     others = memory_laws(evidence, none, places, progress)
     if not _quiet(evidence, none, tables[0], limits):
         pairs = [s for s in suspects if isinstance(s.candidate, Mesh)]
@@ -194,10 +201,11 @@ def _tables(
         begun.append(fit_law(evidence, suspect.candidate, none.fit, rounds=BEGUN))
     begun = _first(begun, len(begun))
     lead = begun[0].log_evidence - NEAR if begun else 0.0
-    return [
+    ended = [
         _again(evidence, fit) if n < 2 or fit.log_evidence > lead else fit
         for n, fit in enumerate(begun)
     ]
+    return _first(ended, len(ended))
 
 
 def _chosen(

@@ -20,6 +20,9 @@ from ves_twin.effects.law import LawKind
 KNOTS = {"position": 19, "speed": 21, "time": 25, "command": 13}
 """Of a table, by what it depends on: those of speed are closer about zero."""
 
+FITTED = 1500
+"""Predictions that the fits of a search take, on the pendulum."""
+
 MESHED = 8
 """Knots of each variable of a mesh."""
 
@@ -75,6 +78,13 @@ def values_of(runs: Runs, shift: FloatArray) -> list[dict[str, float]]:
         }
         for k in range(len(runs.programmes))
     ]
+
+
+def runs_of(places: Sequence[LawPlace]) -> int:
+    """Predictions that a search takes, about: two screens, and fits of the leaders."""
+    joints = [place for place in places if place.kind is LawKind.EFFORT]
+    tables = sum(KNOTS[v.what] for place in joints for v in place.variables)
+    return FITTED + 2 * (tables + MESHED**2 * len(joints))
 
 
 def smooth_candidates(
