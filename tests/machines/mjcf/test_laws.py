@@ -7,10 +7,12 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+import two_link
 from numpy.testing import assert_allclose
 from pendulum import DAMPING, FED, MACHINE
 
 from ves_twin.core.errors import InvalidInputError, UnknownNameError
+from ves_twin.diagnosis.forward import Excitation
 from ves_twin.effects.law import Law, LawKind, LawShape
 from ves_twin.machines.mjcf.description import Mode
 from ves_twin.machines.mjcf.extend import write_rig
@@ -20,6 +22,9 @@ from ves_twin.machines.mjcf.machine import Rig
 
 FORWARD = MjcfForward.of(MACHINE)
 SPAN = (-20.0, 20.0)
+
+EXPLICIT = 0.02
+"""Share of a damping's own change that its effort makes when it is held over a step of 1 ms."""
 
 HELD = 0.01
 """rad, rad/s: what an effort that is held over a step of 2 ms may be off, of speeds of 6 rad/s;
@@ -146,3 +151,40 @@ def _toml(value: object) -> str:
     if isinstance(value, tuple):
         return f"[{', '.join(map(_toml, value))}]"
     return f'"{value}"' if isinstance(value, str) else str(value)
+
+
+@pytest.mark.parametrize("mode", list(Mode))
+def test_a_law_is_the_same_damping_however_a_machine_is_fed(tmp_path: Path, mode: Mode) -> None:
+    forward = MjcfForward.of(two_link.rig(tmp_path), mode)
+    law = Law(
+        "rail", LawKind.EFFORT, LawShape.TABLE, ("speed@rail",), ((-9.0, 9.0),), (18.0, -18.0)
+    )
+    fed = two_link.programme()
+    plain = forward.simulate(fed, {})
+    damped = forward.simulate(fed, {"viscous_friction@rail:damping": 6.0})
+    change = np.max(np.abs(damped - plain), axis=0)
+    off = np.max(np.abs(forward.simulate(fed, {}, False, (law,)) - damped), axis=0)
+    moved = change > 1e-9
+    assert moved.any()
+    assert np.all(off[moved] < EXPLICIT * change[moved])
+
+
+def test_a_law_of_another_joints_motion_needs_the_effort_back_that_it_gave(tmp_path: Path) -> None:
+    """Forward with the law, then inverse dynamics of that motion with it: what was asked for."""
+    machine, fed = two_link.rig(tmp_path), two_link.programme()
+    of, span = ("position@swing",), (-2.0, 2.0)
+    law = Law("rail", LawKind.EFFORT, LawShape.TABLE, of, (span,), (-12.0, 12.0))
+    forward = MjcfForward.of(machine, Mode.CONTROL)
+    rows = forward.simulate(fed, {}, False, (law,))
+    names = [channel.name for channel in forward.channels]
+    moved = {n: rows[:, [names.index(n)]] for n in ("cart.position", "arm.angle")}
+    back = Excitation("back", fed.time, {**fed.drive, **moved})
+    inner, gaps = slice(200, -200), []
+    for laws in ((law,), ()):
+        needed = MjcfForward.of(machine, Mode.MOTION).simulate(back, {}, False, laws)[:, 0]
+        asked = np.interp(fed.time - 0.001, fed.time, fed.drive["drive.force"][:, 0])
+        speed = np.gradient(moved["cart.position"][:, 0], fed.time)
+        sliding = np.abs(speed[inner]) > 0.05
+        gaps.append(float(np.sqrt(np.mean((needed - asked)[inner][sliding] ** 2))))
+    assert gaps[0] < 0.3  # friction's solver is soft: 2 % of the 15 N that act
+    assert gaps[1] > 5.0 * gaps[0]
