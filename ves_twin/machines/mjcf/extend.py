@@ -37,6 +37,9 @@ def extended(rig: Rig, verdict: Verdict) -> Rig:
         else:
             present.setdefault(entry.effect.kind, {})[entry.effect.target] = moved
     laws = {(law.place, law.of): law for law in rig.description.laws}
+    for told in rig.promoted:
+        if told.name in values:
+            laws[told.place, told.of] = told.scaled(values[told.name])
     if verdict.law is not None and verdict.law.claimed:
         new_law = _law_table(verdict.law)
         laws[new_law.place, new_law.of] = new_law
