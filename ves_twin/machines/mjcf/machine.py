@@ -15,6 +15,7 @@ from ves_twin.core.errors import FileAccessError, InvalidInputError, UnknownName
 from ves_twin.core.units import to_si
 from ves_twin.diagnosis.forward import Hypothesis, Parameter
 from ves_twin.effects.effect import Effect
+from ves_twin.effects.law import Law
 from ves_twin.effects.magnitude import Magnitude, Sign
 from ves_twin.effects.place import Place
 from ves_twin.effects.registry import EFFECTS, attributes, build_anywhere, kind_anywhere
@@ -124,6 +125,11 @@ class Rig:
         except mujoco.FatalError as error:
             raise InvalidInputError(str(path), one_line(error), "a model that can move") from None
         return model
+
+    @property
+    def laws(self) -> tuple[Law, ...]:
+        """Those of the description."""
+        return tuple(told.law for told in self.description.laws)
 
     @cached_property
     def entries(self) -> tuple[Entry, ...]:
