@@ -7,7 +7,8 @@ from pathlib import Path
 
 from ves_twin.core.toml_file import write_toml
 from ves_twin.diagnosis.verdict import Verdict
-from ves_twin.machines.mjcf.description import KIND, SCHEMA, Setting, load_description, shipped_rigs
+from ves_twin.machines.mjcf.description import KIND, SCHEMA, Setting
+from ves_twin.machines.mjcf.load_description import shipped_rigs
 from ves_twin.machines.mjcf.machine import Entry, Rig
 
 
@@ -56,7 +57,7 @@ def write_rig(rig: Rig, path: Path, note: str = "") -> None:
     Raises:
         FileAccessError: not writable.
     """
-    before = load_description(rig.file)[0]
+    before = Rig.load(rig.file).description
     shipped = rig.file in shipped_rigs()
     base = rig.file if shipped else os.path.relpath(Path(rig.file), path.parent)
     content: dict[str, object] = {"schema": SCHEMA, "kind": KIND, "base": base}
