@@ -12,12 +12,10 @@ from ves_twin.core.errors import FileAccessError, InvalidInputError, UnknownName
 from ves_twin.core.recording.recording import POSES, Recording, RecordingInfo
 from ves_twin.core.signals import Role
 from ves_twin.core.types import BoolArray, FloatArray
-from ves_twin.data.clock_report import GAP, usual_step
+from ves_twin.data.clock_report import usual_step
 from ves_twin.data.column_expression import ColumnExpression
-from ves_twin.data.import_map import Gaps, Way
 from ves_twin.data.log import Kind, Log
 from ves_twin.data.open_log import open_log
-from ves_twin.data.resample import resample
 from ves_twin.machines.mjcf.description import Column, RigDescription
 from ves_twin.machines.mjcf.machine import Rig
 from ves_twin.machines.mjcf.signals import rig_signals
@@ -25,6 +23,9 @@ from ves_twin.machines.mjcf.turned import turned
 
 UNEVEN = 0.01
 """Largest departure of a time step from the mean that passes as an even clock."""
+
+HOLE = 5.0
+"""Periods over which a line is drawn between two rows; a longer gap is left to be refused."""
 
 
 def read_rig_recording(path: Path, rig: Rig) -> Recording:
@@ -144,12 +145,12 @@ def _even(recording: Recording, rig: Rig) -> Recording:
     if np.ptp(steps) <= UNEVEN * np.mean(steps):
         return replace(recording, time=np.linspace(time[0], time[-1], len(time)))
     period = usual_step(time)
-    if np.max(steps) > GAP * period:  # whoever needs even rows says so
+    if np.max(steps) > HOLE * period:  # whoever needs even rows says so
         return recording
     rows = np.asarray(time[0] + period * np.arange(int((time[-1] - time[0]) / period) + 1))
     roles = {signal.name: signal.role for signal in rig_signals(rig)}
     read = {
-        name: np.stack([_resampled(c, time, period, rows, roles[name]) for c in values.T], axis=1)
+        name: np.stack([_at(rows, c, time, roles[name]) for c in values.T], axis=1)
         for name, values in recording.signals.items()
     }
     jitter = float(np.max(np.abs(steps - period))) / period
@@ -158,8 +159,8 @@ def _even(recording: Recording, rig: Rig) -> Recording:
     return Recording(rows, read, info)
 
 
-def _resampled(
-    values: FloatArray, time: FloatArray, period: float, rows: FloatArray, role: Role
-) -> FloatArray:
-    way = Way.HOLD if role is Role.COMMAND else Way.LINEAR
-    return resample(values, time, period, rows, period, way, role, Gaps.NAN).values
+def _at(rows: FloatArray, values: FloatArray, time: FloatArray, role: Role) -> FloatArray:
+    """A column at other times: the newest command, or straight between measurements."""
+    if role is Role.COMMAND:
+        return np.asarray(values[np.searchsorted(time, rows + 1e-9, "right") - 1])
+    return np.asarray(np.interp(rows, time, values))

@@ -92,7 +92,12 @@ class Rig:
         Raises:
             VesTwinError: a file that is missing or wrong, or names that do not fit together.
         """
-        folded = Rig(*load_description(name_or_path), name_or_path)
+        return Rig.of(*load_description(name_or_path), name_or_path)
+
+    @staticmethod
+    def of(description: RigDescription, folder: Path, file: str = "") -> Rig:
+        """A description as it was read, with its shorthands written out; raises as `load`."""
+        folded = Rig(description, folder, file)
         check_description(folded.description, folded.model)
         told = unfolded(folded.description, folded.model)
         rig = folded if told is folded.description else replace(folded, description=told)

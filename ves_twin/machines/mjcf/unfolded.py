@@ -85,7 +85,7 @@ def _effects(told: RigDescription, model: mujoco.MjModel) -> Iterator[Allowed]:
     for one in told.effects:
         if ALL not in (one.kind, *one.on):
             continue
-        kinds = [one.kind] if one.kind != ALL else [k for k, v in EFFECTS.items() if v.anywhere]
+        kinds = [one.kind] if one.kind != ALL else _every(told)
         found: list[Key] = []
         for kind in kinds:
             targets = _targets(kind, told, model) if ALL in one.on else one.on
@@ -98,6 +98,18 @@ def _effects(told: RigDescription, model: mujoco.MjModel) -> Iterator[Allowed]:
             if (kind, target) not in taken:
                 taken.add((kind, target))
                 yield one.model_copy(update={"kind": kind, "on": (target,)})
+
+
+def _every(told: RigDescription) -> list[str]:
+    """Kinds that a "*" means: in forward simulation without what holds on to places.
+
+    A step through a gap takes Python, and a prediction fifteen times as long; a file that asks for
+    such a kind by its name gets it.
+    """
+    found = [name for name, kind in EFFECTS.items() if kind.anywhere]
+    if told.drive.mode is Mode.MOTION:
+        return found
+    return [name for name in found if EFFECTS[name].holder is Effect.holder]
 
 
 def _fits(kind: str, target: str, told: RigDescription, model: mujoco.MjModel) -> bool:
