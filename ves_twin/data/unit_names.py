@@ -64,7 +64,7 @@ def is_unit(text: str) -> bool:
 
 
 def unit_of_name(name: str) -> str:
-    """The unit that a column's name gives: "x [mm]", "x (mm)", "x / mm", "x_mm", "q_rad_s"; else empty."""
+    """The unit that a column's name gives: "x [mm]", "x (mm)", "x / mm", "x_mm"; else empty."""
     for pattern in _PATTERNS:
         match = pattern.match(name)
         if match and is_unit(match["unit"]) and match["unit"]:

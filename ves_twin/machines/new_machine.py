@@ -1,4 +1,4 @@
-"""new_machine: the file of a machine that nobody described yet, drafted from its model and a log."""
+"""new_machine: the file of a new machine, drafted from its model and a log of it."""
 
 from __future__ import annotations
 

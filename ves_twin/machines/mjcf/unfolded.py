@@ -46,7 +46,7 @@ def _place(setting: Setting) -> tuple[object, ...]:
 
 
 def _tolerances(told: RigDescription, model: mujoco.MjModel) -> Iterator[Setting]:
-    """Of every named part that has the attribute and moves."""
+    """Of every named part that moves, has the attribute, and typical sizes where it needs any."""
     kinds = attributes()
     for attribute, share in told.tolerances.items():
         elements = [element for element, name in kinds if name == attribute]
@@ -56,24 +56,24 @@ def _tolerances(told: RigDescription, model: mujoco.MjModel) -> Iterator[Setting
             for name in names_of(model, element):
                 axis = attribute.removeprefix("centre_")
                 target = name if axis == attribute else f"{name}.{axis}"
-                value = build_anywhere(kinds[element, attribute].kind, target, {}).present(model)
-                if value != 0.0:
+                effect = build_anywhere(kinds[element, attribute].kind, target, {})
+                value = effect.present(model)
+                if value != 0.0 and _sized(effect, told, model):
                     content = {"attribute": attribute, str(element): name, "sd": share * abs(value)}
                     yield Setting.model_validate(content)
 
 
 def names_of(model: mujoco.MjModel, element: Element) -> list[str]:
     """Named parts of a kind; of bodies those that move."""
+    found: list[str] = []
     if element is Element.BODY:
-        found = (model.body(i).name for i in range(1, model.nbody) if model.body_weldid[i])
+        found = [model.body(i).name for i in range(1, model.nbody) if model.body_weldid[i]]
     elif element is Element.JOINT:
-        found = (model.joint(i).name for i in range(model.njnt))
+        found = [model.joint(i).name for i in range(model.njnt)]
     elif element is Element.ACTUATOR:
-        found = (model.actuator(i).name for i in range(model.nu))
+        found = [model.actuator(i).name for i in range(model.nu)]
     elif element is Element.TENDON:
-        found = (model.tendon(i).name for i in range(model.ntendon))
-    else:
-        found = iter(())
+        found = [model.tendon(i).name for i in range(model.ntendon)]
     return [name for name in found if name]
 
 
@@ -113,13 +113,18 @@ def _every(told: RigDescription) -> list[str]:
 
 
 def _fits(kind: str, target: str, told: RigDescription, model: mujoco.MjModel) -> bool:
-    """Whether an effect can sit there: typical sizes of the place are known, or not needed."""
+    """Whether an effect can sit there and is not another one by another name."""
     effect = build_anywhere(kind, target, {})
+    return _sized(effect, told, model) and not _is_alias(effect, told)
+
+
+def _sized(effect: Effect, told: RigDescription, model: mujoco.MjModel) -> bool:
+    """Whether the file tells the typical sizes that sizes of an effect follow from."""
     try:
         magnitudes = effect.magnitudes_at(place_of(effect, told, model))
     except VesTwinError:
         return False
-    return all(m.smallest < m.largest for m in magnitudes) and not _is_alias(effect, told)
+    return all(m.smallest < m.largest for m in magnitudes)
 
 
 def _targets(kind: str, told: RigDescription, model: mujoco.MjModel) -> list[str]:

@@ -253,7 +253,9 @@ class _Judge:
             new = _exchanged(one, two)
             if sum(self.fit(m, motion).share for m in new) > before + 2.0 * GAINED:
                 found = [new[0] if m is one else new[1] if m is two else m for m in found]
-                said.append(f"{one.column} and {two.column} look swapped: taken the other way round")
+                said.append(
+                    f"{one.column} and {two.column} look swapped: taken the other way round"
+                )
         return found, said
 
     def explained(self, found: list[Match], motion: Motion) -> dict[str, float]:
@@ -284,7 +286,10 @@ def _changes(found: list[Match]) -> Iterator[tuple[list[Match], str]]:
         for group in ([[m] for m in open_] + [open_]) if len(open_) > 1 else [[m] for m in open_]:
             new = [replace(m, unit=unit) if m in group else m for m in found]
             names = ", ".join(m.column for m in group)
-            yield new, f"{names}: numbers fit the model as {unit}, not as {kind} (factor {factor:.4g})"
+            yield (
+                new,
+                f"{names}: numbers fit the model as {unit}, not as {kind} (factor {factor:.4g})",
+            )
     for match in positions:
         if match.told and match.unit == "deg":
             words = f"{match.column}: named in deg, the numbers fit the model as rad"

@@ -27,7 +27,7 @@ RATES = (20.0, 100.0)
 CORNER = 1.25
 """Corner of the positions' low-pass over the band: what is compared is not rounded off."""
 
-DROWNED = 0.2
+DROWNED = 0.05
 """Share of an effort that noise of positions may make once they are differentiated twice."""
 
 
@@ -78,7 +78,9 @@ def chosen(log: LogColumns, matches: Matches, check: Checked, model: mujoco.MjMo
     sharp = {m.column: _induced(m, noise, efforts, model, log, rate / 2.0) for m in positions}
     worst = max(sharp, key=lambda column: sharp[column][1])
     if sharp[worst][1] > DROWNED:
-        why = f"{worst} is too noisy to be differentiated twice ({sharp[worst][1]:.0%} of the effort)"
+        why = (
+            f"{worst} is too noisy to be differentiated twice ({sharp[worst][1]:.0%} of the effort)"
+        )
         return Chosen(Mode.CONTROL, why, RATES[1], check.corner, noise)
     of_joint = {m.spot.name: sharp[m.column][0] for m in positions}
     for m in efforts:

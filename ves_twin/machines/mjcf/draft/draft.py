@@ -27,7 +27,6 @@ from ves_twin.machines.mjcf.draft.spots import spots_of
 from ves_twin.machines.mjcf.forward import MjcfForward
 from ves_twin.machines.mjcf.machine import Rig
 
-
 LONGEST = 10.0
 """Stretch of a log that is predicted to say how near the model is [s]."""
 

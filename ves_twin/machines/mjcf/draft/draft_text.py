@@ -63,14 +63,14 @@ def draft_text(
         *([f"window = {_window(log)}"] if log.window else []),
         f'drive = {{ mode = "{mode.mode}", smoothing = {two_digits(mode.smoothing):g} }}'
         f"   # {mode.why}",
-        f"tolerances = {_tolerances(model, check)}   # how well the model's numbers are known: yours?",
+        f"tolerances = {_tolerances(model, check)}   # shares of the model's values: yours?",
         'effects = [{ kind = "*", on = ["*"] }]   # every one that the model has a place for',
         "",
         "[signals]",
     ]
     lines = [*head, *_signals(check, mode)]
     lines += ["", "[typical.joint]", *_joints(log, check)]
-    spans = list(_spans(log, check, mode))
+    spans = list(_spans(log, check))
     lines += ["", "[typical.signal]", *spans] if spans else []
     if mode.mode is Mode.CONTROL:
         lines += ["", "[start]", *_starts(check, mode)]
@@ -159,11 +159,11 @@ def _joints(log: LogColumns, check: Checked) -> Iterator[str]:
         yield f"{_key(match.spot.name)} = {{ {text} }}"
 
 
-def _spans(log: LogColumns, check: Checked, mode: Chosen) -> Iterator[str]:
-    """Typical range of what is compared and no effort of an actuator."""
+def _spans(log: LogColumns, check: Checked) -> Iterator[str]:
+    """Typical range of sensors; that of a joint's signals follows from the joint."""
     groups: dict[str, float] = {}
     for match in check.found:
-        if match.spot.quantity is not Quantity.EFFORT and compared(match, mode):
+        if match.spot.quantity is Quantity.SENSOR:
             size = travel(match.factor * log.values[match.column])
             name = signal_name(match)
             groups[name] = max(groups.get(name, 0.0), size)

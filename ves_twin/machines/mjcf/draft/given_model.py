@@ -93,7 +93,9 @@ def _of_urdf(path: Path, root: ElementTree.Element) -> GivenModel:
         hint = f"; without <inertial>: {', '.join(bare)}" if bare else ""
         expected = "a URDF whose moving links have <inertial>"
         raise InvalidInputError(str(path), one_line(error) + hint, expected) from None
-    notes.append(f"a motor was added at each of {len(driven)} joints; stops and contacts are left out")
+    notes.append(
+        f"a motor was added at each of {len(driven)} joints; stops and contacts are left out"
+    )
     return GivenModel(path, model, text, tuple(notes))
 
 

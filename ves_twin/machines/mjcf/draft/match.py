@@ -87,7 +87,9 @@ def matched(log: LogColumns, spots: Sequence[Spot]) -> Matches:
     A column is matched where two pieces of evidence speak for it; what is not stays in `left`.
     """
     columns = list(log.values)
-    alike = {(c, s): found for c in columns for s in spots if (found := _likeness(log, c, s, spots))}
+    alike = {
+        (c, s): found for c in columns for s in spots if (found := _likeness(log, c, s, spots))
+    }
     score = np.zeros((len(columns), len(spots)))
     for i, column in enumerate(columns):
         for k, spot in enumerate(spots):

@@ -9,25 +9,25 @@ from ves_twin.data.unit_names import bare_name, spelled
 from ves_twin.machines.mjcf.description import LAB_UNITS
 from ves_twin.machines.mjcf.draft.spots import Quantity, Spot, words_of
 
+POSITION = (
+    "q qm qg pos position angle angles ang theta th phi psi alpha x y z s stroke disp displacement"
+    " travel encoder enc length rot rotation"
+)
+SPEED = "dq qd qdot dqdt vel velocity speed rate omega w v dx dy xd xdot thetadot gyro qv"
+EFFORT = (
+    "tau torque trq tq force f fx u effort load moment current i cur amp volt voltage pwm drive"
+    " motor control ctrl command input"
+)
 KIND_WORDS = {
-    Quantity.POSITION: frozenset(
-        "q qm qg pos position angle angles ang theta th phi psi alpha x y z s stroke disp"
-        " displacement travel encoder enc length rot rotation".split()
-    ),
-    Quantity.SPEED: frozenset(
-        "dq qd qdot dqdt vel velocity speed rate omega w v dx dy xd xdot thetadot gyro qv".split()
-    ),
-    Quantity.EFFORT: frozenset(
-        "tau torque trq tq force f fx u effort load moment current i cur amp volt voltage pwm"
-        " drive motor control ctrl command input".split()
-    ),
+    Quantity.POSITION: frozenset(POSITION.split()),
+    Quantity.SPEED: frozenset(SPEED.split()),
+    Quantity.EFFORT: frozenset(EFFORT.split()),
 }
 """Words that laboratories use for a quantity; a column's name is cut at digits and bars."""
 
-SETPOINT = frozenset(
-    "ref reference set setpoint des desired target goal demand nominal cmd command commanded".split()
-)
-MEASURED = frozenset("meas measured act actual fb feedback".split())
+ASKED = "ref reference set setpoint des desired target goal demand nominal cmd command commanded"
+SETPOINT = frozenset(ASKED.split())
+MEASURED = frozenset({"meas", "measured", "act", "actual", "fb", "feedback"})
 
 ELECTRICAL = frozenset({"V", "mV", "A", "mA", "%", "counts", "W", "1"})
 """Units of what drives an actuator when it is no effort: a constant stands between."""
@@ -76,42 +76,49 @@ def likeness(column: str, unit: str, spot: Spot, only: bool, zero: bool) -> Like
         only: no other spot of the model has this quantity and unit.
         zero: columns of this kind are numbered from 0.
     """
-    words = words_of(bare_name(column))
-    if VOLTS.fullmatch(bare_name(column)):
-        words = tuple(w for w in words if w != "v")
-    if OTHER & set(words) and spot.quantity is not Quantity.SENSOR:
+    words = _words(column)
+    wish = is_setpoint(column) and not MEASURED & words
+    if _ruled_out(words, wish, spot) or not _unit_fits(spelled(unit), spot):
         return None
-    wish = bool(SETPOINT & set(words)) and not MEASURED & set(words)
-    if wish and spot.quantity in (Quantity.POSITION, Quantity.SPEED):
-        return None
-    if not _unit_fits(spelled(unit), spot):
-        return None
-    score, reasons = 0.0, []
-    if unit:
-        score, reasons = UNIT, [f"unit {unit}"]
-    named = {q for q, known in KIND_WORDS.items() if known & set(words)}
-    if spot.quantity in named and not (unit and len(named) > 1):
-        score += KIND
-        reasons.append(f"name of {ARTICLE[spot.quantity]}")
-    elif named and spot.quantity not in named and not unit:
-        score += WRONG_KIND
-    shared = (spot.words & set(words)) - {w for w in words if w.isdigit()}
-    if spot.quantity is not Quantity.SENSOR or len(shared) > 0:
-        shared = {w for w in shared if len(w) > 1 or spot.quantity is Quantity.SENSOR}
-    if shared:
-        score += WORD
-        reasons.append(f"shares '{max(shared, key=len)}' with {spot.label}")
-    numbers = [int(w) for w in words if w.isdigit()]
+    evidence = [(UNIT, f"unit {unit}")] if unit else []
+    evidence += _of_kind(words, bool(unit), wish, spot) + _of_words(words, spot)
+    numbers = [int(w) for w in words_of(bare_name(column)) if w.isdigit()]
     if numbers and not only:
         same = numbers[-1] + int(zero) == spot.number
-        score += NUMBER if same else WRONG_NUMBER
-        reasons += [f"number {numbers[-1]}"] if same else []
+        evidence.append((NUMBER, f"number {numbers[-1]}") if same else (WRONG_NUMBER, ""))
     if only:
-        score += ONLY
-        reasons.append(f"the only {spot.quantity.value} of the model in {spot.unit}")
-    if wish:
-        score += WISH
-    return Likeness(score, tuple(reasons))
+        evidence.append((ONLY, f"the only {spot.quantity.value} of the model in {spot.unit}"))
+    score = sum(weight for weight, _ in evidence) + (WISH if wish else 0.0)
+    return Likeness(score, tuple(words for _, words in evidence if words))
+
+
+def _words(column: str) -> frozenset[str]:
+    words = frozenset(words_of(bare_name(column)))
+    return words - {"v"} if VOLTS.fullmatch(bare_name(column)) else words
+
+
+def _ruled_out(words: frozenset[str], wish: bool, spot: Spot) -> bool:
+    """What a joint or motor has nothing of, and what was asked for where it is measured."""
+    if spot.quantity is Quantity.SENSOR:
+        return False
+    return bool(OTHER & words) or (wish and spot.quantity is not Quantity.EFFORT)
+
+
+def _of_kind(words: frozenset[str], told: bool, wish: bool, spot: Spot) -> list[tuple[float, str]]:
+    """Words of a quantity; where a unit decides, a word of another one does not count against."""
+    named = {quantity for quantity, known in KIND_WORDS.items() if known & words}
+    if spot.quantity is Quantity.EFFORT and spot.unit == "1" and wish:
+        return [(KIND, "asked for, as the command of a servo")]
+    if spot.quantity in named and not (told and len(named) > 1):
+        return [(KIND, f"name of {ARTICLE[spot.quantity]}")]
+    return [] if not named or told or spot.quantity in named else [(WRONG_KIND, "")]
+
+
+def _of_words(words: frozenset[str], spot: Spot) -> list[tuple[float, str]]:
+    """Words that the column shares with the spot; single letters are axes of sensors."""
+    short = 1 if spot.quantity is Quantity.SENSOR else 2
+    shared = {w for w in spot.words & words if len(w) >= short and not w.isdigit()}
+    return [(WORD, f"shares '{max(sorted(shared), key=len)}' with {spot.label}")] if shared else []
 
 
 def is_setpoint(column: str) -> bool:

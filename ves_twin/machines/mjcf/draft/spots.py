@@ -102,9 +102,7 @@ def spots_of(model: mujoco.MjModel) -> tuple[Spot, ...]:
 def single_joints(model: mujoco.MjModel) -> list[int]:
     """Numbers of the named joints that turn or slide."""
     kinds = (HINGE, SLIDE)
-    return [
-        i for i in range(model.njnt) if int(model.jnt_type[i]) in kinds and model.joint(i).name
-    ]
+    return [i for i in range(model.njnt) if int(model.jnt_type[i]) in kinds and model.joint(i).name]
 
 
 def is_motor(model: mujoco.MjModel, actuator: int) -> bool:
