@@ -68,8 +68,8 @@ def checked(log: LogColumns, matches: Matches, model: mujoco.MjModel) -> Checked
 
     Where all joints were recorded, efforts of the model along the motion are fitted to the
     recorded ones beside friction: y = s tau + c v + k sign v + o. A negative s is a wrong sign, an
-    s of 57 degrees; two columns that fit better the other way round are swapped. Positions are
-    turned, swapped or rescaled only where that explains GAINED more.
+    s of 57 degrees. Columns are turned, swapped or rescaled only where that explains GAINED more,
+    the change that explains most first.
     """
     positions = matches.of(Quantity.POSITION)
     moved = {m.spot.name for m in positions}
@@ -214,8 +214,8 @@ class _Judge:
         return _Fit(float(slopes[0]), shares[0], gain, work, match.electrical)
 
     def efforts(self, found: list[Match], motion: Motion) -> tuple[list[Match], list[str]]:
-        """With swaps, signs and constants of efforts as the motion needs them."""
-        found, said = self._swapped(found, motion)
+        """With signs and constants of efforts as the motion needs them."""
+        found, said = list(found), []
         for i, match in enumerate(found):
             if match not in self.driving(found):
                 continue
@@ -242,22 +242,6 @@ class _Judge:
                 )
         return found, said
 
-    def _swapped(self, found: list[Match], motion: Motion) -> tuple[list[Match], list[str]]:
-        said = []
-        efforts = self.driving(found)
-        for one, two in combinations(efforts, 2):
-            one, two = (next(m for m in found if m.spot == s.spot) for s in (one, two))
-            if one.spot.unit != two.spot.unit or one.unit != two.unit:
-                continue
-            before = self.fit(one, motion).share + self.fit(two, motion).share
-            new = _exchanged(one, two)
-            if sum(self.fit(m, motion).share for m in new) > before + 2.0 * GAINED:
-                found = [new[0] if m is one else new[1] if m is two else m for m in found]
-                said.append(
-                    f"{one.column} and {two.column} look swapped: taken the other way round"
-                )
-        return found, said
-
     def explained(self, found: list[Match], motion: Motion) -> dict[str, float]:
         """Share of the power of each effort that the model as it is explains."""
         shares = {}
@@ -271,7 +255,7 @@ class _Judge:
 
 
 def _changes(found: list[Match]) -> Iterator[tuple[list[Match], str]]:
-    """Ways in which positions may be meant otherwise, each with words for it."""
+    """Ways in which columns may be meant otherwise, each with words for it."""
     positions = [m for m in found if m.spot.quantity is Quantity.POSITION]
 
     def other(old: Match, new: Match) -> list[Match]:
@@ -294,10 +278,11 @@ def _changes(found: list[Match]) -> Iterator[tuple[list[Match], str]]:
         if match.told and match.unit == "deg":
             words = f"{match.column}: named in deg, the numbers fit the model as rad"
             yield other(match, replace(match, unit="rad")), words
-    for one, two in combinations(positions, 2):
+    efforts = [m for m in found if m.spot.quantity is Quantity.EFFORT]
+    for one, two in (*combinations(positions, 2), *combinations(efforts, 2)):
         if (one.spot.unit, one.unit) == (two.spot.unit, two.unit):
-            new = _exchanged(one, two)
-            both = [new[0] if m is one else new[1] if m is two else m for m in found]
+            a, b = _exchanged(one, two)
+            both = [a if m is one else b if m is two else m for m in found]
             yield both, f"{one.column} and {two.column} look swapped: taken the other way round"
 
 

@@ -93,7 +93,6 @@ def draft(model: Path, logs: Sequence[Path], out: Path, rate: float | None = Non
     left = dict(matches.left)
     left |= {c: "says what was asked for" for c in matches.setpoints}
     left |= {m.column: "is a speed" for m in check.found if not used(m, mode)}
-    left = {c: why for c, why in left.items() if c not in {m.column for m in check.found}}
     look = (*given.notes, *log.notes, *check.findings)
     words = f"{mode.mode}: {mode.why}"
     return Draft(text, given.text, _guesses(check, mode), left, look, words, explained)
