@@ -7,6 +7,7 @@ from collections.abc import Iterator
 import mujoco
 
 from ves_twin.core.errors import InvalidInputError, UnknownNameError, VesTwinError
+from ves_twin.effects.bodies import BodyInertia, MassCentre
 from ves_twin.effects.effect import Effect
 from ves_twin.effects.element import Element
 from ves_twin.effects.registry import EFFECTS, attributes, build_anywhere, kind_anywhere
@@ -14,6 +15,11 @@ from ves_twin.machines.mjcf.description import Allowed, Mode, RigDescription, Se
 from ves_twin.machines.mjcf.places import anywhere, place_of
 
 ALL = "*"
+
+OF_TURNING = (MassCentre.kind, BodyInertia.kind)
+"""Kinds that a body which only slides does not show."""
+
+SLIDE = int(mujoco.mjtJoint.mjJNT_SLIDE)
 
 Key = tuple[str, str]
 """Kind and target."""
@@ -136,7 +142,19 @@ def _targets(kind: str, told: RigDescription, model: mujoco.MjModel) -> list[str
     if on.element is Element.ACTUATOR:
         fed = set(told.drive.actuators) if told.drive.mode is Mode.CONTROL else set(names)
         return [name for name in names if name in fed]
+    if kind in OF_TURNING:
+        names = [name for name in names if _turns(model, model.body(name).id)]
     return [f"{name}.{axis}" for name in names for axis in "xyz"] if on.axis else names
+
+
+def _turns(model: mujoco.MjModel, body: int) -> bool:
+    """Whether any joint between a body and the world lets it turn."""
+    while body:
+        first, count = int(model.body_jntadr[body]), int(model.body_jntnum[body])
+        if any(int(model.jnt_type[i]) != SLIDE for i in range(first, first + count)):
+            return True
+        body = int(model.body_parentid[body])
+    return False
 
 
 def _outputs(told: RigDescription) -> list[str]:
