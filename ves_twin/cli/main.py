@@ -17,6 +17,7 @@ from ves_twin import __version__
 from ves_twin.cli import (
     blind,
     compare,
+    dataset,
     diagnose,
     evaluate,
     export,
@@ -57,6 +58,7 @@ COMMANDS = {
     "import": import_log,
     "export": export,
     "evaluate": evaluate,
+    "dataset": dataset,
     "view": view,
     "info": info,
 }

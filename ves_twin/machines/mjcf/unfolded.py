@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 import mujoco
+import numpy as np
 
 from ves_twin.core.errors import InvalidInputError, UnknownNameError, VesTwinError
 from ves_twin.effects.bodies import BodyInertia, MassCentre
@@ -70,7 +71,7 @@ def _tolerances(told: RigDescription, model: mujoco.MjModel) -> Iterator[Setting
 
 
 def names_of(model: mujoco.MjModel, element: Element) -> list[str]:
-    """Named parts of a kind; of bodies those that move."""
+    """Named parts of a kind; of bodies those that move, of the world the axes where things weigh."""
     found: list[str] = []
     if element is Element.BODY:
         found = [model.body(i).name for i in range(1, model.nbody) if model.body_weldid[i]]
@@ -80,6 +81,8 @@ def names_of(model: mujoco.MjModel, element: Element) -> list[str]:
         found = [model.actuator(i).name for i in range(model.nu)]
     elif element is Element.TENDON:
         found = [model.tendon(i).name for i in range(model.ntendon)]
+    elif element is Element.WORLD:
+        found = ["x", "y"] if np.any(model.opt.gravity) else []
     return [name for name in found if name]
 
 
