@@ -34,6 +34,9 @@ rail = { effort = 20, speed = 0.5, travel = 0.5 }
 swing = { effort = 2, speed = 1, travel = 1 }
 """
 
+ARM = 0.8
+"""Mass of the arm of the two-link machine [kg]."""
+
 LOG = "t,x,a,w,f\n" + "\n".join(f"{0.01 * k:.2f},{k},{2 * k},{3 * k},{k % 7}" for k in range(100))
 
 
@@ -67,7 +70,7 @@ def test_a_tolerance_is_a_share_of_each_value_that_the_model_has(tmp_path):
     rig = written(tmp_path)
     sds = {(s.element[1], s.attribute): s.sd for s in rig.description.parameters}
     assert sds["cart", "mass"] == pytest.approx(0.15)
-    assert sds["arm", "mass"] == pytest.approx(0.05)
+    assert sds["arm", "mass"] == pytest.approx(0.05 * ARM)
     assert sds["rail", "damping"] == pytest.approx(0.8)
     assert ("rail", "frictionloss") not in sds
 
@@ -78,15 +81,15 @@ def test_a_setting_of_its_own_comes_before_a_tolerance(tmp_path):
         (s.element[1], s.attribute): s.sd
         for s in written(tmp_path, "drive =", own).description.parameters
     }
-    assert (sds["cart", "mass"], sds["arm", "mass"]) == ("1 g", pytest.approx(0.05))
+    assert (sds["cart", "mass"], sds["arm", "mass"]) == ("1 g", pytest.approx(0.05 * ARM))
 
 
 def test_every_effect_sits_where_typical_sizes_are_known_and_commands_are_fed_in(tmp_path):
     rig = written(tmp_path)
     assert targets(rig, "coulomb_friction") == {"rail", "swing"}
     assert targets(rig, "actuator_gain") == {"drive"}  # nothing is fed to the hinge's motor
-    assert targets(rig, "body_mass") == {"cart", "arm"}
-    assert targets(rig, "body_inertia") == {"arm"}  # the cart only slides
+    assert targets(rig, "body_mass") == {"cart", "arm", "hook"}
+    assert targets(rig, "body_inertia") == {"arm", "hook"}  # the cart only slides
     assert targets(rig, "sensor_gain") == {
         f"{s}.1" for s in rig.description.compare if "effort" not in s
     }

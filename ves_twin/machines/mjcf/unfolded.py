@@ -71,7 +71,7 @@ def _tolerances(told: RigDescription, model: mujoco.MjModel) -> Iterator[Setting
 
 
 def names_of(model: mujoco.MjModel, element: Element) -> list[str]:
-    """Named parts of a kind; of bodies those that move, of the world the axes where things weigh."""
+    """Named parts of a kind; of bodies those that move, of the world its axes if things weigh."""
     found: list[str] = []
     if element is Element.BODY:
         found = [model.body(i).name for i in range(1, model.nbody) if model.body_weldid[i]]
