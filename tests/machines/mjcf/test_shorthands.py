@@ -89,6 +89,7 @@ def test_every_effect_sits_where_typical_sizes_are_known_and_commands_are_fed_in
     assert targets(rig, "coulomb_friction") == {"rail", "swing"}
     assert targets(rig, "actuator_gain") == {"drive"}  # nothing is fed to the hinge's motor
     assert targets(rig, "body_mass") == {"cart", "arm", "hook"}
+    assert targets(rig, "body_place") == {"hook.x", "hook.y", "hook.z"}  # on what turns
     assert targets(rig, "body_inertia") == {"arm", "hook"}  # the cart only slides
     assert targets(rig, "sensor_gain") == {
         f"{s}.1" for s in rig.description.compare if "effort" not in s

@@ -8,7 +8,7 @@ import mujoco
 import numpy as np
 
 from ves_twin.core.errors import InvalidInputError, UnknownNameError, VesTwinError
-from ves_twin.effects.bodies import BodyInertia, MassCentre
+from ves_twin.effects.bodies import BodyInertia, BodyPlace, MassCentre
 from ves_twin.effects.effect import Effect
 from ves_twin.effects.element import Element
 from ves_twin.effects.registry import EFFECTS, attributes, build_anywhere, kind_anywhere
@@ -147,6 +147,8 @@ def _targets(kind: str, told: RigDescription, model: mujoco.MjModel) -> list[str
         return [name for name in names if name in fed]
     if kind in OF_TURNING:
         names = [name for name in names if _turns(model, model.body(name).id)]
+    if kind == BodyPlace.kind:
+        names = [name for name in names if _turns(model, int(model.body(name).parentid[0]))]
     return [f"{name}.{axis}" for name in names for axis in "xyz"] if on.axis else names
 
 
