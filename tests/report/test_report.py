@@ -29,7 +29,11 @@ from ves_twin.report.diagnosis.answer import headline, tone
 from ves_twin.report.diagnosis.credibility import Pedigree, credibility
 from ves_twin.report.diagnosis.page import diagnosis_page
 from ves_twin.report.diagnosis.words import spoken
-from ves_twin.report.rerun.diagnosis import write_diagnosis_rrd
+from ves_twin.report.rerun.diagnosis import (
+    diagnosis_blueprint,
+    onset_of,
+    write_diagnosis_rrd,
+)
 
 HELD = programme(9)
 
@@ -221,7 +225,8 @@ def test_the_rerun_file_has_every_channel_of_the_three_models(friction, tmp_path
     path = write_diagnosis_rrd(friction, tmp_path / "diagnosis.rrd")
     found = {}
     for chunk in RrdReader(path).stream():
-        if not chunk.is_static and str(chunk.entity_path).startswith("/r1/"):
+        entity = str(chunk.entity_path)
+        if not chunk.is_static and entity.startswith(("/r1/compared", "/r1/sigma")):
             rows = chunk.to_record_batch().column("Scalars:scalars").to_pylist()
             found.setdefault(chunk.entity_path, []).extend(rows)
     assert set(found) == {
@@ -260,6 +265,24 @@ def test_measured_nominal_and_extended_lie_over_each_other_in_one_view(friction,
 def turned_up(settings):
     """A cause that commissioning knows too, 15 of its sd off."""
     return said(settings, {"plant.gain": 0.3})
+
+
+def test_the_rerun_file_jumps_to_the_onset_and_has_a_line_of_heat_for_each_channel(
+    friction, tmp_path
+):
+    reader = RrdReader(write_diagnosis_rrd(friction, tmp_path / "diagnosis.rrd"))
+    entities = {str(chunk.entity_path) for chunk in reader.stream()}
+    for name in ("before", "after"):
+        assert {f"/r1/heat/{name}/{part}" for part in ("map", "channels", "now")} <= entities
+    assert "/r1/events" in entities
+    assert not any(entity.startswith("/r1/bodies") for entity in entities)  # a toy has none
+    exhibit = friction.exhibit
+    onset = onset_of(exhibit, 0)
+    quiet = replace(exhibit, before=exhibit.after)
+    assert exhibit.traces[0].time[0] <= onset < exhibit.traces[0].time[-1]
+    assert onset_of(quiet, 0) is None
+    assert onset_of(exhibit, 1) is None  # there is no second recording
+    diagnosis_blueprint(quiet)
 
 
 def test_tolerances_alone_stay_within_what_a_machine_in_order_may_have(turned_up):

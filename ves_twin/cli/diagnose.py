@@ -95,7 +95,7 @@ def _write(found: Diagnosis, folder: Path, names: str) -> None:
     title = f"Diagnosis of {names} by the model {found.machine.name}"
     page = diagnosis_page(found.verdict, title, _plant_sentence(found))
     write_page(folder / "report.html", page)
-    write_diagnosis_rrd(found.verdict, folder / "diagnosis.rrd")
+    write_diagnosis_rrd(found.verdict, folder / "diagnosis.rrd", found.machine.drawing())
     note = f"Extended by ves-twin diagnose: {found.verdict.words}"
     if found.extended is not None and found.refused:
         path = folder / "plant.candidate.toml"
