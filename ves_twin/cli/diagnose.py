@@ -135,7 +135,7 @@ def _write(found: Diagnosis, folder: Path, names: str) -> None:
     title = f"Diagnosis of {names} by the model {found.machine.name}"
     page = diagnosis_page(found.verdict, title, _plant_sentence(found))
     write_page(folder / "report.html", page)
-    write_diagnosis_rrd(found.verdict, folder / "diagnosis.rrd")
+    write_diagnosis_rrd(found.verdict, folder / "diagnosis.rrd", found.machine.drawing())
     law = found.verdict.law
     if law is not None and law.shape == "table":
         save_picture(draw_law(law), folder / LAW_PICTURE)

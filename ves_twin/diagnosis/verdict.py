@@ -132,12 +132,17 @@ class ChannelError:
 
 @dataclass(frozen=True)
 class Basis:
-    """On what the verdict rests: each measured, declared or none."""
+    """On what the verdict rests: each measured, declared or none.
+
+    `recordings` is "external" where every one, held-out ones too, comes from a log of a machine,
+    "unknown" otherwise: a simulated one, or one that does not say where it comes from.
+    """
 
     noise: str
     tolerances: str
     held_out: str
     baseline: str = "none"
+    recordings: str = "unknown"
 
 
 @dataclass(frozen=True)
