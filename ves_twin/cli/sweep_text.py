@@ -7,6 +7,7 @@ from pathlib import Path
 
 import pyarrow.parquet as pq
 
+from ves_twin.core.arrow_file import arrow_file
 from ves_twin.core.signals import SIGNALS
 
 MOST_ROWS = 12
@@ -26,7 +27,7 @@ def sweep_rows(table: Path, keys: Mapping[str, str]) -> list[str]:
         table: the Parquet table of a sweep.
         keys: varied key -> unit.
     """
-    with table.open("rb") as file:
+    with arrow_file(table) as file:
         found = pq.read_table(file)
     rows = found.slice(0, MOST_ROWS).to_pylist()
     prefix = next((name for name in _KINDS if f"{name}.x.rms" in found.column_names), "")

@@ -10,6 +10,7 @@ import pyarrow as pa
 import pyarrow.ipc as ipc
 import pyarrow.parquet as pq
 
+from ves_twin.core.arrow_file import arrow_file
 from ves_twin.core.errors import InvalidInputError, one_line
 from ves_twin.core.types import FloatArray
 from ves_twin.data.csv_log import TICKS, seconds_of
@@ -88,7 +89,7 @@ class ArrowLog(Log):
         try:
             with path.open("rb") as file:
                 self._is_file = file.read(6) == b"ARROW1"
-            with pa.OSFile(str(path)) as source:
+            with arrow_file(path) as source:
                 columns = _columns(self._reader(source).schema)
         except DAMAGE as error:
             raise InvalidInputError(path.name, one_line(error), "a whole Arrow schema") from None
@@ -102,7 +103,7 @@ class ArrowLog(Log):
     def blocks(self, table: str, columns: Sequence[str]) -> Iterator[Block]:
         """Whole batches; one that was cut ends the reading and is named."""
         rows = 0
-        with pa.OSFile(str(self.path)) as source:
+        with arrow_file(self.path) as source:
             reader = self._reader(source)
             number = 0
             while True:
@@ -149,7 +150,7 @@ def numbers(column: pa.Array) -> FloatArray:
 
 def _opened(path: Path) -> tuple[pq.ParquetFile, tuple[Column, ...]]:
     try:
-        file = pq.ParquetFile(path)
+        file = pq.ParquetFile(arrow_file(path))
         return file, _columns(file.schema_arrow)
     except DAMAGE as error:
         reason = one_line(error)

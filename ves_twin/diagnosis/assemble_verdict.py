@@ -56,6 +56,7 @@ class Findings:
         apart: what each recording says alone.
         widened: factor on the declared commissioning sd in this view.
         built: what building up proved.
+        before: the model without a cause, within its tolerances; None where nothing was found.
     """
 
     seen: Dataset
@@ -71,6 +72,7 @@ class Findings:
     apart: tuple[Alone, ...] = ()
     widened: float = 1.0
     built: BuildUp | None = None
+    before: Fit | None = None
 
 
 def assemble_verdict(
@@ -85,13 +87,14 @@ def assemble_verdict(
     firm = {one.label: one.firm for one in proved}
     causes = tuple(replace(c, firm=firm.get(f"{c.effect}@{c.target}", c.firm)) for c in causes)
     nearest = _causes(findings, found)[0] if found and not named else ()
-    exhibit = exhibit_of(findings.seen, first, found)
-    sizes = findable_sizes(first.screen, limits.effect)
+    exhibit = exhibit_of(findings.seen, first, found, findings.before)
+    least = first.limit(limits.effect)
+    sizes = findable_sizes(first.screen, least)
     units = {h.label: _unit(findings, h) for h in first.screen.bank.hypotheses}
     suspect = "" if found is None or named else _label(found.best)
     statistics = Statistics(
         effect=first.score,
-        effect_threshold=limits.effect,
+        effect_threshold=least,
         misfit=first.misfit,
         misfit_threshold=limits.misfit,
         misfit_after=found.score if found else None,
@@ -266,7 +269,10 @@ def _leftover(findings: Findings) -> ResidualStructure:
     found, first = findings.found, findings.first
     limit = findings.limits.misfit
     if found:
-        return describe(found.evidence, found.best.residual, found.after, limit)
-    fit = first.commissioning
-    residual = first.left if fit is None else fit.residual
-    return describe(first.evidence, residual, cells(first.evidence.whitening, residual), limit)
+        best = found.best
+        return describe(found.evidence, best.prediction, best.residual, found.after, limit)
+    fit, base = first.commissioning, first.screen.bank.base
+    predicted, left = (
+        (base.prediction, first.left) if fit is None else (fit.prediction, fit.residual)
+    )
+    return describe(first.evidence, predicted, left, cells(first.evidence.whitening, left), limit)

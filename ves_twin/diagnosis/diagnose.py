@@ -185,6 +185,7 @@ class _View:
             built=end.built,
             gain=end.gain,
             forecast=end.forecast,
+            before=end.before,
             proposals=proposals,
             apart=apart,
         )

@@ -11,6 +11,7 @@ import pyarrow as pa
 import pyarrow.csv
 import pyarrow.parquet
 
+from ves_twin.core.arrow_file import arrow_file
 from ves_twin.core.errors import FileAccessError, InvalidInputError, one_line
 from ves_twin.core.types import FloatArray
 
@@ -42,7 +43,7 @@ def read_columns(
     if path.suffix not in READERS:
         raise InvalidInputError(kind, str(path), f"a file that ends in {' or '.join(READERS)}")
     try:
-        with path.open("rb") as file:  # pyarrow takes names of files in UTF-8 alone
+        with arrow_file(path) as file:
             table = READERS[path.suffix](file)
         rest = [_group(table, group, path) if _any(table, group) else None for group in optional]
         return _group(table, names, path), rest

@@ -14,6 +14,7 @@ import numpy as np
 import pyarrow.parquet as pq
 
 from ves_twin.control.controller import PlatformController
+from ves_twin.core.arrow_file import arrow_file
 from ves_twin.core.held_folder import HeldFolder, hold_folder
 from ves_twin.core.json_text import json_text
 from ves_twin.core.recording.recording import Recording, RecordingInfo
@@ -226,7 +227,7 @@ def _summary(sim: Simulator, recording: Path, prepare: float, run: float) -> Sum
 def _rows(recording: Path, names: Sequence[str]) -> Iterator[list[FloatArray]]:
     """Some signals of a Parquet file, a row group at a time."""
     groups = [SIGNALS[name].columns for name in names]
-    with recording.open("rb") as file:  # pyarrow takes names of files in UTF-8 alone
+    with arrow_file(recording) as file:
         columns = [column for group in groups for column in group]
         for batch in pq.ParquetFile(file).iter_batches(columns=columns):
             yield [

@@ -7,6 +7,7 @@ from pathlib import Path
 import pyarrow as pa
 import pyarrow.parquet as pq
 
+from ves_twin.core.arrow_file import arrow_file
 from ves_twin.core.errors import FileAccessError, InvalidInputError
 from ves_twin.core.recording.recording import Recording
 from ves_twin.core.recording.stream import FILE_NAME, ROW_GROUP, STREAM_NAME
@@ -53,7 +54,7 @@ def is_recording(path: str | Path) -> bool:
     if file.suffix != ".parquet" or not file.is_file():
         return False
     try:
-        with file.open("rb") as opened:
+        with arrow_file(file) as opened:
             return KEY in (pq.read_schema(opened).metadata or {})
     except (pa.ArrowInvalid, OSError):
         return False  # whoever reads it says what is wrong
@@ -78,7 +79,7 @@ def _table(file: Path) -> pa.Table:
             raise FileAccessError(f"recording {file} holds no whole batch of rows")
         return pa.Table.from_batches(batches)
     try:
-        with file.open("rb") as opened:  # pyarrow takes names of files in UTF-8 alone
+        with arrow_file(file) as opened:
             return pq.read_table(opened)
     except (pa.ArrowInvalid, OSError) as error:
         reason = str(error).split("\n", 1)[0]

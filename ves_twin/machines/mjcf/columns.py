@@ -10,6 +10,7 @@ import pyarrow as pa
 import pyarrow.csv as pacsv
 import pyarrow.parquet as pq
 
+from ves_twin.core.arrow_file import arrow_file
 from ves_twin.core.errors import FileAccessError, InvalidInputError, UnknownNameError
 from ves_twin.core.recording.recording import POSES, Recording, RecordingInfo
 from ves_twin.core.types import FloatArray
@@ -60,7 +61,7 @@ def _even(time: FloatArray) -> FloatArray:
 
 def _table(path: Path) -> pa.Table:
     try:
-        with path.open("rb") as file:  # pyarrow takes names of files in UTF-8 alone
+        with arrow_file(path) as file:
             return pq.read_table(file) if path.suffix == ".parquet" else pacsv.read_csv(file)
     except (pa.ArrowInvalid, OSError, csv.Error) as error:
         reason = QUOTED_ROW.sub(r"\1", str(error).split("\n", 1)[0])

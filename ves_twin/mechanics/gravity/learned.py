@@ -10,6 +10,7 @@ import numpy as np
 import pyarrow as pa
 import pyarrow.parquet as pq
 
+from ves_twin.core.arrow_file import arrow_file
 from ves_twin.core.errors import FileAccessError, InvalidInputError, VersionError, one_line
 from ves_twin.core.read_only import ReadOnly
 from ves_twin.core.types import FloatArray
@@ -72,7 +73,7 @@ class LearnedGravity(ReadOnly):
             VersionError: another version of the format.
         """
         try:
-            with open(path, "rb") as file:  # pyarrow takes names of files in UTF-8 alone
+            with arrow_file(path) as file:
                 table = pq.read_table(file)
         except OSError as error:
             raise FileAccessError(f"gravity.file {path}: {one_line(error)}") from None
