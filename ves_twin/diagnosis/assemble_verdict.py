@@ -55,6 +55,7 @@ class Findings:
         proposals: next programmes.
         apart: what each recording says alone.
         widened: factor on the declared commissioning sd in this view.
+        differs: largest difference of the baseline's inputs, of their range; None without one.
         built: what building up proved.
         before: the model without a cause, within its tolerances; None where nothing was found.
     """
@@ -65,12 +66,13 @@ class Findings:
     settings: Settings
     kappa: float
     scale: float | None
+    widened: float = 1.0
+    differs: float | None = None
     found: Explanation | None = None
     gain: Gain | None = None
     forecast: Gain | None = None
     proposals: tuple[Proposal, ...] = ()
     apart: tuple[Alone, ...] = ()
-    widened: float = 1.0
     built: BuildUp | None = None
     before: Fit | None = None
 

@@ -131,12 +131,17 @@ class ChannelError:
 
 @dataclass(frozen=True)
 class Basis:
-    """On what the verdict rests: each measured, declared or none."""
+    """On what the verdict rests: each measured, declared or none.
+
+    `baseline_differs` is the largest difference of the baseline's inputs from those of the record,
+    of their range.
+    """
 
     noise: str
     tolerances: str
     held_out: str
     baseline: str = "none"
+    baseline_differs: float | None = None
 
 
 @dataclass(frozen=True)
