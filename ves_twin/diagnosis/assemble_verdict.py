@@ -85,7 +85,7 @@ def assemble_verdict(
     named = found is not None and kind.names_causes
     causes, alternatives = _causes(findings, found) if named and found else ((), ())
     built = findings.built
-    proved = _sized(built, causes) if built and named else ()
+    proved = sized(built, causes) if built and named else ()
     firm = {one.label: one.firm for one in proved}
     causes = tuple(replace(c, firm=firm.get(f"{c.effect}@{c.target}", c.firm)) for c in causes)
     nearest = _causes(findings, found)[0] if found and not named else ()
@@ -146,7 +146,7 @@ def _provisional(verdict: Verdict) -> Verdict:
     )
 
 
-def _sized(built: BuildUp, causes: Sequence[Cause]) -> tuple[Proved, ...]:
+def sized(built: BuildUp, causes: Sequence[Cause]) -> tuple[Proved, ...]:
     """What is proved with its sizes.
 
     Firm only where no commissioning error explains it either, and no interval holds the value that
