@@ -136,6 +136,8 @@ class Basis:
 
     `recordings` is "external" where every one, held-out ones too, comes from a log of a machine,
     "unknown" otherwise: a simulated one, or one that does not say where it comes from.
+    `baseline_differs` is the largest difference of the baseline's inputs from those of the record,
+    of their range.
     """
 
     noise: str
@@ -143,6 +145,7 @@ class Basis:
     held_out: str
     baseline: str = "none"
     recordings: str = "unknown"
+    baseline_differs: float | None = None
 
 
 @dataclass(frozen=True)
