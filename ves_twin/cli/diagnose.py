@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import sys
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -52,6 +53,11 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         help="where no cause explains the recordings, look for a law (default: if that takes"
         " minutes at most)",
     )
+    parser.add_argument(
+        "--model",
+        metavar="MODEL",
+        help="in place of --plant: draft the machine's file in the output folder, as `new` does",
+    )
     parser.add_argument("--out", metavar="DIR", help="output folder (default: runs/diagnosis)")
     parser.add_argument("--json", action="store_true", help="the verdict as JSON on stdout")
 
@@ -62,11 +68,27 @@ def execute(arguments: argparse.Namespace) -> int:
     from ves_twin.core.recording.files import recording_name
 
     with output_folder(arguments.out, "diagnosis") as held:
+        if arguments.model:
+            arguments.plant = _drafted(arguments, held.path)
         found = _diagnose(arguments)
         _write(found, held.path, ", ".join(map(recording_name, arguments.measured)))
         text = found.verdict.to_json() if arguments.json else _text(found, held.path)
     print(text)
     return 0
+
+
+def _drafted(arguments: argparse.Namespace, folder: Path) -> str:
+    """The machine's file, drafted beside what the diagnosis writes; what it rests on to stderr."""
+    from ves_twin.cli.new_text import new_text
+    from ves_twin.core.errors import InvalidInputError
+    from ves_twin.machines.new_machine import new_machine
+
+    if arguments.plant or arguments.map:
+        raise InvalidInputError("--model", arguments.model, "no --plant and no --map beside it")
+    model, logs = Path(arguments.model), [Path(name) for name in arguments.measured]
+    drafted = new_machine(model, logs, folder / f"{model.stem}.toml")
+    print(new_text(drafted, model, logs), file=sys.stderr)
+    return str(drafted.path)
 
 
 def _diagnose(arguments: argparse.Namespace) -> Diagnosis:
@@ -113,7 +135,7 @@ def _write(found: Diagnosis, folder: Path, names: str) -> None:
     title = f"Diagnosis of {names} by the model {found.machine.name}"
     page = diagnosis_page(found.verdict, title, _plant_sentence(found))
     write_page(folder / "report.html", page)
-    write_diagnosis_rrd(found.verdict, folder / "diagnosis.rrd")
+    write_diagnosis_rrd(found.verdict, folder / "diagnosis.rrd", found.machine.drawing())
     law = found.verdict.law
     if law is not None and law.shape == "table":
         save_picture(draw_law(law), folder / LAW_PICTURE)

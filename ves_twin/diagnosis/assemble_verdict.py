@@ -56,6 +56,7 @@ class Findings:
         proposals: next programmes.
         apart: what each recording says alone.
         widened: factor on the declared commissioning sd in this view.
+        differs: largest difference of the baseline's inputs, of their range; None without one.
         built: what building up proved.
         before: the model without a cause, within its tolerances; None where nothing was found.
         law: that was found where no cause explains the record; None if nobody looked.
@@ -68,12 +69,13 @@ class Findings:
     settings: Settings
     kappa: float
     scale: float | None
+    widened: float = 1.0
+    differs: float | None = None
     found: Explanation | None = None
     gain: Gain | None = None
     forecast: Gain | None = None
     proposals: tuple[Proposal, ...] = ()
     apart: tuple[Alone, ...] = ()
-    widened: float = 1.0
     built: BuildUp | None = None
     before: Fit | None = None
     law: LawFinding | None = None
@@ -93,7 +95,7 @@ def assemble_verdict(
     named = found is not None and kind.names_causes
     causes, alternatives = _causes(findings, found) if named and found else ((), ())
     built = findings.built
-    proved = _sized(built, causes) if built and named else ()
+    proved = sized(built, causes) if built and named else ()
     firm = {one.label: one.firm for one in proved}
     causes = tuple(replace(c, firm=firm.get(f"{c.effect}@{c.target}", c.firm)) for c in causes)
     nearest = _causes(findings, found)[0] if found and not named else ()
@@ -155,7 +157,7 @@ def _provisional(verdict: Verdict) -> Verdict:
     )
 
 
-def _sized(built: BuildUp, causes: Sequence[Cause]) -> tuple[Proved, ...]:
+def sized(built: BuildUp, causes: Sequence[Cause]) -> tuple[Proved, ...]:
     """What is proved with its sizes.
 
     Firm only where no commissioning error explains it either, and no interval holds the value that

@@ -139,9 +139,12 @@ class _View:
         recordings, standstill = material.recordings, material.standstill
         seen = preprocess(forward, recordings, workers, chosen.rate)
         whitening = whitening_of(seen.runs, standstill)
+        differs = None
         if material.baseline:
             usual = material.baseline
-            seen, whitening = _changed(seen, whitening, recordings, usual, standstill, chosen)
+            seen, whitening, differs = _changed(
+                seen, whitening, recordings, usual, standstill, chosen
+            )
         bank = _bank(seen, chosen, progress).without(material.exclude)
         limits = cached_thresholds(bank, whitening, chosen, progress)
         pull = pull_limit(bank, chosen.alpha)
@@ -149,7 +152,7 @@ class _View:
             seen.measured, bank, whitening, limits.effect, limits.misfit, pull, limits.bends
         )
         kappa, scale = naming_limit(bank, material.scale), material.scale
-        findings = Findings(seen, first, limits, chosen, kappa, scale, widened=widened)
+        findings = Findings(seen, first, limits, chosen, kappa, scale, widened, differs)
         return _View(forward, material, findings, pull, whitening)
 
     @property
@@ -168,7 +171,7 @@ class _View:
         """Explain it; `alone` asks for a single cause that leaves noise, and for nothing else."""
         findings, material = self.findings, self.material
         seen, chosen, first = findings.seen, findings.settings, findings.first
-        basis = _basis(material)
+        basis = replace(_basis(material), baseline_differs=findings.differs)
         if not self.loud:
             return assemble_verdict(findings, Kind.NOTHING, basis, material.exclude)
         desk = FitContext(first, findings.limits, chosen, progress)
@@ -221,15 +224,15 @@ def _changed(
     baseline: Sequence[Recording],
     standstill: Recording | None,
     settings: Settings,
-) -> tuple[Dataset, Whitening]:
-    """The record about the rig as its baseline shows it, and its noise."""
+) -> tuple[Dataset, Whitening, float]:
+    """The record about the rig as its baseline shows it, its noise, what the inputs differ by."""
 
     def again(tuned: Forward) -> Dataset:
         return preprocess(tuned, recordings, seen.runs.workers, settings.rate)
 
     changed = differential(seen, baseline, again, whitening)
     own = whitening_of(changed.seen.runs, standstill)
-    return changed.seen, replace(own, level=own.level * changed.noise)
+    return changed.seen, replace(own, level=own.level * changed.noise), changed.differs
 
 
 def _bank(seen: Dataset, settings: Settings, progress: Progress) -> SignatureLibrary:

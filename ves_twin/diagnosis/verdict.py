@@ -132,12 +132,20 @@ class ChannelError:
 
 @dataclass(frozen=True)
 class Basis:
-    """On what the verdict rests: each measured, declared or none."""
+    """On what the verdict rests: each measured, declared or none.
+
+    `recordings` is "external" where every one, held-out ones too, comes from a log of a machine,
+    "unknown" otherwise: a simulated one, or one that does not say where it comes from.
+    `baseline_differs` is the largest difference of the baseline's inputs from those of the record,
+    of their range.
+    """
 
     noise: str
     tolerances: str
     held_out: str
     baseline: str = "none"
+    recordings: str = "unknown"
+    baseline_differs: float | None = None
 
 
 @dataclass(frozen=True)

@@ -109,8 +109,15 @@ def diagnose(
     )
     causes = tuple(cause.shortened for cause in verdict.causes)
     near = tuple(cause.shortened for cause in verdict.nearest)
-    verdict = replace(verdict, causes=causes, nearest=near, quality=prepared.flaws)
+    basis = replace(verdict.basis, recordings=_origin(given))
+    verdict = replace(verdict, causes=causes, nearest=near, quality=prepared.flaws, basis=basis)
     return _concluded(verdict, machine, offered)
+
+
+def _origin(given: Material) -> str:
+    """Whether all that was fitted and held out comes from logs: what simulates writes no log."""
+    told = (*given.measured, *given.held_out)
+    return "external" if all(one.recording.info.imported for one in told) else "unknown"
 
 
 def _concluded(verdict: Verdict, machine: Machine, offered: Sequence[Excitation]) -> Diagnosis:

@@ -11,6 +11,7 @@ from ves_twin.machines.mjcf.description import Compared, Mode, RigDescription
 from ves_twin.machines.mjcf.joint_units import joint_units
 from ves_twin.machines.mjcf.places import SINGLE, driven_joint, typical_speed
 
+BALL = int(mujoco.mjtJoint.mjJNT_BALL)
 FREE = int(mujoco.mjtJoint.mjJNT_FREE)
 
 
@@ -26,6 +27,7 @@ def check_description(told: RigDescription, model: mujoco.MjModel) -> None:
     """
     _signals(told)
     _parts(told, model)
+    _units(told, model)
     _moved(told, model)
     _widths(told, model)
     _starts(told, model)
@@ -60,6 +62,20 @@ def _parts(told: RigDescription, model: mujoco.MjModel) -> None:
         for name in filter(None, names):
             if name not in there:
                 raise UnknownNameError(f"{what} in {told.model}", name, there)
+
+
+def _units(told: RigDescription, model: mujoco.MjModel) -> None:
+    """Of signals that say their joint themselves."""
+    for name, signal in told.signals.items():
+        kind = int(model.jnt_type[model.joint(signal.joint).id]) if signal.joint else FREE
+        if kind in (FREE, BALL):
+            continue
+        expected = joint_units(model, signal.joint)[signal.of == "speed"]
+        if signal.unit != expected:
+            what = f"signals.{name}.unit"
+            raise InvalidInputError(
+                what, signal.unit, f"{expected}, as joint {signal.joint} has it"
+            )
 
 
 def _moved(told: RigDescription, model: mujoco.MjModel) -> None:

@@ -10,8 +10,9 @@ from ves_twin.diagnosis.law.finding import SOURCE
 from ves_twin.diagnosis.law.result import LawFinding
 from ves_twin.diagnosis.verdict import Verdict
 from ves_twin.effects.law import LawKind, LawShape
-from ves_twin.machines.mjcf.description import KIND, SCHEMA, Setting, load_description, shipped_rigs
+from ves_twin.machines.mjcf.description import KIND, SCHEMA, Setting
 from ves_twin.machines.mjcf.law_table import LawTable
+from ves_twin.machines.mjcf.load_description import shipped_rigs
 from ves_twin.machines.mjcf.machine import Entry, Rig
 
 
@@ -85,7 +86,7 @@ def write_rig(rig: Rig, path: Path, note: str = "") -> None:
     Raises:
         FileAccessError: not writable.
     """
-    before = load_description(rig.file)[0]
+    before = Rig.load(rig.file).description
     shipped = rig.file in shipped_rigs()
     base = rig.file if shipped else os.path.relpath(Path(rig.file), path.parent)
     content: dict[str, object] = {"schema": SCHEMA, "kind": KIND, "base": base}

@@ -14,6 +14,7 @@ from ves_twin.report.diagnosis.answer import (
     verdict_sentence,
 )
 from ves_twin.report.diagnosis.basis import basis_sentences, gain_sentence, rests_on
+from ves_twin.report.diagnosis.credibility import credibility
 from ves_twin.report.diagnosis.law import law_parts
 from ves_twin.report.diagnosis.limits import limit_sentences, next_sentences, rival_words
 from ves_twin.report.diagnosis.pictures import (
@@ -82,6 +83,7 @@ def diagnosis_page(verdict: Verdict, title: str = "Diagnosis", plant: str = "") 
     if verdict.leftover:
         parts.append(section("What is left", *_leftover(verdict)))
     parts.append(section("Next experiment", *_next(verdict)))
+    parts.append(section("How credible this is", *_credibility(verdict)))
     return html_page(title, parts)
 
 
@@ -285,6 +287,12 @@ def _leftover(verdict: Verdict) -> list[Html]:
         if abs(f.correlation) > 0.1
     ]
     return [*parts, table(head, rows), bullets(goes)]
+
+
+def _credibility(verdict: Verdict) -> list[Html]:
+    rows = [(one.name, one.standing.value, one.said) for one in credibility(verdict)]
+    note = "The eight factors of NASA-STD-7009. The project's own are on its page Credibility."
+    return [paragraph(note, "note"), table(("factor", "standing", "on what"), rows)]
 
 
 def _next(verdict: Verdict) -> list[Html]:
