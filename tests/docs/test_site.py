@@ -19,6 +19,7 @@ from ves_twin.scenario.schema import Scenario
 
 ROOT = Path(__file__).parents[2]
 SCENARIOS = sorted((ROOT / "scenarios").glob("*.toml"))
+MACHINES = sorted((ROOT / "models" / "machines").glob("*/*.toml"))
 CONFIG = (ROOT / "mkdocs.yml").read_text(encoding="utf-8")
 GENERATED = ("index.md", "rigs.md", "commands.md", "credibility.md", "formats/", "notebooks/")
 LOADED = re.compile(
@@ -107,15 +108,26 @@ def parsers(parser):
 @pytest.mark.parametrize("path", SCENARIOS, ids=lambda p: p.stem)
 def test_shipped_files_keep_to_the_schema_of_their_page(site, path):
     content = tomllib.loads(path.read_text(encoding="utf-8"))
-    content = {"name": path.stem, "question": "?", **content}
     name = content.get("procedure", "scenario")
     schema = json.loads((site / "formats" / f"{name}.schema.json").read_text(encoding="utf-8"))
     jsonschema.validate(content, schema)
 
 
+@pytest.mark.parametrize("path", MACHINES, ids=lambda p: p.stem)
+def test_shipped_machines_keep_to_the_schema_as_they_are_written(site, path):
+    content = tomllib.loads(path.read_text(encoding="utf-8"))
+    jsonschema.validate(content, schema_of(site, "rig"))
+    over = {"schema": 1, "kind": "rig", "base": path.name}
+    jsonschema.validate(over, schema_of(site, "rig"))
+    with pytest.raises(jsonschema.ValidationError):
+        jsonschema.validate({**over, "sginals": {}}, schema_of(site, "rig"))
+
+
 def test_the_schema_of_scenarios_refuses_what_the_program_refuses(site):
     schema = json.loads((site / "formats" / "scenario.schema.json").read_text(encoding="utf-8"))
-    good = json.loads(Scenario.load("position_sine").model_dump_json(exclude_none=True))
+    told = {"name", "question"}  # of the file's name and first line
+    good = Scenario.load("position_sine").model_dump_json(exclude_none=True, exclude=told)
+    good = json.loads(good)
     jsonschema.validate(good, schema)
     for wrong in ({"platform": {**good["platform"], "home": [0.0] * 5}}, {"unknown": 1}):
         with pytest.raises(jsonschema.ValidationError):

@@ -25,7 +25,8 @@ class Diagnosis:
     Attributes:
         verdict: with the magnitudes of the effects as the names of its parameters.
         machine: that was tried, as the experiment has it.
-        extended: it with the causes; None where no causes are named.
+        extended: it with the causes, or with a law; None where no causes are named and no law is
+            claimed.
         refused: why the extension is only a candidate; empty where it passed on held-out data.
         excitation: that should part the causes, where they cannot be told apart.
         nearest: it with what comes nearest, where no causes are named; None if nothing does.
@@ -124,6 +125,8 @@ def _concluded(verdict: Verdict, machine: Machine, offered: Sequence[Excitation]
     if verdict.verdict.names_a_plant:
         new = machine.extended(verdict)
         return Diagnosis(verdict, machine, new, machine.refusal(verdict))
+    if verdict.law is not None and verdict.law.claimed:
+        return Diagnosis(verdict, machine, machine.extended(verdict), verdict.law.refusal)
     best = verdict.next_experiment[0].programme if verdict.next_experiment else ""
     chosen = next((one for one in offered if one.name == best), None)
     why = f"the verdict is {verdict.verdict.value}"

@@ -15,6 +15,7 @@ from ves_twin.report.diagnosis.answer import (
 )
 from ves_twin.report.diagnosis.basis import basis_sentences, gain_sentence, rests_on
 from ves_twin.report.diagnosis.credibility import credibility
+from ves_twin.report.diagnosis.law import law_parts
 from ves_twin.report.diagnosis.limits import limit_sentences, next_sentences, rival_words
 from ves_twin.report.diagnosis.pictures import (
     answer_figure,
@@ -71,6 +72,8 @@ def diagnosis_page(verdict: Verdict, title: str = "Diagnosis", plant: str = "") 
     if exhibit:
         parts += _pictures(verdict, exhibit)
     parts += proved_parts(verdict)
+    if verdict.law is not None:
+        parts.insert(1, section("A law in place of a cause", *law_parts(verdict.law)))
     if verdict.rivals:
         parts.append(section("Rivals, and why they lost", _rivals(verdict.rivals)))
     parts += [
