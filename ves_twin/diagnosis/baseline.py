@@ -71,7 +71,8 @@ def usual_rows(seen: Dataset, baseline: Sequence[Recording]) -> Usual:
                 f"the same inputs to {percent(REPEATS)} of their range, made while the rig was in"
                 " order, over all of the recording",
             )
-        pieces.append(np.mean([one.rows for one in fits], axis=0, dtype=np.float32))
+        rows = [one.rows for one in fits if one.rows is not None]
+        pieces.append(np.mean(rows, axis=0, dtype=np.float32))
         fewest = min(fewest, len(fits))
         differs = max(differs, *(one.differs for one in fits))
     return Usual(np.concatenate(pieces), fewest, differs)
