@@ -203,7 +203,7 @@ def test_a_rate_stands_in_for_a_clock_that_is_not_there(lab):
         (CLOCK + channel("x", "arm.q.1", 'unit = "rad"\nframe = "tol"'), "unknown frame"),
         (CLOCK + channel("x", "arm.q.1", 'unit = "rad"\nsing = -1'), "did you mean"),
         (CLOCK + channel("x", "arm.q.1", 'unit = "rad"\nsign = 2'), "sign"),
-        (CLOCK + channel("x", "motor.current", 'unit = "A"'), "unknown signal column"),
+        (CLOCK + channel("x", "motor.current", 'unit = "A"'), "that --plant names"),
         (CLOCK.replace("t [s]", "time") + channel("p [bar]", "supply.pressure"), "time column"),
         ("[clock]\n" + channel("p [bar]", "supply.pressure"), "either column or rate"),
         ('[clock]\ncolumn = "x"\n' + channel("p [bar]", "supply.pressure"), "unit of x"),

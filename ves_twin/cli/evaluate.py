@@ -21,6 +21,16 @@ UNITS = {
     "goal_error": "rad",
     "distance_rms": "mm",
     "distance_peak": "mm",
+    "emulation_rms": "mm",
+    "emulation_peak": "mm",
+    "shaking": "of 50 N",
+    "force_error": "N",
+    "moment_error": "N m",
+    "force_error_last": "N",
+    "moment_error_last": "N m",
+    "caught": "share",
+    "caught_at": "s",
+    "tip_distance": "m",
     "cost": "s",
 }
 """Of figures; the return is minus the loss of the environment's own table."""
@@ -34,7 +44,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "environment",
         metavar="ENV",
-        help="VibrationFreeReach-v0, VibrationDamping-v0 or PlatformTracking-v0",
+        help="VibrationDamping-v0, PlatformTracking-v0 ...; an unknown name lists all",
     )
     parser.add_argument(
         "--policy",

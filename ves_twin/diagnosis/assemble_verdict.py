@@ -18,6 +18,7 @@ from ves_twin.diagnosis.explain import Explanation
 from ves_twin.diagnosis.findable import findable_sizes, twins
 from ves_twin.diagnosis.forward import Hypothesis
 from ves_twin.diagnosis.gain import Gain
+from ves_twin.diagnosis.law.result import LawFinding
 from ves_twin.diagnosis.null import Thresholds
 from ves_twin.diagnosis.preprocess import Dataset
 from ves_twin.diagnosis.refine import Fit
@@ -58,6 +59,8 @@ class Findings:
         differs: largest difference of the baseline's inputs, of their range; None without one.
         built: what building up proved.
         before: the model without a cause, within its tolerances; None where nothing was found.
+        law: that was found where no cause explains the record; None if nobody looked.
+        shown: what the report shows as fitted, if not `found`: a law that is claimed.
     """
 
     seen: Dataset
@@ -75,6 +78,13 @@ class Findings:
     apart: tuple[Alone, ...] = ()
     built: BuildUp | None = None
     before: Fit | None = None
+    law: LawFinding | None = None
+    shown: Explanation | None = None
+
+    @property
+    def fitted(self) -> Explanation | None:
+        """What tuned numbers and residuals are of."""
+        return self.shown or self.found
 
 
 def assemble_verdict(
@@ -89,7 +99,7 @@ def assemble_verdict(
     firm = {one.label: one.firm for one in proved}
     causes = tuple(replace(c, firm=firm.get(f"{c.effect}@{c.target}", c.firm)) for c in causes)
     nearest = _causes(findings, found)[0] if found and not named else ()
-    exhibit = exhibit_of(findings.seen, first, found, findings.before)
+    exhibit = exhibit_of(findings.seen, first, findings.fitted, findings.before)
     least = first.limit(limits.effect)
     sizes = findable_sizes(first.screen, least)
     units = {h.label: _unit(findings, h) for h in first.screen.bank.hypotheses}
@@ -134,6 +144,7 @@ def assemble_verdict(
         left=built.left if built else {},
         inseparable=built.inseparable if built else (),
         nearest=nearest,
+        law=findings.law,
     )
     return _provisional(verdict) if verdict.unconfirmed else verdict
 
@@ -228,10 +239,10 @@ def _cause(
 
 def _tuned(findings: Findings) -> dict[str, Estimate]:
     """Commissioning numbers of the plant at the best fit, with what is known of them then."""
-    fit = findings.found.best if findings.found else findings.first.commissioning
+    fit = findings.fitted.best if findings.fitted else findings.first.commissioning
     if fit is None:
         return {}
-    runs, z = findings.seen.runs, float(norm.isf(0.5 * (1.0 - findings.settings.confidence)))
+    runs, z = fit.local.runs, float(norm.isf(0.5 * (1.0 - findings.settings.confidence)))
     free, estimates = set(fit.active[: len(fit.sizes)]), {}
     for n, i in enumerate(fit.active):
         parameter = runs.coordinates[int(i)].parameter
@@ -268,7 +279,7 @@ def _rms(pieces: Sequence[FloatArray | SingleArray]) -> float:
 
 
 def _leftover(findings: Findings) -> ResidualStructure:
-    found, first = findings.found, findings.first
+    found, first = findings.fitted, findings.first
     limit = findings.limits.misfit
     if found:
         best = found.best

@@ -63,7 +63,8 @@ def usual_rows(seen: Dataset, baseline: Sequence[Recording]) -> Usual:
     for k, programme in enumerate(runs.programmes):
         found = [_along(recording, programme, runs) for recording in baseline]
         fits = [one for one in found if one.rows is not None]
-        if not fits:
+        rows = [one.rows for one in found if one.rows is not None]
+        if not rows:
             nearest = min(found, key=lambda one: one.differs)
             raise InvalidInputError(
                 f"baseline of recording {k + 1} ({programme.name})",
@@ -71,9 +72,8 @@ def usual_rows(seen: Dataset, baseline: Sequence[Recording]) -> Usual:
                 f"the same inputs to {percent(REPEATS)} of their range, made while the rig was in"
                 " order, over all of the recording",
             )
-        rows = [one.rows for one in fits if one.rows is not None]
         pieces.append(np.mean(rows, axis=0, dtype=np.float32))
-        fewest = min(fewest, len(fits))
+        fewest = min(fewest, len(rows))
         differs = max(differs, *(one.differs for one in fits))
     return Usual(np.concatenate(pieces), fewest, differs)
 

@@ -16,6 +16,8 @@ from ves_twin.diagnosis.differential import differential
 from ves_twin.diagnosis.disagreement import Alone, disagreement
 from ves_twin.diagnosis.explain import Explanation, FitContext, explain
 from ves_twin.diagnosis.forward import Excitation, Forward
+from ves_twin.diagnosis.law.explained import lawful_explanation
+from ves_twin.diagnosis.law.propose import Limits
 from ves_twin.diagnosis.likeness import check_likeness
 from ves_twin.diagnosis.next_experiment import separations
 from ves_twin.diagnosis.null import cached_thresholds
@@ -159,6 +161,12 @@ class _View:
         limits = self.findings.limits
         return self.findings.first.exceeds(limits.effect, limits.misfit, self.pull)
 
+    @property
+    def limits(self) -> Limits:
+        """Of a claim."""
+        misfit = self.findings.limits.misfit
+        return Limits(misfit, self.pull, self.findings.settings.model_error)
+
     def verdict(self, progress: Progress, alone: bool = False) -> Verdict:
         """Explain it; `alone` asks for a single cause that leaves noise, and for nothing else."""
         findings, material = self.findings, self.material
@@ -182,11 +190,19 @@ class _View:
             apart = disagreement(seen, bank, self.whitening, limits, chosen, progress)
         if end.cut:
             basis = replace(basis, held_out="split")
+        lawful = None
+        if kind is Kind.UNKNOWN:
+            progress(0.0, "looking for a law")
+            lawful = lawful_explanation(
+                first, found, self.limits, chosen, held.pair if held else None, progress
+            )
         findings = replace(
             findings,
+            law=lawful.finding if lawful else None,
+            shown=lawful.explanation if lawful else None,
             found=found,
             built=end.built,
-            gain=end.gain,
+            gain=lawful.gain if lawful and lawful.explanation else end.gain,
             forecast=end.forecast,
             before=end.before,
             proposals=proposals,

@@ -35,8 +35,8 @@ class Lqg(Policy):
     def __init__(self, briefing: TaskSpec) -> None:
         from control import sample_system  # slow to import
 
-        if briefing.emulated is None:
-            raise InvalidInputError("Lqg", "no emulated base", "VesTwin/VibrationDamping-v0")
+        if briefing.emulated is None or not np.any(briefing.emulated.stiffness):
+            raise InvalidInputError("Lqg", "no elastic base", "VesTwin/VibrationDamping-v0")
         self._known = briefing
         prior = briefing.prior()
         held = sample_system(prior, briefing.step, method="zoh")

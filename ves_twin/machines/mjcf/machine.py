@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import hashlib
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
 
@@ -15,13 +15,16 @@ from ves_twin.core.errors import FileAccessError, InvalidInputError, UnknownName
 from ves_twin.core.units import to_si
 from ves_twin.diagnosis.forward import Hypothesis, Parameter
 from ves_twin.effects.effect import Effect
+from ves_twin.effects.law import Law
 from ves_twin.effects.magnitude import Magnitude, Sign
 from ves_twin.effects.place import Place
 from ves_twin.effects.registry import EFFECTS, attributes, build_anywhere, kind_anywhere
 from ves_twin.machines.mjcf.check_description import check_description
-from ves_twin.machines.mjcf.description import Allowed, RigDescription, Setting, load_description
+from ves_twin.machines.mjcf.description import Allowed, RigDescription, Setting
+from ves_twin.machines.mjcf.load_description import load_description
 from ves_twin.machines.mjcf.places import anywhere, place_of
 from ves_twin.machines.mjcf.stiff_friction import stiff_friction
+from ves_twin.machines.mjcf.unfolded import unfolded
 
 
 @dataclass(frozen=True)
@@ -90,7 +93,15 @@ class Rig:
         Raises:
             VesTwinError: a file that is missing or wrong, or names that do not fit together.
         """
-        rig = Rig(*load_description(name_or_path), name_or_path)
+        return Rig.of(*load_description(name_or_path), name_or_path)
+
+    @staticmethod
+    def of(description: RigDescription, folder: Path, file: str = "") -> Rig:
+        """A description as it was read, with its shorthands written out; raises as `load`."""
+        folded = Rig(description, folder, file)
+        check_description(folded.description, folded.model)
+        told = unfolded(folded.description, folded.model)
+        rig = folded if told is folded.description else replace(folded, description=told)
         rig.check()
         return rig
 
@@ -124,6 +135,11 @@ class Rig:
         except mujoco.FatalError as error:
             raise InvalidInputError(str(path), one_line(error), "a model that can move") from None
         return model
+
+    @property
+    def laws(self) -> tuple[Law, ...]:
+        """Those of the description."""
+        return tuple(told.law for told in self.description.laws)
 
     @cached_property
     def entries(self) -> tuple[Entry, ...]:
