@@ -68,7 +68,8 @@ COMMANDS = {
 BEGIN = """\
 begin with:
   ves-twin run beam_horizontal_truth          writes runs/beam_horizontal_truth/
-  ves-twin view runs/beam_horizontal_truth    shows it in 3-D; --web for a browser
+  ves-twin view --last                        shows it in 3-D; --web for a browser
+  ves-twin diagnose REC --plant MACHINE       names what the model of a machine gets wrong
   ves-twin COMMAND --help                     what a command takes
 
 exit codes: 0 done, 2 bad input, 3 the run ended early, 4 out of tolerance, 130 interrupted
@@ -106,7 +107,7 @@ def build_parser() -> Parser:
     """The parser of all commands."""
     parser = Parser(
         prog="ves-twin",
-        description="Digital twin of the VES II micro-gravity emulator.",
+        description="Find out what a simulation gets wrong about a machine, of your own or VES II.",
         epilog=BEGIN,
         formatter_class=partial(argparse.RawDescriptionHelpFormatter, max_help_position=14),
     )

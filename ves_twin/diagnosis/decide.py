@@ -78,6 +78,11 @@ class HeldOut:
         seen = preprocess(forward, recordings, workers, settings.rate)
         return HeldOut(seen, whitening_of(seen.runs, standstill), settings)
 
+    @property
+    def pair(self) -> tuple[Dataset, Whitening]:
+        """The recordings and their noise."""
+        return self.seen, self.whitening
+
     def gain(self, before: Fit, after: Fit) -> Gain:
         """Of one fit over another."""
         return held_out_gain(

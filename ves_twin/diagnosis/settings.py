@@ -28,6 +28,8 @@ class Settings:
         seed: of the null distribution.
         causes: that may be named together; beyond two only on held-out recordings.
         rate: of the analysis grid [Hz].
+        laws: whether a law is looked for where no cause explains the record, and the plant can
+            have laws; None where that takes minutes at most.
     """
 
     alpha: float = 0.002
@@ -43,3 +45,4 @@ class Settings:
     seed: int = 0
     causes: int = 2
     rate: float = RATE
+    laws: bool | None = False

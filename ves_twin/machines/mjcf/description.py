@@ -11,6 +11,7 @@ from ves_twin.core.units import SI_UNITS, to_unit
 from ves_twin.data.import_map import Window
 from ves_twin.diagnosis.grid import RATE
 from ves_twin.effects.element import Element
+from ves_twin.machines.mjcf.law_table import LawTable
 from ves_twin.scenario.fields import Hertz, Part, Seconds, named, si
 
 KIND = "rig"
@@ -333,6 +334,7 @@ class RigDescription(Part):
     drift: Drift | None = None
     excitation: MultisineRange = MultisineRange()
     present: dict[str, dict[str, dict[str, float]]] = Field(default_factory=dict)
+    laws: tuple[LawTable, ...] = ()
     data: tuple[Data, ...] = ()
     causes: Annotated[int, Field(ge=1, le=6)] = 4
     block: Seconds = 0.0

@@ -30,7 +30,8 @@ def shipped_rigs() -> list[str]:
 def load_description(name_or_path: str) -> tuple[RigDescription, Path]:
     """The description of a rig, and the folder that its model is found from.
 
-    A file with `base` adds to another one: its tables `parameters` and `present` are put on top.
+    A file with `base` adds to another one: its tables `parameters`, `present` and `laws` are put
+    on top; a law in place of one with the same place and variables.
 
     Raises:
         FileAccessError: missing file.
@@ -73,7 +74,8 @@ def _content(path: Path, depth: int) -> tuple[dict[str, Any], Path]:
 
 def _over(under: dict[str, Any], top: dict[str, Any]) -> dict[str, Any]:
     """The base with what is put on top of it."""
-    merged = {**under, **{k: v for k, v in top.items() if k not in ("parameters", "present")}}
+    added = ("parameters", "present", "laws")
+    merged = {**under, **{k: v for k, v in top.items() if k not in added}}
     new = list(top.get("parameters", []))
     places = {_place(s) for s in new}
     merged["parameters"] = [s for s in under.get("parameters", []) if _place(s) not in places] + new
@@ -81,6 +83,9 @@ def _over(under: dict[str, Any], top: dict[str, Any]) -> dict[str, Any]:
     for kind, targets in top.get("present", {}).items():
         present.setdefault(kind, {}).update(targets)
     merged["present"] = present
+    laws = {(law.get("place"), str(law.get("of"))): law for law in under.get("laws", [])}
+    laws |= {(law.get("place"), str(law.get("of"))): law for law in top.get("laws", [])}
+    merged["laws"] = list(laws.values())
     return merged
 
 
