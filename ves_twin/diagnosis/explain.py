@@ -24,10 +24,10 @@ RIVAL_RATIO = 4.0
 """A fit with this many times the chi^2 of the best is not worth new nuisance columns."""
 
 LEAST = 0.7
-"""Part of the threshold that a cause must take off chi^2: the fit moves the screen's figure."""
+"""Part of the threshold that a cause must take off chi^2; a fit changes the screen's value."""
 
 CLEAR = 3.0
-"""Times the threshold that a cause must take off chi^2 to make a better fit without it idle."""
+"""Times the threshold that a cause must take off chi^2 to outweigh a better fit without it."""
 
 FAR = 0.5
 """Share of the likeliest suspect's score that another must have to be fitted at once."""
