@@ -218,9 +218,9 @@ def _changed(
 def _bank(seen: Dataset, settings: Settings, progress: Progress) -> SignatureLibrary:
     def build() -> SignatureLibrary:
         check_likeness(seen, seen.runs.one(seen.runs.origin))  # before minutes of simulation
-        return build_bank(seen.runs, progress=progress)
+        return build_bank(seen.runs, progress=progress, sparse=settings.sparse)
 
-    bank = cached_bank(seen.runs, settings.cache, build)
+    bank = cached_bank(seen.runs, settings.cache, build, settings.sparse)
     check_likeness(seen, bank.base.prediction)
     return bank
 

@@ -322,7 +322,7 @@ def suspects_at(
     others = [bank.hypotheses[s.hypothesis] for s in likely]
     rest = tuple(h for h in others if h not in fit.causes)[:SHORTLIST]
     base = renewed(fit.local, fit.shift, fit.prediction)
-    local = build_bank(evidence.runs, fit.shift, rest, desk.progress, base)
+    local = build_bank(evidence.runs, fit.shift, rest, desk.progress, base, desk.settings.sparse)
     z = residual_about(evidence, fit, local.base)
     return rest, Screen(local, evidence.whitening, fit.free).suspects(z)
 

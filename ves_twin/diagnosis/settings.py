@@ -28,6 +28,7 @@ class Settings:
         seed: of the null distribution.
         causes: that may be named together; beyond two only on held-out recordings.
         rate: of the analysis grid [Hz].
+        sparse: whether banks are built with fewer runs, as a machine of many parameters needs.
     """
 
     alpha: float = 0.002
@@ -43,3 +44,4 @@ class Settings:
     seed: int = 0
     causes: int = 2
     rate: float = RATE
+    sparse: bool = False
