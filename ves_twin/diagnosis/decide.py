@@ -18,7 +18,7 @@ from ves_twin.diagnosis.forecast import forecast
 from ves_twin.diagnosis.forward import Forward
 from ves_twin.diagnosis.gain import Gain, held_out_gain
 from ves_twin.diagnosis.preprocess import Dataset, preprocess
-from ves_twin.diagnosis.refine import Fit, refine
+from ves_twin.diagnosis.refine import ROUGH, Fit, refine
 from ves_twin.diagnosis.settings import Settings
 from ves_twin.diagnosis.verdict import Kind
 from ves_twin.diagnosis.whitening import Whitening, whitening_of
@@ -29,10 +29,6 @@ takes up to nine tenths (viscous damping of a drag with the square of speed, of 
 
 MANY_FROM = 2
 """Causes beyond which more may be at work than a search of single ones and pairs can see."""
-
-ROUGH = 0.01
-"""Fall of chi^2, of all of it, that ends the search for the model before, where commissioning
-errors are held: it moves a gain by no more than that."""
 
 
 @dataclass(frozen=True)
@@ -130,6 +126,8 @@ def decide(
     found = explain(desk.first, desk.thresholds, desk.settings, desk.progress)
     if found is None:
         return Conclusion(None, Kind.UNKNOWN)
+    if found.far:
+        return Conclusion(found, Kind.UNKNOWN)
     built, cut = None, False
     if not found.adequate and desk.settings.causes > MANY_FROM:
         evidence = desk.first.evidence

@@ -143,9 +143,8 @@ class _View:
         bank = _bank(seen, chosen, progress).without(material.exclude)
         limits = cached_thresholds(bank, whitening, chosen, progress)
         pull = pull_limit(bank, chosen.alpha)
-        first = assess(
-            seen.measured, bank, whitening, limits.effect, limits.misfit, pull, limits.bends
-        )
+        levels = (limits.effect, limits.misfit, pull, limits.bends, chosen.sparse)
+        first = assess(seen.measured, bank, whitening, *levels)
         kappa, scale = naming_limit(bank, material.scale), material.scale
         findings = Findings(seen, first, limits, chosen, kappa, scale, widened=widened)
         return _View(forward, material, findings, pull, whitening)

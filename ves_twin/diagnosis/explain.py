@@ -14,9 +14,10 @@ from ves_twin.diagnosis.forward import Hypothesis
 from ves_twin.diagnosis.linearise import Linearisation, renewed
 from ves_twin.diagnosis.null import Thresholds
 from ves_twin.diagnosis.probability import probabilities
-from ves_twin.diagnosis.refine import Fit, bare_residual, refine, residual_about
+from ves_twin.diagnosis.refine import ROUGH, Fit, bare_residual, refine, residual_about
 from ves_twin.diagnosis.runs import Progress, silent
 from ves_twin.diagnosis.screen import Candidate, Screen
+from ves_twin.diagnosis.search import RELATIVE_CONVERGENCE
 from ves_twin.diagnosis.settings import Settings
 from ves_twin.diagnosis.signature_library import build_bank
 
@@ -39,6 +40,15 @@ SHORTLIST = 16
 """Further causes that are simulated anew at a fit: all of a small library, a tenth of VES II's,
 where what the nominal bank puts behind sixteen others does not come first at the fit."""
 
+TOGETHER = 2
+"""Causes that are looked for together here."""
+
+HOPE = 0.5
+"""Share of what is there that a cause, or a pair by the screen, must take to be gone on with."""
+
+WORSE_START = 2.0
+"""Times the chi^2 of a fit from elsewhere from which one that has ended is not gone on with."""
+
 PAIRS = 6
 """Pairs of causes that are fitted with the full forward."""
 
@@ -59,6 +69,7 @@ class Explanation:
         before, after: cells without and with it.
         alone: fits of single causes, where only two together are adequate.
         hopeless: fits that were given up, under the first whitening.
+        far: whether no cause takes HOPE of what is there, nor two of them by the screen.
     """
 
     evidence: Evidence
@@ -73,6 +84,7 @@ class Explanation:
     after: tuple[Cell, ...]
     alone: tuple[Fit, ...] = ()
     hopeless: tuple[Fit, ...] = ()
+    far: bool = False
 
     @property
     def best(self) -> Fit:
@@ -111,7 +123,7 @@ def explain(
     """
     desk = FitContext(first, thresholds, settings, progress)
     single = _singles(desk)
-    if single is None or single.adequate or not pairs:
+    if single is None or single.adequate or single.far or not pairs:
         return single
     return _pairs(desk, single) or single
 
@@ -126,17 +138,23 @@ def _singles(desk: FitContext) -> Explanation | None:
         return None
     reach = suspects[0].score - max(FAR * suspects[0].score, CLOSE)
     near = [suspect for n, suspect in enumerate(suspects) if n < 2 or suspect.score >= reach]
-    found, fits = _tried(desk, near, [])
-    if not found.adequate and len(near) < len(suspects):
-        found, fits = _tried(desk, suspects[len(near) :], fits)
+    rest, fits = suspects[len(near) :], _tried(desk, near)
+    if rest and _far(desk, fits):
+        fits, rest = [*fits, *_tried(desk, rest)], []
+    if _far(desk, fits):
+        found = replace(judge(desk, fits, far=True), far=True)
+    else:
+        fits = _settled(desk.first.evidence, fits, desk)
+        found = judge(desk, fits)
+        if not found.adequate and rest:
+            fits = _settled(desk.first.evidence, [*fits, *_tried(desk, rest)], desk)
+            found = judge(desk, fits)
     judged = {fit.causes for fit in found.fits}
     return replace(found, hopeless=tuple(fit for fit in fits if fit.causes not in judged))
 
 
-def _tried(
-    desk: FitContext, suspects: list[Candidate], others: list[Fit]
-) -> tuple[Explanation, list[Fit]]:
-    """Suspects fitted and judged beside what was fitted before; every fit that was made."""
+def _tried(desk: FitContext, suspects: list[Candidate]) -> list[Fit]:
+    """Suspects fitted roughly, each from the sizes that it may have."""
     first = desk.first
     start = _start(first)
     jobs, owner = [], []
@@ -146,12 +164,26 @@ def _tried(
             jobs.append(_job(first.evidence, (hypothesis,), [sizes], start))
             owner.append(n)
     tried = _refined(jobs, desk, "fitting single causes")
-    fits = [
+    return [
         min((f for f, o in zip(tried, owner, strict=True) if o == n), key=lambda fit: fit.chi2)
         for n in sorted(set(owner))
     ]
-    settled = _settled(first.evidence, [*others, *fits], desk)
-    return judge(desk, settled), settled
+
+
+def _far(desk: FitContext, fits: list[Fit]) -> bool:
+    """Whether what causes take is so little that neither new columns nor a second one would do.
+
+    With more than two causes asked for, building up goes on from any of them.
+    """
+    first, best = desk.first, min(fits, key=lambda fit: fit.chi2)
+    if first.commissioning is None or desk.settings.causes > TOGETHER:
+        return False
+    noise = len(best.residual)
+    there = first.commissioning.chi2 - noise
+    if best.chi2 - noise < (1.0 - HOPE) * there or best.chi2 < RIVAL_RATIO * noise:
+        return False
+    power = float(first.z @ first.left)
+    return all(one.score < HOPE * power for one, _ in first.screen.pairs(first.z, 1))
 
 
 @dataclass(frozen=True)
@@ -163,6 +195,7 @@ class _Job:
     shift: FloatArray
     local: Linearisation
     step_share: float
+    enough: float = RELATIVE_CONVERGENCE
 
     @staticmethod
     def again(evidence: Evidence, fit: Fit, local: Linearisation | None = None) -> _Job:
@@ -171,7 +204,8 @@ class _Job:
 
     @staticmethod
     def run(job: _Job) -> Fit:
-        return refine(job.evidence, job.causes, job.shift, job.local, step_share=job.step_share)
+        at = (job.shift, job.local, 0, job.step_share)
+        return refine(job.evidence, job.causes, *at, enough=job.enough)
 
 
 def _job(
@@ -180,11 +214,11 @@ def _job(
     sizes: list[FloatArray],
     start: _Start,
 ) -> _Job:
-    """From a point and the columns there, with the causes at given sizes."""
+    """From a point and the columns there, with the causes at given sizes; roughly, at first."""
     runs, shift = evidence.runs, start.shift
     for cause, size in zip(causes, sizes, strict=True):
         shift = runs.depart(shift, runs.indices(cause), size)
-    return _Job(evidence, causes, shift, start.local, start.step_share)
+    return _Job(evidence, causes, shift, start.local, start.step_share, ROUGH)
 
 
 def _refined(jobs: list[_Job], desk: FitContext, what: str) -> list[Fit]:
@@ -236,7 +270,12 @@ def _again(evidence: Evidence, fit: Fit, rounds: int) -> Fit:
 
 
 def _starts(first: Assessment, suspect: Candidate) -> list[FloatArray]:
-    """The screen's scaled size, and the unscaled size of the bank nearest to the record."""
+    """The screen's scaled size, and the unscaled size of the bank nearest to the record.
+
+    One is enough of a cause that is linear: any size leads to the same.
+    """
+    if first.screen.bank.hypotheses[suspect.hypothesis].linear:
+        return [suspect.sizes]
     rows = first.screen.bank.entries(suspect.hypothesis)
     match = first.screen.match(first.z)[rows]
     nearest = rows[np.argmax(2.0 * match - first.screen.power[rows])]
@@ -245,8 +284,15 @@ def _starts(first: Assessment, suspect: Candidate) -> list[FloatArray]:
     return [suspect.sizes, other] if apart else [suspect.sizes]
 
 
-def judge(desk: FitContext, fits: list[Fit]) -> Explanation:
-    """Whiten by what the best fit leaves, fit again, weigh the rivals, test what is left."""
+def judge(desk: FitContext, fits: list[Fit], far: bool = False) -> Explanation:
+    """Whiten by what the best fit leaves, fit again, weigh the rivals, test what is left.
+
+    Args:
+        desk: the record before any cause.
+        fits: under the first whitening.
+        far: whether all of them are so far off that they are weighed roughly, and no further
+            cause is looked for beside the best.
+    """
     first, settings = desk.first, desk.settings
     runs = first.evidence.runs
     leader = min(fits, key=lambda fit: fit.chi2)
@@ -257,6 +303,8 @@ def judge(desk: FitContext, fits: list[Fit]) -> Explanation:
     commissioning = _commissioning(desk, evidence, leader)
     near = RIVAL_RATIO * leader.chi2
     jobs = [_Job.again(evidence, fit) for fit in fits if fit.chi2 < near]
+    if far:
+        jobs = [replace(job, enough=ROUGH) for job in jobs]
     ranked = _refined(jobs, desk, "weighing rivals")
     ranked.sort(key=lambda fit: fit.chi2)
     best = ranked[0]
@@ -266,18 +314,19 @@ def judge(desk: FitContext, fits: list[Fit]) -> Explanation:
     after = cells(own, chosen[0].residual)
     score = misfit(after, before, settings.model_error)
     beside = allowance + first.allowance
-    second = _second(desk, evidence, chosen[0], beside)
+    second = None if far else _second(desk, evidence, chosen[0], beside)
     limit = desk.thresholds.effect + beside
     fall = commissioning.chi2 - chosen[0].chi2
     strained = chosen[0].pull > pull_limit(first.screen.bank, settings.alpha)
     enough = fall > LEAST * desk.thresholds.effect and not strained
+    last = second is not None and second < limit
     return Explanation(
         evidence=evidence,
         commissioning=commissioning,
         fits=tuple(ranked),
         chosen=tuple(chosen),
         weights=tuple(weights),
-        adequate=score < desk.thresholds.misfit and second < limit and enough,
+        adequate=score < desk.thresholds.misfit and last and enough,
         score=score,
         second=second,
         before=tuple(before),
@@ -293,9 +342,13 @@ def _commissioning(desk: FitContext, evidence: Evidence, leader: Fit) -> Fit:
     """
     first, runs = desk.first, evidence.runs
     shift, start = np.where(runs.sd > 0.0, leader.shift, 0.0), _start(first)
-    beside = _Job(evidence, (), shift, leader.local, leader.step_share)
-    alone = _Job(evidence, (), start.shift, start.local, start.step_share)
-    best = min(_refined([beside, alone], desk, "commissioning errors alone"), key=lambda f: f.chi2)
+    at = (shift, leader.local, leader.step_share, ROUGH)
+    best = _refined([_Job(evidence, (), *at)], desk, "commissioning errors alone")[0]
+    last = first.commissioning
+    if last is None or last.chi2 < WORSE_START * best.chi2:
+        at = (start.shift, start.local, start.step_share, ROUGH)
+        alone = _refined([_Job(evidence, (), *at)], desk, "commissioning errors alone")[0]
+        best = min(best, alone, key=lambda fit: fit.chi2)
     if best.chi2 - leader.chi2 > CLEAR * desk.thresholds.effect:
         return best
     return _again(evidence, best, desk.settings.rounds)

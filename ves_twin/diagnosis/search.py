@@ -101,9 +101,10 @@ class Search:
         local: Linearisation,
         farthest: float = FARTHEST,
         enough: float = RELATIVE_CONVERGENCE,
+        steps: int = ITERATIONS,
     ) -> None:
         runs = evidence.runs
-        self.enough = enough
+        self.enough, self.steps = enough, steps
         self.evidence, self.runs, self.free, self.local = evidence, runs, free, local
         self.kept = np.flatnonzero(~np.isin(runs.nuisances, free))
         self.nuisances = runs.nuisances[self.kept]
@@ -193,7 +194,7 @@ class Search:
 
     def descend(self, point: Point, jacobian: FloatArray) -> tuple[Point, FloatArray]:
         """From a point with its Jacobian down to the best one."""
-        for _ in range(ITERATIONS):
+        for _ in range(self.steps):
             found = self._step(point, jacobian)
             fall = point.chi2 - found.chi2
             point = found
