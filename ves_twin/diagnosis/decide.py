@@ -17,9 +17,12 @@ from ves_twin.diagnosis.explain import Explanation, FitContext, explain
 from ves_twin.diagnosis.forecast import forecast
 from ves_twin.diagnosis.forward import Forward
 from ves_twin.diagnosis.gain import Gain, held_out_gain
+from ves_twin.diagnosis.linearise import Linearisation, linearise
 from ves_twin.diagnosis.preprocess import Dataset, preprocess
 from ves_twin.diagnosis.refine import ROUGH, Fit, refine
+from ves_twin.diagnosis.runs import Runs
 from ves_twin.diagnosis.settings import Settings
+from ves_twin.diagnosis.signature_library import SignatureLibrary, build_bank, cached_bank
 from ves_twin.diagnosis.verdict import Kind
 from ves_twin.diagnosis.whitening import Whitening, whitening_of
 
@@ -54,11 +57,19 @@ class Conclusion:
 
 @dataclass(frozen=True)
 class HeldOut:
-    """Held-out recordings on the grid, and what a fit is worth there."""
+    """Held-out recordings on the grid, and what a fit is worth there.
+
+    Attributes:
+        seen: the recordings.
+        whitening: their noise.
+        settings: how sure.
+        base: their columns where nothing departs; None where none are kept.
+    """
 
     seen: Dataset
     whitening: Whitening
     settings: Settings
+    base: Linearisation | None = None
 
     @staticmethod
     def of(
@@ -70,7 +81,8 @@ class HeldOut:
     ) -> HeldOut:
         """Put them on the grid."""
         seen = preprocess(forward, recordings, workers, settings.rate)
-        return HeldOut(seen, whitening_of(seen.runs, standstill), settings)
+        base = _kept_columns(seen.runs, settings) if settings.sparse and settings.cache else None
+        return HeldOut(seen, whitening_of(seen.runs, standstill), settings, base)
 
     def gain(self, before: Fit, after: Fit) -> Gain:
         """Of one fit over another."""
@@ -82,6 +94,7 @@ class HeldOut:
             after,
             self.settings.confidence,
             self.settings.seed,
+            self.base,
         )
 
     def gains(self, found: Explanation, limit: float, least: float) -> list[Gain]:
@@ -105,6 +118,19 @@ class HeldOut:
             return [first]
         rivals = [fit for fit in found.fits if fit is not found.best]
         return [first, *(self.gain(before, fit) for fit in rivals)]
+
+
+def _kept_columns(runs: Runs, settings: Settings) -> Linearisation:
+    """Columns of held-out recordings where nothing departs, for all rigs that they are played on.
+
+    Raises:
+        FileAccessError: the folder of banks cannot be written.
+    """
+
+    def build() -> SignatureLibrary:
+        return build_bank(runs, hypotheses=(), base=linearise(runs, runs.origin))
+
+    return cached_bank(runs, settings.cache, build, "columns").base
 
 
 def decide(

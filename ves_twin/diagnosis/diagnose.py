@@ -219,7 +219,7 @@ def _bank(seen: Dataset, settings: Settings, progress: Progress) -> SignatureLib
         check_likeness(seen, seen.runs.one(seen.runs.origin))  # before minutes of simulation
         return build_bank(seen.runs, progress=progress, sparse=settings.sparse)
 
-    bank = cached_bank(seen.runs, settings.cache, build, settings.sparse)
+    bank = cached_bank(seen.runs, settings.cache, build, settings.bank)
     check_likeness(seen, bank.base.prediction)
     return bank
 

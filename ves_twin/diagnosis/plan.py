@@ -124,7 +124,7 @@ def _plan(
     def build() -> SignatureLibrary:
         return build_bank(runs, progress=progress, sparse=chosen.sparse)
 
-    whole = cached_bank(runs, chosen.cache, build, chosen.sparse)
+    whole = cached_bank(runs, chosen.cache, build, chosen.bank)
     part = whole if length is None else of_time(whole, length)
     bank = of_channels(part, columns)
     whitening = whitening_declared(bank.base.runs)

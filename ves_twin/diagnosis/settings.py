@@ -45,3 +45,8 @@ class Settings:
     causes: int = 2
     rate: float = RATE
     sparse: bool = False
+
+    @property
+    def bank(self) -> str:
+        """Sort of bank, where it is not the full one."""
+        return "sparse" if self.sparse else ""

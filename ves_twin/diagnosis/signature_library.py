@@ -265,7 +265,7 @@ def _ladder(hypothesis: Hypothesis, sd: float) -> list[float]:
 
 
 def cached_bank(
-    runs: Runs, folder: Path | None, build: Callable[[], SignatureLibrary], sparse: bool = False
+    runs: Runs, folder: Path | None, build: Callable[[], SignatureLibrary], sort: str = ""
 ) -> SignatureLibrary:
     """The bank of a plant and its programmes from a file, built and written where none holds.
 
@@ -273,14 +273,14 @@ def cached_bank(
         runs: of which plant and programmes.
         folder: of the file; none is kept if None.
         build: makes it.
-        sparse: whether it makes a sparse one.
+        sort: of bank, where it is not the full one.
 
     Raises:
         FileAccessError: the folder cannot be written.
     """
     if folder is None:
         return build()
-    path = folder / f"bank-{bank_key(runs, b'sparse' if sparse else b'')}.npz"
+    path = folder / f"bank-{bank_key(runs, sort.encode())}.npz"
     kept = _read(path, runs)
     if kept is not None and still_predicts(runs, kept.base.prediction):
         return kept
