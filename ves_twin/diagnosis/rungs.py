@@ -14,10 +14,10 @@ def rungs(hypothesis: Hypothesis, crowd: int) -> tuple[FloatArray, FloatArray]:
 
     What is linear is simulated once for each parameter, and scaled and added. Else a size that is
     not simulated is the nearest one of its sign, scaled: good enough to rank causes, since a fit
-    simulates every size that it tries. Simulated are the smallest, the middle and the largest; the
-    middle alone where many targets have the same kind of cause. Of 245 sizes of the causes of VES
-    II the middle alone ranks 242 first, and all but the two of signals later than their own cycle,
-    whose kinds have one target.
+    simulates every size that it tries. Simulated are the second and the largest, or the middle
+    alone where many targets have the same kind of cause. (Of 245 sizes of causes of VES II the
+    middle alone ranks 242 first; it loses signals that are later than their own cycle, whose kinds
+    have one target.)
 
     Args:
         hypothesis: the cause.
@@ -37,7 +37,7 @@ def rungs(hypothesis: Hypothesis, crowd: int) -> tuple[FloatArray, FloatArray]:
     for sign in hypothesis.signs:
         side = np.flatnonzero(every[:, 0] * sign > 0)
         side = side[np.argsort(np.abs(every[side, 0]))]
-        ends = {len(side) // 2} if crowd >= MANY else {0, len(side) // 2, len(side) - 1}
+        ends = {len(side) // 2} if crowd >= MANY else {min(1, len(side) - 1), len(side) - 1}
         picked += [int(side[n]) for n in sorted(ends)]
     asked = every[picked]
     with np.errstate(invalid="ignore"):

@@ -124,8 +124,8 @@ class RigForward:
     ) -> FloatArray:
         """Channels (n, channels) that a rig with these values measures, without noise.
 
-        Gain and cross-talk of the sensor are laid over a run without them, which is kept: most
-        commissioning tolerances are of that kind, and then cost no run of their own.
+        Gain, cross-talk and mounting of the sensor are laid over a run without them, which is kept:
+        a third of the commissioning tolerances are of that kind, and cost no run of their own.
         """
         load = load_in(programme)
         rig = hang_weight(self._smooth, load) if load else self._smooth
