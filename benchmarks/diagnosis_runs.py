@@ -4,15 +4,16 @@
     python benchmarks/diagnosis_runs.py --cases "in order" "one cause" --cache runs/banks
 
 10 s of `identify_fast` in `fast`, pressure form, recorded as the blind generator does it, with a
-held-out recording. A run is one replay of a rig's mechanics; what gain, cross-talk and offsets of
-the sensor make of a replay that is kept is none. The first case pays for the bank.
+held-out recording. A run is one replay of a rig's mechanics; what gain, cross-talk, mounting and
+offsets of the sensor make of a replay that is kept is none. The first case pays for the bank, the
+first that is not in order for the columns of the held-out programme.
 """
 
 from __future__ import annotations
 
 import argparse
+import inspect
 import resource
-import sys
 import tempfile
 from collections import Counter
 from collections.abc import Mapping
@@ -41,6 +42,7 @@ CASES = {
 
 STAGES = {
     "_bank": "bank",
+    "_kept_columns": "held-out columns",
     "assess": "commissioning errors",
     "_singles": "single causes",
     "_settled": "rivals by the leader's columns",
@@ -52,6 +54,9 @@ STAGES = {
     "disagreement": "each recording alone",
 }
 """Function of the diagnosis -> stage; of several at work the innermost says."""
+
+KEPT = ("bank", "held-out columns")
+"""Stages whose runs are made once for a programme."""
 
 PARTS = {
     "build_bank": "signatures",
@@ -75,7 +80,7 @@ class Counted:
         ves2_forward.predict = self._counting  # type: ignore[assignment]
 
     def _counting(self, *given: object) -> object:
-        self.runs[_place(sys._getframe(1))] += 1
+        self.runs[_place(inspect.currentframe())] += 1
         return self._replay(*given)  # type: ignore[arg-type]
 
     def taken(self) -> Counter[tuple[str, str]]:
@@ -88,7 +93,7 @@ def _place(frame: FrameType | None) -> tuple[str, str]:
     stage, part = "", ""
     while frame is not None:
         name = frame.f_code.co_name
-        if "diagnosis" in frame.f_code.co_filename:
+        if "ves_twin/diagnosis" in Path(frame.f_code.co_filename).as_posix():
             stage = stage or STAGES.get(name, "")
             # columns of a second linearisation are what it is made for
             part = PARTS[name] if name == "with_bends" else part or PARTS.get(name, "")
