@@ -1,4 +1,4 @@
-"""The picture of the README: the rig in the beam scenario, and its motion against zero gravity.
+"""Pictures of the pages: the rig in the beam scenario, and the answer of a diagnosis.
 
 Run by `make picture`; needs an OpenGL that MuJoCo can use off screen (MUJOCO_GL=egl or osmesa).
 """
@@ -13,9 +13,20 @@ import mujoco
 import numpy as np
 
 import ves_twin as vt
+from ves_twin.machines.diagnose import verdict_on
+from ves_twin.machines.mjcf.machine import Rig
+from ves_twin.report.colours import MEASURED, REFERENCE
+from ves_twin.report.diagnosis.pictures import draw_answer
+from ves_twin.report.diagnosis.words import fitted_word
+from ves_twin.report.picture import save_picture
+from ves_twin.suites.machine import BlindRig
+from ves_twin.suites.mjcf import BlindMjcf
 
 mpl.use("agg")
 import matplotlib.pyplot as plt
+
+FAULT = {"coulomb_friction@joint:level": 0.05}
+"""What the picture of a diagnosis hides: dry friction of the joint [N m]."""
 
 MOMENTS = (0.0, 1.5, 2.5)
 """Times of the three views [s]: before, during and after the arm's half turn."""
@@ -37,8 +48,20 @@ def views(width: int, height: int) -> list[np.ndarray]:
     return found
 
 
+def answer(path: Path) -> None:
+    """Draw a pendulum with dry friction that its model lacks, and the diagnosis of it."""
+    bench = BlindMjcf(Rig.load("pendulum"))
+    rng = np.random.default_rng(7)
+    rig = BlindRig(bench.commissioned(rng) | FAULT)
+    verdict = verdict_on([bench.record(rig, "train", rng)], "pendulum")
+    if verdict.exhibit is None:
+        raise SystemExit("the diagnosis has no traces")
+    save_picture(draw_answer(verdict.exhibit, fitted_word(verdict)), path, 150)
+
+
 def main(path: Path) -> None:
-    """Draw the picture into a file."""
+    """Draw the rig into a file, and an answer beside it."""
+    answer(path.with_name("answer.png"))
     run = vt.simulate(vt.Scenario.load("beam_horizontal_truth"))
     figure = plt.figure(figsize=(12.0, 6.4), layout="constrained")
     top, bottom = figure.subfigures(2, 1, height_ratios=(1.25, 1.0))
@@ -49,10 +72,18 @@ def main(path: Path) -> None:
     labels = (("Y [mm]", 1), ("rotation about Z [mrad]", 5))
     for axes, (label, column) in zip(bottom.subplots(1, 2), labels, strict=True):
         axes.plot(
-            run.time, 1e3 * run["reference.pose"][:, column], "k", lw=1.0, label="zero gravity"
+            run.time,
+            1e3 * run["reference.pose"][:, column],
+            color=REFERENCE,
+            lw=2.4,
+            label="zero gravity",
         )
         axes.plot(
-            run.time, 1e3 * run["truth.pose"][:, column], "C0", lw=1.2, label="emulated by the rig"
+            run.time,
+            1e3 * run["truth.pose"][:, column],
+            color=MEASURED,
+            lw=1.2,
+            label="emulated by the rig",
         )
         axes.set_xlabel("time [s]")
         axes.set_ylabel(label)

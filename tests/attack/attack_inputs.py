@@ -27,6 +27,8 @@ from dataclasses import asdict, dataclass
 from multiprocessing.connection import Connection
 from pathlib import Path
 
+from ves_twin.core.errors import VesTwinError, VesTwinWarning
+
 sys.path.insert(0, str(Path(__file__).resolve().parent))
 
 SECONDS = 60.0
@@ -174,6 +176,7 @@ def _one(name: str, seed: int, path: Path, use: Callable[[Path], object]) -> Out
     begin, outcome, fault = time.monotonic(), "read", ""
     with warnings.catch_warnings(record=True) as noted:
         warnings.simplefilter("always")
+        warnings.simplefilter("ignore", VesTwinWarning)  # a line of our own for the user
         try:
             use(path)
         except BaseException as error:
@@ -202,8 +205,6 @@ def _one(name: str, seed: int, path: Path, use: Callable[[Path], object]) -> Out
 
 
 def _is_refusal(error: BaseException) -> bool:
-    from ves_twin.core.errors import VesTwinError
-
     return isinstance(error, VesTwinError)
 
 

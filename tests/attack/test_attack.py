@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 from attack_inputs import attack
 
-from ves_twin.core.errors import InvalidInputError
+from ves_twin.core.errors import InvalidInputError, VesTwinWarning
 
 
 def read(path):
@@ -42,6 +42,10 @@ def warns(path):
     warnings.warn("overflow", RuntimeWarning, stacklevel=1)
 
 
+def tells(path):
+    warnings.warn("rows after 1 s are left out", VesTwinWarning, stacklevel=1)
+
+
 def warns_and_refuses(path):
     warns(path)
     refused(path)
@@ -69,6 +73,7 @@ def fills(path):
         (hangs, "hung", "no answer"),
         (dies, "died", "code 7"),
         (warns, "read", "warns: RuntimeWarning overflow"),
+        (tells, "read", ""),
         (warns_and_refuses, "refused", ""),
         (prints, "read", "on stderr: Exception ignored"),
         (leaves, "read", "left ['core']"),

@@ -40,13 +40,31 @@ def result(project: Path, cache: Path) -> str:
     return done.stdout.strip()
 
 
+def words(project: Path, cache: Path) -> str:
+    """What is said before a compilation; nothing where the cache has the loop."""
+    environment = {**os.environ, "PYTHONPATH": str(project), "XDG_CACHE_HOME": str(cache)}
+    code = "from ves_twin.core.compiled import say_that_it_compiles as s; s(); s()"
+    done = subprocess.run(
+        [sys.executable, "-c", code],
+        cwd=project, env=environment, capture_output=True, text=True, check=True,
+    )  # fmt: skip
+    assert done.stderr.count("\n") <= 1
+    return done.stderr
+
+
+def test_a_compilation_that_takes_a_minute_is_announced_once(tmp_path):
+    assert "compiling" in words(PACKAGE.parent, tmp_path / "cache")
+
+
 @pytest.mark.nightly
 @pytest.mark.timeout(900)  # three compilations from nothing: a minute alone
 def test_fresh_and_cached_compile_agree_and_an_edited_helper_is_compiled_anew(tmp_path):
     project = copy_of_the_project(tmp_path / "project")
     cache = tmp_path / "cache"
+    assert words(project, cache)
     fresh = result(project, cache)
     assert result(project, cache) == fresh
+    assert not words(project, cache)
     helper = project / "ves_twin" / "plant" / "physics" / "valve.py"
     text = helper.read_text()
     assert "s.decay[i] = np.exp(-step / p.lag[i])" in text

@@ -36,6 +36,17 @@ def test_a_clock_with_gaps_repeats_and_steps_back_is_told(tmp_path):
     assert clock.longest[0].start == pytest.approx(0.499, abs=1e-9)
 
 
+def test_holes_of_a_clock_are_counted_without_a_warning(tmp_path):
+    """Infinities and a NaN that signals, next to one another, as damaged files have them."""
+    time = np.arange(400.0) * 1e-3
+    time[[7, 8, 9, 200]] = np.inf, np.inf, -np.inf, np.nan
+    time[201] = np.array([0x7FF0000000000001], np.uint64).view(float)[0]
+    np.savez(tmp_path / "a.npz", t=time, x=np.sin(np.arange(400.0)))
+    (table,) = inspect_log(open_log(tmp_path / "a.npz")).tables
+    assert (table.clock.missing, table.clock.rows) == (5, 395)
+    assert table.clock.rate == pytest.approx(1000.0, rel=1e-6)
+
+
 def test_pieces_do_not_change_what_is_told(tmp_path, monkeypatch):
     from ves_twin.data import csv_log
 

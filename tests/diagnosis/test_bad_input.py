@@ -15,8 +15,9 @@ from ves_twin.diagnosis.settings import Settings
 from ves_twin.diagnosis.signature_library import build_bank
 from ves_twin.diagnosis.slices import of_channels, of_recording, of_time
 from ves_twin.diagnosis.verdict import Kind
+from ves_twin.report.diagnosis.answer import headline
 from ves_twin.report.diagnosis.limits import limit_sentences
-from ves_twin.report.diagnosis.words import alone_sentences, headline
+from ves_twin.report.diagnosis.words import alone_sentences
 
 FRICTION = {"friction.size": 0.03}
 

@@ -14,7 +14,7 @@ from ves_twin.diagnosis.forward import Excitation, Hypothesis
 from ves_twin.diagnosis.runs import Runs
 from ves_twin.diagnosis.verdict import Kind
 from ves_twin.diagnosis.whitening import whitening_declared
-from ves_twin.report.diagnosis.words import basis_sentences
+from ves_twin.report.diagnosis.basis import basis_sentences
 
 PLANT = Toy().without("ripple")
 HIDDEN = {"friction.size": 0.3, "drift.size": 0.4, "lag.size": 0.3}

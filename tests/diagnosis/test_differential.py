@@ -9,7 +9,8 @@ from toy import Toy, record
 from ves_twin.diagnosis.diagnose import diagnose
 from ves_twin.diagnosis.settings import Settings
 from ves_twin.diagnosis.verdict import Kind
-from ves_twin.report.diagnosis.words import basis_sentences, headline
+from ves_twin.report.diagnosis.answer import headline
+from ves_twin.report.diagnosis.basis import basis_sentences
 
 SETTINGS = Settings(nulls=40, simulated_nulls=False)
 USUAL = 0.03

@@ -13,6 +13,7 @@ from ves_twin.core.errors import InvalidInputError, UnknownNameError
 from ves_twin.diagnosis.aliases import _end
 from ves_twin.diagnosis.diagnose import diagnose
 from ves_twin.diagnosis.forward import Excitation, Hypothesis
+from ves_twin.diagnosis.null import cached_thresholds
 from ves_twin.diagnosis.plan import plan_recording
 from ves_twin.diagnosis.settings import Settings
 from ves_twin.diagnosis.verdict import Kind
@@ -51,6 +52,31 @@ def test_a_plan_finds_what_the_verdict_of_its_recording_says_it_found(settings):
     gain = next(p for p in plan.prospects if p.effect == "gain")
     assert gain.sd == 0.02
     assert gain.firm == pytest.approx(plan.naming_limit * 0.02)
+
+
+def test_what_commissioning_errors_may_leave_counts_in_the_threshold_and_in_every_size(
+    settings, monkeypatch
+):
+    """A score of 25 stood once above a threshold of 19 beside the word *nothing*."""
+    toy = Toy()
+
+    def told():
+        seen = diagnose(toy, [record(np.random.default_rng(1))], settings=settings)
+        return plan_recording(toy, programme(), settings=settings), seen
+
+    plan, verdict = told()
+
+    def bent(*given):
+        return replace(cached_thresholds(*given), bends=0.1)
+
+    for module in ("diagnose", "plan"):
+        monkeypatch.setattr(f"ves_twin.diagnosis.{module}.cached_thresholds", bent)
+    other_plan, other = told()
+    assert other.statistics.effect_threshold > 1.5 * verdict.statistics.effect_threshold
+    assert other_plan.threshold > 1.5 * plan.threshold
+    for label, before in verdict.smallest_findable.items():
+        after = other.smallest_findable[label].value  # None: at no size any more
+        assert after is None or after > before.value
 
 
 def test_fewer_channels_find_less_and_a_shorter_time_too(settings):

@@ -13,7 +13,7 @@ from ves_twin.diagnosis.refusal import refusal
 from ves_twin.diagnosis.verdict import Basis, Cause, Kind, Statistics, Verdict
 from ves_twin.diagnosis.widened import LEAST, Widened, widening
 from ves_twin.machines.ves2.ves2_machine import Ves2Machine
-from ves_twin.report.diagnosis.words import headline
+from ves_twin.report.diagnosis.answer import headline
 
 BASIS = Basis("declared", "measured", "none")
 FIGURES = Statistics(1.0, 2.0, 1.0, 2.0)

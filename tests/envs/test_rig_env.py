@@ -1,15 +1,18 @@
 """Laws that every registered environment obeys."""
 
 import copy
+import subprocess
+import sys
 
 import gymnasium as gym
 import numpy as np
 import pytest
 from gymnasium.utils.env_checker import check_env
+from short_episodes import make_short
 
 from ves_twin.core.errors import InvalidInputError, UnknownNameError, VesTwinError
 from ves_twin.core.signals import SIGNALS, Role
-from ves_twin.envs import ENVIRONMENTS
+from ves_twin.envs import ENVIRONMENTS, picture
 from ves_twin.envs.true_state import true_state
 from ves_twin.plant.plant import Plant
 
@@ -32,13 +35,52 @@ def actions_of(env, count=10, seed=5):
     return np.random.default_rng(seed).uniform(-1, 1, (count, *env.action_space.shape))
 
 
-def test_the_checker_of_gymnasium_has_nothing_to_say(env):
-    check_env(env, skip_render_check=True)  # warnings are errors here
+@pytest.fixture
+def window(monkeypatch):
+    """A display; where there is none, a window's work is done off screen."""
+
+    class Hidden(picture._OffScreen):
+        def draw(self, model, data):
+            assert super().draw(model, data).std() > 10.0
+
+    if picture._headless():
+        monkeypatch.setattr(picture, "_Window", Hidden)
+
+
+@pytest.mark.usefixtures("window")
+@pytest.mark.parametrize("scaled", [False, True])
+@pytest.mark.parametrize("identity", sorted(ENVIRONMENTS))
+def test_the_checker_of_gymnasium_has_nothing_to_say_and_skips_nothing(identity, scaled):
+    env = make_short(identity, scaled=scaled).unwrapped
+    check_env(env)  # warnings are errors here
+    env.close()
 
 
 def test_it_can_be_made_through_its_module():
     for identity in ENVIRONMENTS:
         assert gym.make(f"ves_twin.envs:{identity}").spec.id == identity
+
+
+def test_no_import_is_needed_where_the_name_says_the_module():
+    code = "import gymnasium as gym; print(gym.make('ves_twin.envs:VesTwin/VibrationDamping-v0'))"
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert "VibrationDamping" in done.stdout
+
+
+def test_scaled_observations_are_shares_of_the_same_episode(env):
+    scenario = env.briefing().scenario
+    scaled = type(env)(plant=env.plant_of({}), scenario=scenario, scaled=True)
+    assert scaled.observation_space.dtype == scaled.action_space.dtype == np.float32
+    rows, _, _ = episode(env, 3, actions_of(env))
+    seen, _ = scaled.reset(seed=3)
+    for row, action in zip(rows[1:], actions_of(env), strict=True):
+        np.testing.assert_array_equal(seen, scaled.observations.shares(scaled.reading))
+        seen, *_ = scaled.step(action)
+        np.testing.assert_array_equal(scaled.reading, row)
+        assert seen in scaled.observation_space
+        half = (scaled.observations.high - scaled.observations.low) / 2.0
+        error = np.abs(scaled.observations.physical(seen) - row) / half
+        assert np.max(error) <= np.finfo(np.float32).eps
 
 
 def test_spaces_are_finite_and_actions_normalised(env):

@@ -1,14 +1,12 @@
-"""Wrappers: rigs by episode, mismatch, recordings, delay; vector environments; the dm_env face."""
+"""Wrappers: rigs by episode, mismatch, recordings, delay; vector environments."""
 
 import gymnasium as gym
 import numpy as np
 import pytest
-from dm_env import StepType, specs
 from short_episodes import make_short, short
 
 import ves_twin as vt
 from ves_twin.core.errors import InvalidInputError, UnknownNameError
-from ves_twin.envs.dm_face import DmFace
 from ves_twin.envs.wrappers import BeliefMismatch, LateObservations, RandomRigs, RecordEpisodes
 
 DAMPING, TRACKING = "VesTwin/VibrationDamping-v0", "VesTwin/PlatformTracking-v0"
@@ -113,7 +111,7 @@ def test_rerun_files_are_written_beside_them(tmp_path):
 def test_environments_in_processes_equal_single_ones_to_the_last_bit():
     scenario = short("vibration_damping")
     envs = gym.make_vec(
-        DAMPING,
+        f"ves_twin.envs:{DAMPING}",
         num_envs=2,
         vectorization_mode="async",
         vector_kwargs={"context": "spawn"},
@@ -130,25 +128,3 @@ def test_environments_in_processes_equal_single_ones_to_the_last_bit():
     found = np.array(rows)
     for k, seed in enumerate((4, 9)):
         np.testing.assert_array_equal(found[:, k], rollout(make_short(DAMPING), seed))
-
-
-def test_the_face_of_dm_env_shows_the_same_episode():
-    env = make_short(DAMPING)
-    plain = rollout(make_short(DAMPING), 4)
-    face = DmFace(env, seed=4)
-    rng = np.random.default_rng(1)
-    step = face.reset()
-    assert step.step_type is StepType.FIRST
-    rows = [np.concatenate(list(step.observation.values()))]
-    for _ in range(6):
-        step = face.step(rng.uniform(-1, 1, 3))
-        rows.append(np.concatenate(list(step.observation.values())))
-        assert step.discount == 1.0
-        for name, spec in face.observation_spec().items():
-            spec.validate(step.observation[name])
-    np.testing.assert_array_equal(rows, plain)
-    assert isinstance(face.action_spec(), specs.BoundedArray)
-    while not step.last():
-        step = face.step(np.zeros(3))
-    assert step.discount == 1.0  # the end of time is not the end of the task
-    assert face.step(np.zeros(3)).first()

@@ -206,6 +206,14 @@ def test_a_file_that_asks_for_what_cannot_be_is_refused(tmp_path, line, word):
     assert "\n" not in str(caught.value)
 
 
+def test_a_base_that_is_no_name_is_refused_in_a_short_line(tmp_path):
+    numbers = "\n".join(f"n{i} = {i}" for i in range(300))
+    (tmp_path / "rig.toml").write_text(f"schema = 1\n[base]\n{numbers}\n")
+    with pytest.raises(VesTwinError, match="expected the name or the path of a plant") as caught:
+        Plant.load(str(tmp_path / "rig.toml"))
+    assert len(str(caught.value)) < 500
+
+
 def test_shipped_plants_are_named_by_their_hydraulics_and_fidelity():
     for name in ("ves2", "ves2_fast", "ves2_pressure", "ves2_pressure_fast"):
         plant = Plant.load(name)

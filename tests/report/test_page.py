@@ -9,7 +9,7 @@ from ves_twin.core.quantity import percent, quantity
 from ves_twin.report.figure import new_figure, svg
 from ves_twin.report.html import Html, bullets, markup, paragraph, table
 from ves_twin.report.page import html_page
-from ves_twin.report.plots import Trace, draw_cells, draw_levels, draw_traces, envelope
+from ves_twin.report.plots import Trace, draw_cells, draw_levels, draw_traces, thinned
 
 
 def test_text_is_escaped_once_and_html_is_not():
@@ -74,7 +74,7 @@ def test_figures_of_a_page_share_no_id_and_load_nothing():
 def test_a_long_line_keeps_its_peaks():
     values = np.zeros(100_000)
     values[54_321] = 7.0
-    time, drawn = envelope(np.arange(100_000.0), values)
+    time, drawn = thinned(np.arange(100_000.0), values)
     assert len(drawn) <= 1400
     assert drawn.max() == 7.0
     assert np.all(np.diff(time) >= 0)

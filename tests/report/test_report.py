@@ -12,6 +12,7 @@ from ves_twin.core.errors import InvalidInputError
 from ves_twin.core.quantity import shares
 from ves_twin.diagnosis.build_up.result import Inseparable, Left, Proved, Size
 from ves_twin.diagnosis.diagnose import diagnose
+from ves_twin.diagnosis.envelope import ENVELOPE_SD
 from ves_twin.diagnosis.evidence import Evidence
 from ves_twin.diagnosis.gain import Gain
 from ves_twin.diagnosis.linearise import linearise
@@ -23,8 +24,9 @@ from ves_twin.diagnosis.rivals import Standing
 from ves_twin.diagnosis.settings import Settings
 from ves_twin.diagnosis.verdict import Kind
 from ves_twin.diagnosis.whitening import whitening_declared
+from ves_twin.report.diagnosis.answer import headline, tone
 from ves_twin.report.diagnosis.page import diagnosis_page
-from ves_twin.report.diagnosis.words import headline, spoken, tone
+from ves_twin.report.diagnosis.words import spoken
 from ves_twin.report.rerun.diagnosis import write_diagnosis_rrd
 
 HELD = programme(9)
@@ -55,10 +57,27 @@ def first_screen(page):
     return re.sub(r"<[^>]*>", " ", page[page.index("<h1>") : page.index("<section>")])
 
 
-def test_the_first_screen_has_verdict_cause_size_interval_gain_and_basis(proven):
-    top = first_screen(diagnosis_page(proven, "Diagnosis of <run>", "The plant is plant.toml."))
+def second_screen(page):
+    """The figures behind the first one."""
+    return re.sub(r"<[^>]*>", " ", page.split("<section>")[1])
+
+
+def test_the_first_screen_says_what_was_found_how_sure_what_next_and_on_what_it_rests(proven):
+    page = diagnosis_page(proven, "Diagnosis of <run>", "The plant is plant.toml.")
+    top = first_screen(page)
     assert "Diagnosis of &lt;run&gt;" in top
-    assert "Found: friction at plant. Held-out recordings confirm it." in top
+    size = proven.causes[0].parameters["friction.size"]
+    (told,) = re.findall(r"Found: friction at plant, ([\d.]+)\.", top)
+    assert float(told) == pytest.approx(size.value, abs=(size.high - size.low) / 20)
+    share = shares(proven.gain.share, proven.gain.low, proven.gain.high)[0]
+    assert f"Held-out recordings confirm it: there it takes {share} of the error" in top
+    assert "What next. Look at friction at plant on the machine" in " ".join(top.split())
+    assert "declared tolerances and held-out recordings; a recording of this machine" in top
+    assert page.index("<figure>") < page.index("<section>")  # one picture
+
+
+def test_the_figures_behind_it_have_size_interval_gain_and_basis(proven):
+    top = second_screen(diagnosis_page(proven, "Diagnosis of <run>", "The plant is plant.toml."))
     size = proven.causes[0].parameters["friction.size"]
     ends = re.search(r"([-\d.e]+) to ([-\d.e]+)", top)
     width = size.high - size.low  # of which the printed digits show a tenth
@@ -69,14 +88,14 @@ def test_the_first_screen_has_verdict_cause_size_interval_gain_and_basis(proven)
     assert any(number == pytest.approx(size.value, abs=width / 20) for number in numbers)
     assert f"{shares(proven.gain.share, proven.gain.low, proven.gain.high)[0]} of the error" in top
     assert "declared, not measured" in top
-    assert "plant.toml" in top
 
 
 def test_without_held_out_data_the_first_screen_says_so_and_is_no_surer(friction):
     top = first_screen(diagnosis_page(friction))
     assert "Best explained by friction at plant" in top
     assert "no other recording has tested it" in top
-    assert "Held-out recordings: none" in top
+    assert "a held-out recording or a recording of this machine in order was not given" in top
+    assert "Record another programme on the same rig and give it as --held-out." in top
     assert "Found" not in top
     assert tone(friction) == "open"
 
@@ -141,8 +160,9 @@ def test_an_unknown_shows_the_nearest_and_does_not_accept_it(settings):
     assert verdict.verdict is Kind.UNKNOWN
     top = first_screen(diagnosis_page(verdict))
     assert "no cause in the library explains" in top
-    assert "Nearest, and not accepted" in top
-    assert "nearest cause" in diagnosis_page(verdict)
+    page = diagnosis_page(verdict)
+    assert "Nearest, and not accepted" in second_screen(page)
+    assert "nearest cause" in top
 
 
 def test_the_traces_are_the_record_and_fit_it_better_with_the_cause(friction):
@@ -177,9 +197,12 @@ def widened(verdict, count, recordings):
         measured=noise,
         nominal=noise,
         fitted=noise,
+        tolerances=noise,
+        reach=np.ones_like(noise),
         sigma_time=time,
         before=noise,
         after=noise,
+        without=noise,
     )
     channels = tuple(replace(exhibit.channels[0], name=f"out.{c}") for c in range(count))
     cells = tuple(
@@ -204,7 +227,8 @@ def test_the_rerun_file_has_every_channel_of_the_three_models(friction, tmp_path
     }
     shown = friction.exhibit.traces[0]
     rows = np.array(found["/r1/compared/out.1"])
-    expected = [x[:, 1] for x in (shown.measured, shown.nominal, shown.fitted)]
+    models = (shown.measured, shown.nominal, shown.tolerances, shown.fitted)
+    expected = [x[:, 1] for x in models]
     assert rows == pytest.approx(np.column_stack(expected))
     assert np.array(found["/r1/sigma/out.0"])[:, 1] == pytest.approx(shown.after[:, 0])
     assert not list(tmp_path.glob("*.partial"))
@@ -225,8 +249,43 @@ def test_measured_nominal_and_extended_lie_over_each_other_in_one_view(friction,
     shown = {contents[0] for contents in views if len(contents) == 1}
     for channel in friction.exhibit.channels:
         entity = f"/r1/compared/{channel.name}"
-        assert [n.split(" ")[0] for n in names[entity]] == ["measured", "nominal", "extended"]
-        assert entity in shown  # one entity of three columns: one plot
+        words = ("measured", "model before", "tolerances fitted", "with the cause")
+        assert [n.rpartition(" [")[0] for n in names[entity]] == list(words)
+        assert entity in shown  # one entity of four columns: one plot
+
+
+@pytest.fixture(scope="module")
+def turned_up(settings):
+    """A cause that commissioning knows too, 15 of its sd off."""
+    return said(settings, {"plant.gain": 0.3})
+
+
+def test_tolerances_alone_stay_within_what_a_machine_in_order_may_have(turned_up):
+    """Fitted without a limit they would take the cause over, and the picture show no difference."""
+    assert [cause.effect for cause in turned_up.causes] == ["gain"]
+    shown = turned_up.exhibit.traces[0]
+    left = [np.nanstd(z) for z in (shown.without, shown.after)]
+    assert left[0] > 3.0 * left[1]
+
+
+def test_the_channel_drawn_first_is_the_one_that_the_cause_changes_most(friction):
+    exhibit, traces = friction.exhibit, friction.exhibit.traces[0]
+    gap = np.nansum(np.square(traces.without - traces.after), axis=0)
+    assert exhibit.telling[0] == np.argmax(gap)
+    loud = replace(traces, before=traces.before * [1.0, 1e3])  # loud, and no cause's doing
+    assert replace(exhibit, traces=(loud,)).telling[0] == exhibit.telling[0]
+    assert replace(exhibit, traces=(loud,), causes=()).telling[0] == 1
+
+
+def test_a_machine_in_order_lies_within_the_envelope_and_a_faulty_one_does_not(settings, turned_up):
+    inside = []
+    for seed in range(30, 38):
+        shown = said(settings, {}, seed=seed, spread=1.0).exhibit.traces[0]
+        inside.append(np.mean(np.abs(shown.measured - shown.nominal) < ENVELOPE_SD * shown.reach))
+    assert np.mean(inside) == pytest.approx(0.954, abs=0.05)  # two sd of a normal draw
+    shown = turned_up.exhibit.traces[0]
+    outside = np.abs(shown.measured - shown.nominal) > ENVELOPE_SD * shown.reach
+    assert np.mean(outside) > 0.5
 
 
 def test_a_verdict_from_a_file_has_no_traces_to_write(friction, tmp_path):
@@ -248,12 +307,13 @@ def test_an_ambiguous_group_is_told_as_one_of_several_with_what_to_record_next(t
     page = diagnosis_page(twins)
     top = first_screen(page)
     assert "One of these 2, and the recording cannot tell which" in top
-    assert top.count("one of 2, firm") == 2
+    figures = second_screen(page)
+    assert figures.count("one of 2, firm") == 2
     assert "look alike in these recordings" in page
     # the same shape twice: even odds, and no size at which they part
     either = ("lag at plant from late at plant", "late at plant from lag at plant")
-    assert any(f"Cannot tell {pair}: odds 1" in top for pair in either)  # a tie has no order
-    assert "100 to 1 would settle it" in top
+    assert any(f"Cannot tell {pair}: odds 1" in figures for pair in either)  # a tie has no order
+    assert "100 to 1 would settle it" in figures
     told = "Recordings like these cannot tell {} at any size up to 1."
     assert any(told.format(pair) in page for pair in either)
     pairs = {(pair.cause, pair.other, pair.beyond) for pair in twins.lookalikes}

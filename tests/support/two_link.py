@@ -19,8 +19,9 @@ MODEL = """
       <geom type="box" size="0.1 0.08 0.04" mass="3"/>
       <body name="arm">
         <joint name="swing" axis="0 1 0" damping="0.1"/>
-        <geom type="capsule" fromto="0 0 0 0.1 0 -0.4" size="0.02" mass="1"/>
+        <geom type="capsule" fromto="0 0 0 0.1 0 -0.4" size="0.02" mass="0.8"/>
         <site name="tip"/>
+        <body name="hook" pos="0.1 0 -0.4"><geom size="0.02" mass="0.2"/></body>
       </body>
     </body>
   </worldbody>
@@ -43,6 +44,10 @@ TARGETS = {
     "coulomb_asymmetry": ["rail"],
     "force_offset": ["rail", "swing"],
     "joint_spring": ["rail"],
+    "cubic_spring": ["rail"],
+    "load_friction": ["rail"],
+    "body_place": ["hook.z"],
+    "gravity_direction": ["y"],
     "rotor_inertia": ["rail"],
     "backlash": ["swing"],
     "quadratic_drag": ["rail"],

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+from math import inf
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -28,6 +29,12 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     )
     add_machine_options(parser)
     parser.add_argument("--tolerance", metavar="FILE", help="limits in SI (TOML), exit 4 if broken")
+    parser.add_argument(
+        "--envelope",
+        action="store_true",
+        help="draw where a machine in order may lie, however long that takes (default: where it"
+        " takes half a minute at most)",
+    )
     parser.add_argument("--out", metavar="DIR", help="output folder (default: runs/compare)")
     parser.add_argument("--json", action="store_true", help="the result as JSON on stdout")
 
@@ -49,7 +56,7 @@ def execute(arguments: argparse.Namespace) -> int:
 
 def _compare(arguments: argparse.Namespace) -> Comparison:
     from ves_twin.cli.progress import RunProgress
-    from ves_twin.machines.compare import compare
+    from ves_twin.machines.compare import PATIENCE, compare
     from ves_twin.machines.tolerance import Tolerance
 
     given = Given.of(arguments)
@@ -67,6 +74,7 @@ def _compare(arguments: argparse.Namespace) -> Comparison:
             against=against,
             standstill=given.standstill(arguments.standstill),
             progress=progress.share,
+            patience=inf if arguments.envelope else PATIENCE,
         )
 
 
@@ -75,8 +83,10 @@ def _text(comparison: Comparison, folder: Path) -> str:
     from ves_twin.report.comparison.words import (
         FED_IN,
         cost_sentence,
+        envelope_sentence,
         gap_sentence,
         place_sentence,
+        rests_on,
         tolerance_sentence,
         trust_sentence,
     )
@@ -88,9 +98,11 @@ def _text(comparison: Comparison, folder: Path) -> str:
         lines += [f"  {trust_sentence(r)}"]
         lines += [f"    {c.name}: {c.message}" for c in r.checks if c.grade is Grade.FAILED]
         lines += [f"  {gap_sentence(r)}"]
+        lines += [f"  {envelope_sentence(r)}"] if r.outside else []
         lines += [f"    {place_sentence(c)}" for c in r.beyond_noise[:4]]
         lines += [f"  {cost_sentence(r)}"] if r.cost else []
+        lines += [f"  Rests on: {rests_on(r)}"]
         lines += [f"  Not compared: {', '.join(r.absent)}"] if r.absent else []
-        lines += [f"  Note: {note}" for note in r.notes]
+        lines += [f"  Note: {note}" for note in r.notes[1:]]
     lines += [tolerance_sentence(comparison), f"files {folder}/{PAGE_NAME}, {JSON_NAME}"]
     return "\n".join(lines)

@@ -92,7 +92,8 @@ def _write(found: Diagnosis, folder: Path, names: str) -> None:
     for name in ("plant.toml", "plant.candidate.toml", SETPOINTS, SCENARIO):  # of an earlier run
         (folder / name).unlink(missing_ok=True)
     found.verdict.save(folder / "verdict.json")
-    page = diagnosis_page(found.verdict, f"Diagnosis of {names}", _plant_sentence(found))
+    title = f"Diagnosis of {names} by the model {found.machine.name}"
+    page = diagnosis_page(found.verdict, title, _plant_sentence(found))
     write_page(folder / "report.html", page)
     write_diagnosis_rrd(found.verdict, folder / "diagnosis.rrd")
     note = f"Extended by ves-twin diagnose: {found.verdict.words}"
@@ -126,26 +127,32 @@ def _plant_sentence(found: Diagnosis) -> str:
 
 def _text(found: Diagnosis, folder: Path) -> str:
     from ves_twin.core.quantity import shares
+    from ves_twin.report.diagnosis.answer import confidence_sentence, next_step, verdict_sentence
+    from ves_twin.report.diagnosis.basis import rests_on
     from ves_twin.report.diagnosis.proved import (
         inseparable_sentences,
         proof_sentence,
         proved_line,
     )
-    from ves_twin.report.diagnosis.words import ambiguity_sentences, headline
+    from ves_twin.report.diagnosis.words import ambiguity_sentences, interval_words, name_of
 
     verdict = found.verdict
-    basis = verdict.basis
     lines = [
-        f"verdict   {verdict.verdict.value}",
-        f"          {headline(verdict) if verdict.proved else verdict.words}",
+        f"verdict   {verdict.verdict.value}: {verdict_sentence(verdict)}",
         *(f"          {text}" for text in ambiguity_sentences(verdict)),
-        f"basis     noise {basis.noise}, tolerances {basis.tolerances},"
-        f" held-out recordings {basis.held_out}, baseline {basis.baseline}",
+        f"how sure  {confidence_sentence(verdict)}",
+        f"next      {next_step(verdict)}",
+        f"rests on  {rests_on(verdict.basis)}",
     ]
+    for cause in () if verdict.proved else verdict.causes:
+        for name, size in cause.largest.items():
+            lines.append(f"size      {name_of(cause)}: {name}, 90 % {interval_words(size)}")
     if verdict.gain is not None and verdict.gain.share is not None:
         gain = verdict.gain
         share, low, high = shares(gain.share, gain.low, gain.high)
-        lines.append(f"gain      {share} of the excess on held-out recordings ({low} to {high})")
+        lines.append(
+            f"gain      {share} of the error beyond noise on held-out recordings ({low} to {high})"
+        )
     if verdict.put_to_proof is not None:
         lines += ["", f"  {proof_sentence(verdict)}", *map(proved_line, verdict.proved)]
         lines += [f"  not separated: {text}" for text in inseparable_sentences(verdict)]

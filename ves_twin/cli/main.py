@@ -17,6 +17,7 @@ from ves_twin import __version__
 from ves_twin.cli import (
     blind,
     compare,
+    dataset,
     diagnose,
     evaluate,
     export,
@@ -55,6 +56,7 @@ COMMANDS = {
     "import": import_log,
     "export": export,
     "evaluate": evaluate,
+    "dataset": dataset,
     "view": view,
     "info": info,
 }

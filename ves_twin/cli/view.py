@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 import difflib
 import os
+import re
 import sys
 import tempfile
 import time
@@ -28,12 +29,18 @@ OF_A_RUN = {
 NOT_LIVE = ("--out", "--no-rrd", "--web")
 """Options that --live cannot heed: it writes nothing and has a window of its own."""
 
+RUNS, DIAGNOSIS = Path("runs"), "diagnosis.rrd"
+"""Where commands write unless told otherwise, and the file of a diagnosis that is looked at."""
+
 SUMMARY = "look at a recording or a scenario: rerun, or MuJoCo's viewer with --live"
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Options of the command."""
-    parser.add_argument("scenario", metavar="SCENARIO|RECORDING", help="a name, file or run folder")
+    parser.add_argument(
+        "scenario", metavar="SCENARIO|RECORDING", nargs="?", help="a name, file or run folder"
+    )
+    parser.add_argument("--last", action="store_true", help="the newest recording below runs/")
     add_run_options(parser)
     parser.add_argument("--web", action="store_true", help="serve on 127.0.0.1 for a browser")
     parser.add_argument("--live", action="store_true", help="step a scenario in MuJoCo's viewer")
@@ -41,6 +48,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def execute(arguments: argparse.Namespace) -> int:
     """Open the viewer."""
+    _choose(arguments)
     if arguments.live:
         _refuse(arguments, NOT_LIVE, "with --live")
         return _live(arguments)
@@ -57,6 +65,8 @@ def execute(arguments: argparse.Namespace) -> int:
             raise VesTwinError(f"nothing to look at: {summary.outcome.value}, {summary.advice}")
         return open_viewer(folder / "run.rrd", arguments.web)
     _refuse(arguments, tuple(OF_A_RUN), "on a recording, which has been made")
+    if (path / DIAGNOSIS).is_file():
+        path = path / DIAGNOSIS
     if path.suffix == ".rrd":
         check_rrd(path)
         return open_viewer(path, arguments.web)
@@ -66,6 +76,32 @@ def execute(arguments: argparse.Namespace) -> int:
     with tempfile.TemporaryDirectory(prefix="ves_twin-") as scratch:
         rrd = write_rrd(load_recording(path), Path(scratch) / "run.rrd")
         return open_viewer(rrd, arguments.web)
+
+
+def _choose(arguments: argparse.Namespace) -> None:
+    """What is looked at: what was asked for, or the newest; a newer one of its name is told of."""
+    if arguments.last == (arguments.scenario is not None):
+        came = f"{arguments.scenario} and --last" if arguments.last else "nothing to look at"
+        raise InvalidInputError("view", came, "a scenario, a recording, or --last")
+    if arguments.last:
+        found = _newest(_run_folders(RUNS))
+        if not found:
+            raise FileAccessError("there is no recording below runs/ yet; ves-twin run makes one")
+        arguments.scenario = found
+        print(f"showing {found}", file=sys.stderr)
+        return
+    path = Path(arguments.scenario)
+    again = [
+        n for n in _run_folders(path.parent) if re.fullmatch(rf"{re.escape(str(path))}-\d+", n)
+    ]
+    later = _newest([str(path), *again]) if again and path.is_dir() else str(path)
+    if later != str(path):
+        print(f"{later} is newer; ves-twin view --last shows the newest", file=sys.stderr)
+
+
+def _newest(folders: Sequence[str]) -> str:
+    """That which was written last; empty if there is none."""
+    return max(folders, key=lambda name: Path(name).stat().st_mtime, default="")
 
 
 def _refuse(arguments: argparse.Namespace, options: Sequence[str], where: str) -> None:
@@ -88,17 +124,17 @@ def _check_something_is_there(path: Path) -> None:
         raise FileAccessError(f"run folder, recording or scenario {path} does not exist{hint}")
     scenarios = scenario_questions() | procedure_questions()
     if str(path) not in scenarios:
-        folders = [*_run_folders(Path()), *_run_folders(Path("runs"))]
+        folders = [*_run_folders(Path()), *_run_folders(RUNS)]
         raise UnknownNameError("scenario or run folder", str(path), [*scenarios, *folders])
 
 
 def _run_folders(folder: Path) -> list[str]:
-    """Folders in a folder that hold a recording."""
+    """Folders in a folder that hold a recording or a diagnosis."""
     from ves_twin.core.recording.stream import FILE_NAME, STREAM_NAME
 
     if not folder.is_dir():
         return []
-    names = (FILE_NAME, STREAM_NAME)
+    names = (FILE_NAME, STREAM_NAME, DIAGNOSIS)
     return [str(p) for p in folder.iterdir() if any((p / name).is_file() for name in names)]
 
 

@@ -7,6 +7,7 @@ file would silently run the old physics. Here the folder's name carries a hash o
 from __future__ import annotations
 
 import hashlib
+import sys
 from collections.abc import Callable
 from functools import lru_cache
 from pathlib import Path
@@ -51,3 +52,13 @@ def compiled(function: Function) -> Function:
         return cast("Function", numba.njit(cache=True, nogil=True, error_model="numpy")(function))
     finally:
         numba_config.CACHE_DIR = before
+
+
+@lru_cache(maxsize=1)
+def say_that_it_compiles() -> None:
+    """Say on stderr what the first run after an installation or an edit waits for.
+
+    The rig's loop is by far the longest to compile, so it stands for all of the cache.
+    """
+    if not any(compiled_folder().rglob("loop.run_ticks-*.nbi")):
+        print("compiling the inner loop, once: about a minute", file=sys.stderr, flush=True)

@@ -92,10 +92,11 @@ def _unit(column: Column, values: FloatArray) -> tuple[str, bool]:
         return column.unit, False
     if column.kind is Kind.STAMP:
         return "s", False
-    size = float(np.nanmedian(np.abs(values)))
+    told = values[np.isfinite(values)]
+    size = float(np.median(np.abs(told))) if len(told) else np.nan
     for low, high, unit in EPOCHS:
         if low <= size <= high:
             return unit, True
-    step = float(np.median(np.abs(np.diff(values))))
-    whole = bool(np.all(np.mod(values[np.isfinite(values)], 1.0) == 0.0))
+    step = float(np.median(np.abs(np.diff(told)))) if len(told) > 1 else np.nan
+    whole = bool(np.all(np.mod(told, 1.0) == 0.0))
     return ("ms", True) if whole and step >= 1.0 else ("s", True)

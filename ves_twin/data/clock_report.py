@@ -91,11 +91,9 @@ class ClockCounter:
 
     def take(self, raw: FloatArray) -> None:
         """The next rows (n,), in the file's unit."""
-        time = raw * self.scale
-        good = np.isfinite(time)
-        if not good.all():
-            self._missing += int(np.count_nonzero(~good))
-            time = time[good]
+        good = np.isfinite(raw)
+        self._missing += int(np.count_nonzero(~good))
+        time = raw[good] * self.scale
         if not len(time):
             return
         if self._rows == 0:

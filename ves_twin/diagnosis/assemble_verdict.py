@@ -56,6 +56,7 @@ class Findings:
         apart: what each recording says alone.
         widened: factor on the declared commissioning sd in this view.
         built: what building up proved.
+        before: the model without a cause, within its tolerances; None where nothing was found.
     """
 
     seen: Dataset
@@ -71,6 +72,7 @@ class Findings:
     apart: tuple[Alone, ...] = ()
     widened: float = 1.0
     built: BuildUp | None = None
+    before: Fit | None = None
 
 
 def assemble_verdict(
@@ -85,13 +87,14 @@ def assemble_verdict(
     firm = {one.label: one.firm for one in proved}
     causes = tuple(replace(c, firm=firm.get(f"{c.effect}@{c.target}", c.firm)) for c in causes)
     nearest = _causes(findings, found)[0] if found and not named else ()
-    exhibit = exhibit_of(findings.seen, first, found)
-    sizes = findable_sizes(first.screen, limits.effect)
+    exhibit = exhibit_of(findings.seen, first, found, findings.before)
+    least = first.limit(limits.effect)
+    sizes = findable_sizes(first.screen, least)
     units = {h.label: _unit(findings, h) for h in first.screen.bank.hypotheses}
     suspect = "" if found is None or named else _label(found.best)
     statistics = Statistics(
         effect=first.score,
-        effect_threshold=limits.effect,
+        effect_threshold=least,
         misfit=first.misfit,
         misfit_threshold=limits.misfit,
         misfit_after=found.score if found else None,
@@ -142,7 +145,11 @@ def _provisional(verdict: Verdict) -> Verdict:
 
 
 def _sized(built: BuildUp, causes: Sequence[Cause]) -> tuple[Proved, ...]:
-    """What is proved with its sizes; firm only where no commissioning error explains it either."""
+    """What is proved with its sizes.
+
+    Firm only where no commissioning error explains it either, and no interval holds the value that
+    the model has already: a shape that is known so little is not known by name.
+    """
     named = {f"{cause.effect}@{cause.target}": cause for cause in causes}
     found = []
     for one in built.proved:
@@ -151,7 +158,8 @@ def _sized(built: BuildUp, causes: Sequence[Cause]) -> tuple[Proved, ...]:
             name: Size(e.value, e.low, e.high, e.unit, e.nominal)
             for name, e in cause.shortened.parameters.items()
         }
-        found.append(replace(one, parameters=sizes, firm=one.firm and cause.firm))
+        known = all(not s.low <= s.nominal <= s.high for s in sizes.values())
+        found.append(replace(one, parameters=sizes, firm=one.firm and cause.firm and known))
     return tuple(found)
 
 
@@ -261,7 +269,10 @@ def _leftover(findings: Findings) -> ResidualStructure:
     found, first = findings.found, findings.first
     limit = findings.limits.misfit
     if found:
-        return describe(found.evidence, found.best.residual, found.after, limit)
-    fit = first.commissioning
-    residual = first.left if fit is None else fit.residual
-    return describe(first.evidence, residual, cells(first.evidence.whitening, residual), limit)
+        best = found.best
+        return describe(found.evidence, best.prediction, best.residual, found.after, limit)
+    fit, base = first.commissioning, first.screen.bank.base
+    predicted, left = (
+        (base.prediction, first.left) if fit is None else (fit.prediction, fit.residual)
+    )
+    return describe(first.evidence, predicted, left, cells(first.evidence.whitening, left), limit)

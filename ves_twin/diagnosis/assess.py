@@ -84,9 +84,13 @@ class Assessment:
         explained = float(self.z @ self.z - self.left @ self.left)
         return self.bends**2 * max(explained, 0.0)
 
+    def limit(self, effect: float) -> float:
+        """The score beyond which something is there, `effect` being what noise does."""
+        return effect + self.allowance
+
     def exceeds(self, effect: float, misfit: float, pull: float) -> bool:
         """Whether something is there."""
-        louder = self.score > effect + self.allowance
+        louder = self.score > self.limit(effect)
         return louder or self.misfit > misfit or self.pull > pull
 
 
@@ -128,7 +132,7 @@ def assess(
         look = replace(look, bends=bends)
         if not look.exceeds(effect, level, pull):
             break
-        if look.score <= BEYOND * (effect + look.allowance):
+        if look.score <= BEYOND * look.limit(effect):
             continue
         if steps == GLANCE:
             beside = _beside(first, look)

@@ -45,6 +45,7 @@ class Conclusion:
         forecast: gain ahead in time, of causes whose sizes belong to a stretch of it.
         built: what building up proved; None where a few causes explain the record.
         cut: whether stretches of the record itself were held out.
+        before: the best that commissioning errors a machine in order may have do without a cause.
     """
 
     found: Explanation | None
@@ -53,6 +54,7 @@ class Conclusion:
     forecast: Gain | None = None
     built: BuildUp | None = None
     cut: bool = False
+    before: Fit | None = None
 
 
 @dataclass(frozen=True)
@@ -97,22 +99,14 @@ class HeldOut:
             self.base,
         )
 
-    def gains(self, found: Explanation, limit: float, least: float) -> list[Gain]:
+    def gains(self, found: Explanation, before: Fit, least: float) -> list[Gain]:
         """Of the best explanation; of its rivals too, where that could be part of the truth.
 
         Args:
             found: the explanation.
-            limit: commissioning sd that a rig in order does not pass. The model before is tuned
-                within it: a cause that commissioning knows too would else be in that model,
-                tens of sd of it, and naming it be worth nothing.
+            before: the model without a cause, within its tolerances.
             least: share of the excess from which something unexplained leaves a part of the truth.
         """
-        before = found.commissioning
-        if before.pull > limit:
-            best = found.best  # held within the limit it is a better start than what was strained
-            start = np.where(best.local.runs.sd > 0.0, best.shift, 0.0)
-            at = (start, best.local, 0, best.step_share)
-            before = refine(found.evidence, (), *at, farthest=limit, enough=ROUGH)
         first = self.gain(before, found.best)
         if found.adequate or first.low is None or first.low <= least:
             return [first]
@@ -131,6 +125,20 @@ def _kept_columns(runs: Runs, settings: Settings) -> Linearisation:
         return build_bank(runs, hypotheses=(), base=linearise(runs, runs.origin))
 
     return cached_bank(runs, settings.cache, build, "columns").base
+
+
+def _within(found: Explanation, limit: float) -> Fit:
+    """Commissioning errors alone, none beyond a limit that a rig in order does not pass [sd].
+
+    A cause that commissioning knows too would else be in the model before, tens of sd of it, and
+    naming it be worth nothing.
+    """
+    if found.commissioning.pull <= limit:
+        return found.commissioning
+    best = found.best  # held within the limit it is a better start than what was strained
+    start = np.where(best.local.runs.sd > 0.0, best.shift, 0.0)
+    at = (start, best.local, 0, best.step_share)
+    return refine(found.evidence, (), *at, farthest=limit, enough=ROUGH)
 
 
 def decide(
@@ -153,7 +161,7 @@ def decide(
     if found is None:
         return Conclusion(None, Kind.UNKNOWN)
     if found.far:
-        return Conclusion(found, Kind.UNKNOWN)
+        return Conclusion(found, Kind.UNKNOWN, before=found.commissioning)
     built, cut = None, False
     if not found.adequate and desk.settings.causes > MANY_FROM:
         evidence = desk.first.evidence
@@ -169,11 +177,12 @@ def decide(
         held = None
     found = _probed(found)
     limit = pull_limit(desk.first.screen.bank, desk.settings.alpha)
-    gains = held.gains(found, limit, ALMOST) if held else []
+    before = _within(found, limit)
+    gains = held.gains(found, before, ALMOST) if held else []
     kind = _kind(found, gains)
     ahead = _ahead(desk, forward, recordings, found, standstill) if kind.names_causes else None
     report = built.report if built else None
-    return Conclusion(found, kind, gains[0] if gains else None, ahead, report, cut)
+    return Conclusion(found, kind, gains[0] if gains else None, ahead, report, cut, before)
 
 
 def _proved(
@@ -192,7 +201,7 @@ def _proved(
         kind = Kind.NAMED if len(found.best.causes) == 1 else Kind.SEVERAL
     gain = held.gain(built.before, found.best) if held else None
     ahead = _ahead(desk, forward, recordings, found, standstill)
-    return Conclusion(found, kind, gain, ahead, built.report, cut)
+    return Conclusion(found, kind, gain, ahead, built.report, cut, built.before)
 
 
 def _ahead(

@@ -184,6 +184,7 @@ class _View:
             built=end.built,
             gain=end.gain,
             forecast=end.forecast,
+            before=end.before,
             proposals=proposals,
             apart=apart,
         )

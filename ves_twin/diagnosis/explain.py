@@ -46,6 +46,9 @@ TOGETHER = 2
 HOPE = 0.5
 """Share of what is there that a cause, or a pair by the screen, must take to be gone on with."""
 
+SLACK = 0.1
+"""Share of chi^2 that a rough fit may still fall."""
+
 WORSE_START = 2.0
 """Times the chi^2 of a fit from elsewhere from which one that has ended is not gone on with."""
 
@@ -337,8 +340,8 @@ def judge(desk: FitContext, fits: list[Fit], far: bool = False) -> Explanation:
 def _commissioning(desk: FitContext, evidence: Evidence, leader: Fit) -> Fit:
     """The best fit without a cause, from the first look, and beside the leader.
 
-    Beside the leader: what it moves, where commissioning may have moved it too, stays. Columns are
-    computed anew only where the cause takes off little.
+    Beside the leader: what it moves, where commissioning may have moved it too, stays. Where the
+    cause takes off much, a rough fit is enough; where little, columns are computed anew.
     """
     first, runs = desk.first, evidence.runs
     shift, start = np.where(runs.sd > 0.0, leader.shift, 0.0), _start(first)
@@ -349,9 +352,11 @@ def _commissioning(desk: FitContext, evidence: Evidence, leader: Fit) -> Fit:
         at = (start.shift, start.local, start.step_share, ROUGH)
         alone = _refined([_Job(evidence, (), *at)], desk, "commissioning errors alone")[0]
         best = min(best, alone, key=lambda fit: fit.chi2)
-    if best.chi2 - leader.chi2 > CLEAR * desk.thresholds.effect:
+    clear = CLEAR * desk.thresholds.effect
+    if best.chi2 - leader.chi2 > clear + SLACK * leader.chi2:
         return best
-    return _again(evidence, best, desk.settings.rounds)
+    best = _again(evidence, best, 0)
+    return best if best.chi2 - leader.chi2 > clear else _again(evidence, best, desk.settings.rounds)
 
 
 def _second(desk: FitContext, evidence: Evidence, fit: Fit, allowance: float) -> float:

@@ -6,6 +6,8 @@ import json
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass
 
+import numpy as np
+
 from ves_twin.core.errors import InvalidInputError, UnknownNameError
 from ves_twin.core.workers import Workers
 from ves_twin.diagnosis.aliases import Lookalike, lookalikes
@@ -53,7 +55,7 @@ class Plan:
         programme: its name.
         seconds: how much of it.
         channels: columns that would be recorded.
-        threshold: chi^2 that a cause must take away.
+        threshold: chi^2 that a cause must take away, what bends of commissioning errors included.
         null: "simulated" rigs in order gave it, or "white noise" alone, which is the least it is.
         naming_limit: declared sd beyond which a departure is a fault.
         prospects: every cause.
@@ -130,7 +132,12 @@ def _plan(
     whitening = whitening_declared(bank.base.runs)
     screen = Screen(bank, whitening)
     floor = noise_floor(bank, chosen.alpha)
-    threshold = floor if quick else cached_thresholds(bank, whitening, chosen, progress).effect
+    threshold = floor
+    if not quick:
+        limits = cached_thresholds(bank, whitening, chosen, progress)
+        # as a diagnosis allows what commissioning errors explain, here what they may be expected to
+        bent = limits.bends**2 * float(np.sum(screen.metric.columns**2))
+        threshold = limits.effect + bent
     sizes = findable_sizes(screen, threshold)
     limit = naming_limit(bank, None)
     fed = bank.base.runs.programmes[0]

@@ -6,13 +6,14 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ves_twin.core.types import FloatArray, SingleArray
+from ves_twin.core.types import FloatArray, IntArray, SingleArray
 from ves_twin.diagnosis.adequacy import Cell, cells
 from ves_twin.diagnosis.assess import Assessment
+from ves_twin.diagnosis.envelope import envelope_sd
 from ves_twin.diagnosis.explain import Explanation
 from ves_twin.diagnosis.forward import Channel
 from ves_twin.diagnosis.preprocess import Dataset
-from ves_twin.diagnosis.refine import bare_residual
+from ves_twin.diagnosis.refine import Fit, bare_residual
 from ves_twin.diagnosis.whitening import Whitening
 
 
@@ -25,8 +26,12 @@ class Traces:
         time: of the rows [s] (n,).
         measured, nominal, fitted: channels in their units (n, c); nominal is the model as it is,
             fitted has commissioning errors and, where there is one, the best explanation.
+        tolerances: channels with commissioning errors fitted as far as a machine in order may have
+            them, and no cause (n, c); `fitted` where no cause is in it.
+        reach: sd of what a machine in order shows about `nominal`, of noise and tolerances (n, c).
         sigma_time: of the whitened rows [s] (m,).
-        before, after: residuals of the two models in noise sigma, whitened (m, c).
+        before, after: residuals of nominal and fitted in noise sigma, whitened (m, c).
+        without: residual of `tolerances`, likewise.
 
     NaN stands where a recording has a hole.
     """
@@ -36,9 +41,12 @@ class Traces:
     measured: SingleArray
     nominal: SingleArray
     fitted: SingleArray
+    tolerances: SingleArray
+    reach: SingleArray
     sigma_time: FloatArray
     before: FloatArray
     after: FloatArray
+    without: FloatArray
 
 
 @dataclass(frozen=True)
@@ -58,23 +66,38 @@ class ReportTraces:
     before: tuple[Cell, ...]
     after: tuple[Cell, ...]
 
+    @property
+    def telling(self) -> IntArray:
+        """Channels by how much the cause changes them beyond what tolerances can (c,).
 
-def exhibit_of(seen: Dataset, first: Assessment, found: Explanation | None) -> ReportTraces:
+        Without a cause: by what the nominal model leaves.
+        """
+        pairs = [(t.without - t.after if self.causes else t.before) for t in self.traces]
+        return np.argsort(-np.nansum(np.square(np.concatenate(pairs)), axis=0), kind="stable")
+
+
+def exhibit_of(
+    seen: Dataset, first: Assessment, found: Explanation | None, alone: Fit | None
+) -> ReportTraces:
     """What the best explanation, or commissioning errors alone, make of the recordings.
 
     Args:
         seen: the recordings.
         first: the record before any cause.
         found: its explanation; None if none was needed, or none is there.
+        alone: commissioning errors within their tolerances, without a cause; None: as fitted.
     """
     runs = seen.runs
     nominal = first.screen.bank.base.prediction
     whitening = found.evidence.whitening if found else first.evidence.whitening
-    after, bare = _left(seen, first, found)
+    after, left = _left(seen, first, found)
     before = whitening.apply(seen.measured - nominal)
-    fitted = seen.measured - bare
+    fitted = seen.measured - left
     kept = whitening.freedom > 0.0
-    shown = [np.where(kept, z, np.nan) for z in (before, after)]
+    untold = bare_residual(found.evidence, alone or found.commissioning) if found else left
+    without = whitening.apply(untold) if found else after
+    reach = envelope_sd(first.screen.bank.base)
+    shown = [np.where(kept, z, np.nan) for z in (before, after, without)]
     blocks = zip(*(whitening.blocks(z) for z in shown), strict=True)
     measured = _with_holes(seen)
     traces = tuple(
@@ -84,11 +107,14 @@ def exhibit_of(seen: Dataset, first: Assessment, found: Explanation | None) -> R
             measured=measured[rows],
             nominal=nominal[rows],
             fitted=fitted[rows],
+            tolerances=(seen.measured - untold)[rows],
+            reach=reach[rows],
             sigma_time=whitening.times()[k],
             before=there,
             after=here,
+            without=bare,
         )
-        for k, (programme, rows, (there, here)) in enumerate(
+        for k, (programme, rows, (there, here, bare)) in enumerate(
             zip(runs.programmes, runs.slices, blocks, strict=True)
         )
     )

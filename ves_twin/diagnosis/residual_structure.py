@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
-from ves_twin.core.types import FloatArray
+from ves_twin.core.types import FloatArray, SingleArray
 from ves_twin.diagnosis.adequacy import Cell
+from ves_twin.diagnosis.change_point import change_point
 from ves_twin.diagnosis.evidence import Evidence
 
 LOUDEST = 6
@@ -48,12 +49,17 @@ class ResidualStructure:
 
 
 def describe(
-    evidence: Evidence, residual: FloatArray, found: Sequence[Cell], threshold: float
+    evidence: Evidence,
+    predicted: SingleArray,
+    residual: FloatArray,
+    found: Sequence[Cell],
+    threshold: float,
 ) -> ResidualStructure:
     """The leftover of the best explanation, or of commissioning errors alone.
 
     Args:
         evidence: the record.
+        predicted: channels by that explanation (rows, c).
         residual: whitened (samples,).
         found: its cells.
         threshold: score that noise does not pass.
@@ -74,38 +80,71 @@ def describe(
         )
         for c in loud[:LOUDEST]
     ]
-    stretches = [c.low for c in loud if c.kind == "time"]
-    features = _features(evidence, residual, names) if loud else ()
-    onset = min(stretches) if stretches else None
+    features = _features(evidence, predicted, residual, names) if loud else ()
+    onset = _onset(evidence, residual, [c for c in loud if c.kind == "time"])
     square = float(np.sum(residual**2) / np.sum(evidence.whitening.freedom))
     return ResidualStructure(square, tuple(told), onset, features)
 
 
+def _onset(evidence: Evidence, residual: FloatArray, loud: Sequence[Cell]) -> float | None:
+    """Time [s] at which the loudest channel gets loud: by rows, else where a stretch begins.
+
+    A residual that is loud from the start has no change: its first stretch begins the recording.
+    """
+    if not loud:
+        return None
+    worst, whitening = loud[0], evidence.whitening
+    kept = whitening.blocks(whitening.freedom)[worst.recording][:, worst.channel] > 0.0
+    rows = whitening.blocks(residual)[worst.recording][:, worst.channel]
+    at = change_point(np.where(kept, rows, np.nan))
+    if at is None:
+        return min(cell.low for cell in loud)
+    return float(whitening.times()[worst.recording][at])
+
+
 def _features(
-    evidence: Evidence, residual: FloatArray, names: Sequence[str]
+    evidence: Evidence, predicted: SingleArray, residual: FloatArray, names: Sequence[str]
 ) -> tuple[Feature, ...]:
-    """Correlations with simple shapes of every measured channel and of time."""
-    runs, whitening = evidence.runs, evidence.whitening
-    blocks = np.concatenate(whitening.blocks(residual))
-    shapes: dict[str, FloatArray] = {"time": np.concatenate(whitening.times())}
-    rows = [
-        r
-        for k, piece in enumerate(runs.slices)
-        for r in range(piece.start + whitening.lost(k), piece.stop)
-    ]
-    for c, name in enumerate(names):
-        x = evidence.measured[rows, c].astype(float)
-        shapes[name] = x
-        shapes[f"sign({name})"] = np.sign(x)
-        shapes[f"{name}^2"] = x**2
-        shapes[f"{name} |{name}|"] = x * np.abs(x)
-        shapes[f"{name}^3"] = x**3
-    found = []
+    """Correlations with simple shapes of every channel as predicted, of its rate and of time.
+
+    Measured channels hold what is left themselves, and would go along with it.
+
+    Of the shapes of one source only the best is told: they are alike among themselves.
+    """
+    blocks = np.concatenate(evidence.whitening.blocks(residual))
+    shapes, found = list(_shapes(evidence, predicted, names)), list[Feature]()
     for c, channel in enumerate(names):
-        for shape, values in shapes.items():
+        best: dict[str, Feature] = {}
+        for source, shape, values in shapes:
             spread = float(np.std(values) * np.std(blocks[:, c]))
             if spread > 0.0:
                 cov = np.mean((values - values.mean()) * (blocks[:, c] - blocks[:, c].mean()))
-                found.append(Feature(channel, shape, float(cov / spread)))
+                one = Feature(channel, shape, float(cov / spread))
+                if source not in best or abs(one.correlation) > abs(best[source].correlation):
+                    best[source] = one
+        found += best.values()
     found.sort(key=lambda feature: -abs(feature.correlation))
     return tuple(found[:LOUDEST])
+
+
+def _shapes(
+    evidence: Evidence, predicted: SingleArray, names: Sequence[str]
+) -> Iterator[tuple[str, str, FloatArray]]:
+    """What it is made of, its name, its values on the whitened rows of all recordings."""
+    whitening = evidence.whitening
+    pieces = [(piece, whitening.lost(k)) for k, piece in enumerate(evidence.runs.slices)]
+    yield "time", "time", np.concatenate(whitening.times())
+    for c, name in enumerate(names):
+        column = [predicted[piece, c].astype(float) for piece, _ in pieces]
+        x, rate = (
+            np.concatenate([rows[lost:] for rows, (_, lost) in zip(of, pieces, strict=True)])
+            for of in (column, [np.gradient(rows) for rows in column])
+        )
+        yield name, name, x
+        yield name, f"sign({name})", np.sign(x)
+        yield name, f"{name}^2", x**2
+        yield name, f"{name} |{name}|", x * np.abs(x)
+        yield name, f"{name}^3", x**3
+        yield f"rate of {name}", f"rate of {name}", rate
+        yield f"rate of {name}", f"sign(rate of {name})", np.sign(rate)
+        yield f"rate of {name}", f"rate |rate| of {name}", rate * np.abs(rate)

@@ -1,10 +1,22 @@
 """effects: named deviations of a machine from its description, which diagnosis looks for."""
 
 from ves_twin.effects.actuators import ActuatorDeadband, ActuatorDelay, ActuatorGain
-from ves_twin.effects.bodies import BodyInertia, BodyMass, MassCentre, PayloadMass
+from ves_twin.effects.bodies import (
+    BodyInertia,
+    BodyMass,
+    BodyPlace,
+    GravityDirection,
+    MassCentre,
+    PayloadMass,
+)
 from ves_twin.effects.couplings import CouplingCoulomb, CouplingInertia, CouplingViscous
 from ves_twin.effects.effect import Effect
-from ves_twin.effects.friction import FrictionBehindGap, QuadraticDrag, StribeckFriction
+from ves_twin.effects.friction import (
+    FrictionBehindGap,
+    LoadFriction,
+    QuadraticDrag,
+    StribeckFriction,
+)
 from ves_twin.effects.hydraulics import (
     OilAir,
     PistonLeakage,
@@ -19,6 +31,7 @@ from ves_twin.effects.joints import (
     Backlash,
     CoulombAsymmetry,
     CoulombFriction,
+    CubicSpring,
     ForceOffset,
     JointSpring,
     RotorInertia,
@@ -67,6 +80,7 @@ __all__ = [
     "BaseTilt",
     "BodyInertia",
     "BodyMass",
+    "BodyPlace",
     "CommandLimit",
     "CoulombAsymmetry",
     "CoulombFriction",
@@ -74,11 +88,13 @@ __all__ = [
     "CouplingInertia",
     "CouplingViscous",
     "CrossTalk",
+    "CubicSpring",
     "Effect",
     "EncoderOffset",
     "FilterEdge",
     "ForceOffset",
     "FrictionBehindGap",
+    "GravityDirection",
     "HoseStiffness",
     "JointSpring",
     "LegBending",
@@ -86,6 +102,7 @@ __all__ = [
     "LegRateGain",
     "LengthOffset",
     "LengthScale",
+    "LoadFriction",
     "MassCentre",
     "ModelMass",
     "OilAir",

@@ -1,4 +1,4 @@
-"""Effects of a body: a point mass on it, its mass, centre of mass and inertia."""
+"""Effects of a body: a point mass, its mass, place, centre of mass, inertia; and gravity."""
 
 from __future__ import annotations
 
@@ -111,6 +111,46 @@ class MassCentre(Effect):
         centre = list(body.ipos)
         centre[axis] += self.shift
         body.ipos = centre
+
+
+@final
+@dataclass(frozen=True)
+class BodyPlace(Effect):
+    """A body, and the joint that carries it, sits elsewhere on its parent; target "tool.x".
+
+    Along a link it is the length of the link before it.
+    """
+
+    shift: float = 0.0
+
+    kind = "body_place"
+    sizes = (Size("shift", "m"),)
+    anywhere = Anywhere(
+        Element.BODY, 0.2, 2e-4, change.PLACE, axis=True, source="assumed: up to 0.2 m"
+    )
+
+
+@final
+@dataclass(frozen=True)
+class GravityDirection(Effect):
+    """The machine stands askew: gravity is turned about an axis of the world, "x" or "y"."""
+
+    angle: float = 0.0
+
+    kind = "gravity_direction"
+    sizes = (Size("angle", "rad"),)
+    # half a degree is a careless set-up, 0.2 rad a wedge
+    anywhere = Anywhere(Element.WORLD, 0.2, 5e-4, source="assumed: up to 0.2 rad")
+
+    def edit_model(self, model: mujoco.MjModel) -> None:
+        """Turn the vector of gravity."""
+        import numpy as np
+
+        turn, axis = np.array([np.cos(self.angle), np.sin(self.angle)]), "xy".index(self.target)
+        one, two = ((1, 2), (2, 0))[axis]  # a right-handed turn about the axis
+        before = model.opt.gravity.copy()
+        model.opt.gravity[one] = turn[0] * before[one] - turn[1] * before[two]
+        model.opt.gravity[two] = turn[1] * before[one] + turn[0] * before[two]
 
 
 @final

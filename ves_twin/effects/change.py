@@ -97,13 +97,14 @@ class Attribute:
 
     def entry(self, model: mujoco.MjModel, target: str) -> int | tuple[int, int]:
         """Where in the array."""
-        if self.name == "centre":
+        if self.name in ("centre", "place"):
             body, _, axis = target.rpartition(".")
             return int(model.body(body).id), "xyz".index(axis)
         if self.array.startswith("dof_"):
             return int(model.joint(target).dofadr[0])
         number = int(getattr(model, str(self.element))(target).id)
-        return (number, 0) if self.name == "gain" else number
+        column = {"gain": 0, "cubic_stiffness": 1}.get(self.name)
+        return number if column is None else (number, column)
 
 
 Change = Table | Loop | Attribute
@@ -112,6 +113,8 @@ DAMPING = Attribute(Element.JOINT, "damping", "dof_damping")
 FRICTION_LOSS = Attribute(Element.JOINT, "frictionloss", "dof_frictionloss")
 ARMATURE = Attribute(Element.JOINT, "armature", "dof_armature")
 STIFFNESS = Attribute(Element.JOINT, "stiffness", "jnt_stiffness")
+CUBIC_STIFFNESS = Attribute(Element.JOINT, "cubic_stiffness", "jnt_stiffnesspoly")
+PLACE = Attribute(Element.BODY, "place", "body_pos")
 GAIN = Attribute(Element.ACTUATOR, "gain", "actuator_gainprm")
 MASS = Attribute(Element.BODY, "mass", "body_mass")
 CENTRE = Attribute(Element.BODY, "centre", "body_ipos")

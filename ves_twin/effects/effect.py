@@ -212,6 +212,10 @@ class Effect(ABC):
         """The same, position by position from where the motion begins; it keeps the memory."""
         return lambda position: 0.0
 
+    def carry(self, load: FloatArray, speed: FloatArray, slow: float) -> FloatArray:
+        """Effort [N, N m] against a joint's motion that grows with the load (n,) it carries."""
+        return np.zeros_like(load)
+
     def edit_position(self, position: FloatArray) -> FloatArray:
         """A joint's position (n,) on the other side of what lies between drive and joint."""
         return position
@@ -248,10 +252,10 @@ class Effect(ABC):
     def setting(self) -> tuple[str, str]:
         """Element and attribute that stand for it in [[parameters]]: "tool", "centre_x"."""
         attribute = self.attribute.name if self.attribute else ""
-        if attribute != "centre":
+        if not (self.anywhere and self.anywhere.axis):
             return self.target, attribute
         name, _, axis = self.target.rpartition(".")
-        return name, f"centre_{axis}"
+        return name, f"{attribute}_{axis}"
 
     @property
     def column(self) -> int:

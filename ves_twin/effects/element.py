@@ -13,3 +13,4 @@ class Element(StrEnum):
     ACTUATOR = "actuator"
     SIGNAL = "signal"
     TENDON = "tendon"
+    WORLD = "world"

@@ -81,6 +81,29 @@ class StribeckFriction(Effect):
 
 @final
 @dataclass(frozen=True)
+class LoadFriction(Effect):
+    """Dry friction that grows with the load: share * |load| * sign(v), as in gears and seals.
+
+    The load is the effort that the joint carries without its own friction.
+
+    Source: Hamon, Gautier and Garrec 2010, Dynamic identification of robots with a dry friction
+    model depending on load and velocity.
+    """
+
+    share: float = 0.0
+
+    kind = "load_friction"
+    sizes = (Size("share", "1", Sign.POSITIVE),)
+    # a worm gear that can just be turned from its output side loses half
+    anywhere = Anywhere(Element.JOINT, 0.5, 0.002, source="assumed: a worm gear loses half")
+
+    def carry(self, load: FloatArray, speed: FloatArray, slow: float) -> FloatArray:
+        """The share of the load's size, against the motion."""
+        return np.asarray(self.share * np.abs(load) * np.tanh(speed / slow))
+
+
+@final
+@dataclass(frozen=True)
 class FrictionBehindGap(Effect):
     """Dry friction behind a spring and a gap: a Jenkins element with lost motion.
 

@@ -1,4 +1,4 @@
-"""Effects of a joint: friction of four kinds, constant force, inertia, spring, backlash."""
+"""Effects of a joint: friction of four kinds, constant force, inertia, springs, backlash."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from ves_twin.effects.effect import Effect
 from ves_twin.effects.element import Element
 from ves_twin.effects.magnitude import Sign
 from ves_twin.effects.row import JOINTS, LEGS, Anywhere, Part, Row
-from ves_twin.effects.size import DAMPING, EFFORT, INERTIA, LENGTH, STIFFNESS, Size
+from ves_twin.effects.size import CUBIC, DAMPING, EFFORT, INERTIA, LENGTH, STIFFNESS, Size
 
 TORQUE = ("arm.torque",)
 
@@ -164,6 +164,23 @@ class JointSpring(Effect):
     source = "assumed; dressing of the wrist and the force sensor's cable"
     rows = (Row(JOINTS, (0.3, 0.5, 40.0), TORQUE, change.STIFFNESS, Part.ARM),)
     anywhere = Anywhere(Element.JOINT, lambda p: p.effort / p.travel, attribute=change.STIFFNESS)
+
+
+@final
+@dataclass(frozen=True)
+class CubicSpring(Effect):
+    """A spring across a joint that grows stiffer, or softer, with its travel: an effort k3 q^3.
+
+    MuJoCo's polynomial stiffness, counted from the joint's springref.
+    """
+
+    stiffness: float = 0.0
+
+    kind = "cubic_spring"
+    sizes = (Size("stiffness", CUBIC),)
+    anywhere = Anywhere(
+        Element.JOINT, lambda p: 3.0 * p.effort / p.travel**3, attribute=change.CUBIC_STIFFNESS
+    )
 
 
 @final

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ves_twin.core.compiled import compiled
-from ves_twin.core.types import FloatArray
+from ves_twin.core.types import FloatArray, SingleArray
 
 
 @dataclass(frozen=True)
@@ -89,6 +89,16 @@ class Channels:
     def split(self, vector: FloatArray) -> dict[str, FloatArray]:
         """Values by name from a vector (n,)."""
         return {name: vector[columns] for name, columns in self.slices.items()}
+
+    def shares(self, vector: FloatArray) -> SingleArray:
+        """A vector (n,) in its units as shares of the bounds: -1 at `low`, 1 at `high`."""
+        middle, half = (self.high + self.low) / 2.0, (self.high - self.low) / 2.0
+        return np.asarray(np.clip((vector - middle) / half, -1.0, 1.0), np.float32)
+
+    def physical(self, shares: FloatArray | SingleArray) -> FloatArray:
+        """The vector (n,) in its units whose `shares` these are, to single precision."""
+        middle, half = (self.high + self.low) / 2.0, (self.high - self.low) / 2.0
+        return np.asarray(middle + half * np.asarray(shares, float))
 
     def table(self) -> str:
         """A Markdown table: columns, unit, bounds, meaning."""

@@ -201,11 +201,11 @@ def run_episode(env: gym.Env[FloatArray, FloatArray], policy: Policy, seed: int)
         ControllerError: the policy raised, or its action is no array of numbers.
     """
     observation, info = env.reset(seed=seed)
-    with _named(policy, 0.0):
+    with named(policy, 0.0):
         policy.begin(observation)
     cost, over, before = 0.0, False, 0.0
     while not over:
-        with _named(policy, before):
+        with named(policy, before):
             action = np.asarray(policy.act(observation), float)
         observation, _, terminated, truncated, info = env.step(action)
         cost += info["cost"] * (info["time"] - before)
@@ -214,7 +214,7 @@ def run_episode(env: gym.Env[FloatArray, FloatArray], policy: Policy, seed: int)
 
 
 @contextmanager
-def _named(policy: Policy, time: float) -> Iterator[None]:
+def named(policy: Policy, time: float) -> Iterator[None]:
     """Make what a policy raises one line that names it."""
     try:
         yield

@@ -10,8 +10,9 @@ from typing import TYPE_CHECKING, Any, ClassVar, Generic
 import gymnasium as gym
 import numpy as np
 
+from ves_twin.core.compiled import say_that_it_compiles
 from ves_twin.core.errors import InvalidInputError, UnknownNameError
-from ves_twin.core.types import FloatArray
+from ves_twin.core.types import FloatArray, SingleArray
 from ves_twin.envs.channels import Channels
 from ves_twin.envs.costs import Costs, Limits
 from ves_twin.envs.picture import Picture
@@ -37,7 +38,10 @@ OPTIONS = ("goal", "plant", "scenario")
 """What `reset` understands."""
 
 
-class RigEnv(gym.Env[FloatArray, FloatArray], abc.ABC, Generic[Hand]):
+Observation = FloatArray | SingleArray
+
+
+class RigEnv(gym.Env[Any, FloatArray], abc.ABC, Generic[Hand]):
     """One rig under one task; a step is CYCLES admittance cycles.
 
     Actions are shares of a scale, -1 to 1. A finite action beyond that is clipped and `info` says
@@ -47,12 +51,15 @@ class RigEnv(gym.Env[FloatArray, FloatArray], abc.ABC, Generic[Hand]):
     Attributes:
         observations: the table of the observation's columns.
         actions: the table of the action's columns; bounds are the scale.
+        reading: the last observation in the units of `observations` (m,), scaled or not.
         sink: where the rows of the next episodes go; None for nowhere.
 
     Args:
         plant: the world; the scenario's own if left out.
         scenario: the task's own if left out.
         render_mode: "rgb_array", "human" or None.
+        scaled: observations as shares of their bounds, -1 to 1, in single precision like the
+            actions; what networks take. In physical units and double precision otherwise.
 
     Raises:
         VesTwinError: a plant or scenario that cannot be used.
@@ -68,6 +75,7 @@ class RigEnv(gym.Env[FloatArray, FloatArray], abc.ABC, Generic[Hand]):
 
     observations: Channels
     actions: Channels
+    reading: FloatArray
     _costs: Costs
     _place: Place
     _readings: tuple[FloatArray, FloatArray]
@@ -77,6 +85,7 @@ class RigEnv(gym.Env[FloatArray, FloatArray], abc.ABC, Generic[Hand]):
         plant: str | Plant | None = None,
         scenario: str | Scenario | None = None,
         render_mode: str | None = None,
+        scaled: bool = False,
     ) -> None:
         if render_mode not in (None, *self.metadata["render_modes"]):
             raise UnknownNameError("render_mode", str(render_mode), self.metadata["render_modes"])
@@ -85,11 +94,13 @@ class RigEnv(gym.Env[FloatArray, FloatArray], abc.ABC, Generic[Hand]):
         self._plant = _plant(plant or self._scenario.plant)
         self.check(self._scenario)
         self.observations, self.actions = self.channels(self._scenario)
-        self.observation_space = gym.spaces.Box(
-            self.observations.low, self.observations.high, dtype=np.float64
+        self._scaled = scaled
+        self.observation_space = (
+            _shares(self.observations.width, np.float32)
+            if scaled
+            else gym.spaces.Box(self.observations.low, self.observations.high, dtype=np.float64)
         )
-        shares = np.ones(self.actions.width)
-        self.action_space = gym.spaces.Box(-shares, shares, dtype=np.float64)
+        self.action_space = _shares(self.actions.width, np.float32 if scaled else np.float64)
         self.sink: Sink | None = None
         self._rigs: SettledRigs[Hand] = SettledRigs()
         self._rig: SettledRig[Hand] | None = None
@@ -182,7 +193,7 @@ class RigEnv(gym.Env[FloatArray, FloatArray], abc.ABC, Generic[Hand]):
 
     def reset(
         self, *, seed: int | None = None, options: dict[str, Any] | None = None
-    ) -> tuple[FloatArray, dict[str, Any]]:
+    ) -> tuple[Observation, dict[str, Any]]:
         """Begin an episode; nothing of the ones before it is left.
 
         Args:
@@ -204,6 +215,7 @@ class RigEnv(gym.Env[FloatArray, FloatArray], abc.ABC, Generic[Hand]):
             self.check(scenario)
         plant = self.plant_of(given)
         scenario, goal = self.draw(scenario, given.get("goal"))
+        say_that_it_compiles()
         self._rig = self._rigs.find(plant, scenario) or self._rigs.keep(
             plant, *self.build(plant, scenario)
         )
@@ -215,7 +227,7 @@ class RigEnv(gym.Env[FloatArray, FloatArray], abc.ABC, Generic[Hand]):
             self.render()
         return self._observe(), self._info(clipped=False)
 
-    def step(self, action: FloatArray) -> tuple[FloatArray, float, bool, bool, dict[str, Any]]:
+    def step(self, action: FloatArray) -> tuple[Observation, float, bool, bool, dict[str, Any]]:
         """Hold an action for a step.
 
         Args:
@@ -317,11 +329,12 @@ class RigEnv(gym.Env[FloatArray, FloatArray], abc.ABC, Generic[Hand]):
         """Platform pose that the believed geometry has at the measured leg lengths (6,)."""
         return self._board_pose
 
-    def _observe(self) -> FloatArray:
+    def _observe(self) -> Observation:
         board = self.sim.rig.board
         if self.sim.outcome is not Outcome.DIVERGED:
             self._board_pose = self._geometry.pose(board["leg.length"], self._board_pose)
-        return self.observations.vector(self.readings(board))
+        self.reading = self.observations.vector(self.readings(board))
+        return self.observations.shares(self.reading) if self._scaled else self.reading.copy()
 
     def _info(self, clipped: bool) -> dict[str, Any]:
         sim = self.sim
@@ -343,6 +356,10 @@ class RigEnv(gym.Env[FloatArray, FloatArray], abc.ABC, Generic[Hand]):
         if self._rig is None:
             raise InvalidInputError("environment", "no episode", "reset before anything else")
         return self._rig
+
+
+def _shares(width: int, dtype: type[np.float32 | np.float64]) -> Any:
+    return gym.spaces.Box(-1.0, 1.0, (width,), dtype)
 
 
 def _scenario(given: object) -> Scenario:

@@ -17,7 +17,8 @@ from ves_twin.diagnosis.residuals.noise import Noise, NoiseSource, noise_of_diff
 from ves_twin.machines.case import Case
 from ves_twin.machines.comparison import Basis, Comparison, RecordingComparison, Traces
 from ves_twin.machines.load import Given, machine_of, named
-from ves_twin.machines.machine import Named
+from ves_twin.machines.machine import Machine, Named
+from ves_twin.machines.reach import tolerance_reach
 from ves_twin.machines.same_programme import same_programme
 from ves_twin.machines.tolerance import Excess, Tolerance
 from ves_twin.scenario.experiment_file import ExperimentFile
@@ -25,6 +26,9 @@ from ves_twin.simulator.simulate import versions
 
 Progress = Callable[[float, str], None]
 """Called with the share done and what is under way."""
+
+PATIENCE = 30.0
+"""Time [s] that the tolerance envelope of a recording may take unless one is asked for."""
 
 Rows = dict[str, FloatArray]
 """Signal -> rows (n, width)."""
@@ -38,6 +42,7 @@ def compare(
     against: Recording | Named | None = None,
     standstill: Recording | None = None,
     progress: Progress | None = None,
+    patience: float = PATIENCE,
 ) -> Comparison:
     """Where recordings part from a machine, or from another recording.
 
@@ -50,6 +55,8 @@ def compare(
         against: the recording that they are held against instead of the machine.
         standstill: tells the noise in place of what the experiment says.
         progress: called before each simulation.
+        patience: time [s] that the tolerance envelope of a recording may take; where it would take
+            longer, a note says so instead.
 
     Raises:
         VesTwinError: input that cannot be compared; says what and why.
@@ -76,6 +83,7 @@ def compare(
         say(k / len(prepared), given[k].name)
         if against is None:
             own = [_one(case) for case in modes]
+            own = _enveloped(own, machine, given[k], experiment, patience, say)
         else:
             own = [_against(case, others[case.mode]) for case in modes if case.mode in others]
         if tolerance is not None:
@@ -89,6 +97,23 @@ def compare(
 def _one(one: Case) -> RecordingComparison:
     noises = one.noise()
     return _compared(one, dict(one.recording.signals), dict(one.simulated()), noises, Basis.PLANT)
+
+
+def _enveloped(
+    found: list[RecordingComparison],
+    machine: Machine,
+    given: Named,
+    experiment: ExperimentFile | None,
+    patience: float,
+    say: Progress,
+) -> list[RecordingComparison]:
+    """The first mode, that of a diagnosis, with the band in which a machine in order may lie."""
+    first, *rest = found
+    reach = tolerance_reach(machine, given, experiment, patience, say)
+    if isinstance(reach, str):
+        return [replace(first, notes=(*first.notes, reach)), *rest]
+    bands = {n: np.interp(first.traces.time, reach.time, sd) for n, sd in reach.sd.items()}
+    return [replace(first, traces=replace(first.traces, reach=bands)), *rest]
 
 
 def _against(one: Case, other: Case) -> RecordingComparison:
@@ -202,7 +227,7 @@ def _noise_note(noises: dict[str, Noise]) -> str:
     words = {
         NoiseSource.STILL: "a part of this recording in which no set-point changes",
         NoiseSource.STANDSTILL: "the standstill recording given",
-        NoiseSource.DECLARED: "the plant's numbers",
+        NoiseSource.DECLARED: "the machine's numbers",
         NoiseSource.NOBODY: "nobody, so that nothing is said of noise",
     }
     counts = {s: sum(n.source is s for n in noises.values()) for s in NoiseSource}

@@ -4,12 +4,15 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, field
 from enum import StrEnum
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from ves_twin.core.types import FloatArray
 from ves_twin.data.quality.check import Check, Grade
+from ves_twin.diagnosis.envelope import ENVELOPE_SD
 from ves_twin.diagnosis.residuals.channel import ChannelComparison
 from ves_twin.machines.tolerance import Excess
 
@@ -34,11 +37,16 @@ class Basis(StrEnum):
 
 @dataclass(frozen=True)
 class Traces:
-    """What was compared: time [s] (n,), and signals (n, width) as they were and as expected."""
+    """What was compared: time [s] (n,), and signals (n, width) as they were and as expected.
+
+    `reach` is the sd of what a machine in order shows about `expected`, of noise and tolerances,
+    by column (n,); empty where nobody computed it.
+    """
 
     time: FloatArray
     measured: Mapping[str, FloatArray]
     expected: Mapping[str, FloatArray]
+    reach: Mapping[str, FloatArray] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)
@@ -91,6 +99,17 @@ class RecordingComparison:
         return next((grade for grade in worst if grade in grades), Grade.UNKNOWN)
 
     @property
+    def outside(self) -> dict[str, float]:
+        """Share of the rows outside the envelope, by column; empty where there is none."""
+        found = {}
+        for c in self.channels:
+            sd = self.traces.reach.get(c.name)
+            if sd is not None:
+                gap = self.traces.measured[c.signal] - self.traces.expected[c.signal]
+                found[c.name] = float(np.mean(np.abs(gap[:, c.column]) > ENVELOPE_SD * sd))
+        return found
+
+    @property
     def beyond_noise(self) -> tuple[ChannelComparison, ...]:
         """Channels with more than noise, the loudest first."""
         loud = [channel for channel in self.channels if channel.beyond_noise]
@@ -114,6 +133,7 @@ class RecordingComparison:
             "absent": list(self.absent),
             "notes": list(self.notes),
             "beyond_noise": [channel.name for channel in self.beyond_noise],
+            "outside_envelope": self.outside,
             "channels": {channel.name: channel.to_dict() for channel in self.channels},
             "emulation_cost": asdict(self.cost) if self.cost else None,
         }

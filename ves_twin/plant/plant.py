@@ -89,7 +89,7 @@ class Plant:
                 raise UnknownNameError("key", key, HEAD_KEYS)
         name = str(content.get("name", path.stem))
         if "base" in content:
-            plant = replace(_load_base(str(content["base"]), path), name=name)
+            plant = replace(_load_base(content["base"], path), name=name)
         else:
             plant = Plant(name, _complete(parse_parameters(content, path), path))
         form = str(content.get("hydraulic_model", plant.hydraulics))
@@ -245,7 +245,9 @@ def _complete(table: ParameterTable, path: Path) -> ParameterTable:
     return table
 
 
-def _load_base(name: str, path: Path) -> Plant:
+def _load_base(name: object, path: Path) -> Plant:
+    if not isinstance(name, str):
+        raise InvalidInputError(f"{path}: base", name, "the name or the path of a plant")
     try:
         return Plant.load(beside(path, name))
     except RecursionError:

@@ -21,8 +21,8 @@ from ves_twin.machines.load import machine_of
 from ves_twin.machines.mjcf.machine import Rig
 from ves_twin.plant.plant import Plant
 from ves_twin.procedures.procedure import Procedure, Result, RunContext
+from ves_twin.report.diagnosis.answer import headline
 from ves_twin.report.diagnosis.page import diagnosis_page
-from ves_twin.report.diagnosis.words import headline
 from ves_twin.report.page import write_page
 from ves_twin.scenario.fields import Part
 from ves_twin.simulator.outcome import Outcome

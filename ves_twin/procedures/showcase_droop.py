@@ -23,8 +23,8 @@ from ves_twin.plant.droop import frozen_droop
 from ves_twin.plant.plant import Plant
 from ves_twin.procedures.held_poses import HeldPosesProcedure
 from ves_twin.procedures.procedure import Result, RunContext
+from ves_twin.report.diagnosis.answer import headline
 from ves_twin.report.diagnosis.page import diagnosis_page
-from ves_twin.report.diagnosis.words import headline
 from ves_twin.report.page import write_page
 from ves_twin.scenario.fields import Seconds
 from ves_twin.simulator.build import belief_of

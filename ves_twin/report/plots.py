@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ves_twin.core.types import FloatArray
+from ves_twin.report.colours import AFTER, BEFORE, ENVELOPE, LIMIT
 from ves_twin.report.figure import new_figure
 
 if TYPE_CHECKING:
@@ -21,9 +22,6 @@ POINTS = 700
 LEAST = 0.03
 """Bars begin at this share of the mark; what is smaller has none."""
 
-MEASURED, SIMULATED, RESIDUAL = "#1f5fa8", "#d9731a", "#444b52"
-"""Colours that stay apart for the colour-blind and in print."""
-
 
 @dataclass(frozen=True)
 class Trace:
@@ -34,7 +32,16 @@ class Trace:
     colour: str
 
 
-def envelope(time: FloatArray, values: FloatArray) -> tuple[FloatArray, FloatArray]:
+@dataclass(frozen=True)
+class Band:
+    """The stretch between two lines: label, lower and upper line (n,)."""
+
+    label: str
+    low: FloatArray
+    high: FloatArray
+
+
+def thinned(time: FloatArray, values: FloatArray) -> tuple[FloatArray, FloatArray]:
     """A line of at most 2 POINTS points that shows every peak of a longer one."""
     if len(time) <= 2 * POINTS:
         return time, values
@@ -48,7 +55,11 @@ def envelope(time: FloatArray, values: FloatArray) -> tuple[FloatArray, FloatArr
 
 
 def draw_traces(
-    axes: Axes, time: FloatArray, traces: Sequence[Trace], label: str, band: float | None = None
+    axes: Axes,
+    time: FloatArray,
+    traces: Sequence[Trace],
+    label: str,
+    band: float | Band | None = None,
 ) -> None:
     """Lines over time.
 
@@ -57,26 +68,31 @@ def draw_traces(
         time: [s] (n,).
         traces: what is drawn.
         label: of the vertical axis, with its unit.
-        band: half-width of a grey band about zero, for instance two sigma.
+        band: grey band behind them; its half-width where it lies about zero.
     """
-    if band is not None and np.isfinite(band):
-        axes.axhspan(-band, band, color="#e4e8ec", linewidth=0)
+    if isinstance(band, Band):
+        x, low = thinned(time, band.low)
+        _, high = thinned(time, band.high)
+        axes.fill_between(x, low, high, color=ENVELOPE, linewidth=0, label=band.label)
+    elif band is not None and np.isfinite(band):
+        axes.axhspan(-band, band, color=ENVELOPE, linewidth=0)
     for k, trace in enumerate(traces):
-        x, y = envelope(time, trace.values)
-        wide = 2.4 if k == 0 and len(traces) > 1 else 0.9  # the first shows behind the others
-        axes.plot(x, y, color=trace.colour, linewidth=wide, label=trace.label)
+        x, y = thinned(time, trace.values)
+        behind = k == 0 and len(traces) > 1  # the first shows behind the others
+        wide, opacity = (3.6, 0.45) if behind else (1.2, 1.0)
+        axes.plot(x, y, color=trace.colour, linewidth=wide, alpha=opacity, label=trace.label)
     axes.set_ylabel(label, fontsize=8)
     axes.tick_params(labelsize=8)
     axes.grid(color="#e8ebee", linewidth=0.6)
     axes.margins(x=0)
     for side in ("top", "right"):
         axes.spines[side].set_visible(False)
-    if len(traces) > 1:
+    if len(traces) > 1 or isinstance(band, Band):
         axes.legend(
             fontsize=7,
             loc="lower right",
             bbox_to_anchor=(1.0, 0.98),
-            ncols=len(traces),
+            ncols=len(traces) + 1,
             frameon=False,
         )
 
@@ -95,10 +111,10 @@ def draw_levels(names: Sequence[str], levels: Sequence[float], unit: str, mark: 
     low = LEAST * mark
     values = np.maximum(np.nan_to_num(np.array(levels, float)), low)
     place = np.arange(len(names))
-    axes.barh(place, values - low, left=low, color=MEASURED, height=0.65)
+    axes.barh(place, values - low, left=low, color=BEFORE, height=0.65)
     axes.set_xscale("log")
     axes.set_xlim(low, max(3.0 * mark, 1.5 * values.max(initial=1.0)))
-    axes.axvline(mark, color="#a32020", linewidth=1.0)
+    axes.axvline(mark, color=LIMIT, linewidth=1.0)
     axes.set_yticks(place, list(names), fontsize=8)
     axes.invert_yaxis()
     axes.set_xlabel(unit, fontsize=8)
@@ -125,12 +141,12 @@ def draw_change(
     there, here = np.maximum(before, LEAST * mark), np.maximum(after, LEAST * mark)
     place = np.arange(len(names))
     axes.hlines(place, there, here, color="#c3cad1", linewidth=2.0)
-    axes.plot(there, place, "o", color=SIMULATED, markersize=6, label="before")
-    axes.plot(here, place, "o", color=MEASURED, markersize=6, label="after")
+    axes.plot(there, place, "o", color=BEFORE, markersize=6, label="before")
+    axes.plot(here, place, "o", color=AFTER, markersize=6, label="after")
     axes.set_xscale("log")
     both = np.concatenate([there, here, [mark]])
     axes.set_xlim(both.min() / 1.5, both.max() * 1.5)
-    axes.axvline(mark, color="#a32020", linewidth=1.0)
+    axes.axvline(mark, color=LIMIT, linewidth=1.0)
     axes.set_yticks(place, list(names), fontsize=8)
     axes.set_ylim(len(names) - 0.4, -0.6)
     axes.set_xlabel(unit, fontsize=8)

@@ -44,6 +44,7 @@ column = "t"
 mode = "motion"
 smoothing = "200 Hz"
 joints = {{ a = "a", b = "b" }}
+locked = ["c"]
 actuators = {{ ma = "ta", mb = "tb" }}
 [typical.joint.a]
 effort = 5

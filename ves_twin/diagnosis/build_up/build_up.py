@@ -89,20 +89,16 @@ class _Builder:
         point, present = self.fitted.runs.origin, tuple[Trial, ...]()
         halves = self.halves(point, present)
         for _ in range(ROUNDS):
-            selector = Selector(halves.regression)
-            chosen = selector.run(_places(halves, present))
-            before = {trial.cause.label for trial in present}
-            best = halves.regression.fit(chosen)
-            evidence, linear = self.evidence(best.residual), best.residual
+            regression = halves.regression
+            chosen = Selector(regression).run(_places(halves, present))
+            evidence = self.evidence(regression.fit(chosen).residual)
+            linear = regression.solve(chosen, evidence.whitening).residual
             fit = self.refined(halves, chosen, point, evidence)
-            left = bare_residual(evidence, fit)
-            present = _present([halves.regression.trials[n] for n in chosen], fit)
-            after = {trial.cause.label for trial in present}
-            off = halves.regression.half.rms(left - linear)
-            still = bool(np.all(off <= MOVED * halves.regression.half.rms(linear)))
+            present = _present([regression.trials[n] for n in chosen], fit)
+            off = regression.half.rms(bare_residual(evidence, fit) - linear)
             point = fit.shift
             halves = self.halves(point, present)
-            if before == after and still:
+            if np.all(off <= MOVED * regression.half.rms(linear)):
                 break
         return halves, _places(halves, present), point
 

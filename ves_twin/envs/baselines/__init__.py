@@ -23,3 +23,10 @@ BASELINES: dict[str, type[Policy]] = {
     "lag_feedforward": LagFeedforward,
 }
 """Name on the command line -> policy."""
+
+EXPERTS = {
+    "VesTwin/VibrationFreeReach-v0": "planned_path",
+    "VesTwin/VibrationDamping-v0": "lqg",
+    "VesTwin/PlatformTracking-v0": "lag_feedforward",
+}
+"""Environment -> the baseline with the best score of docs/environments.md that needs no network."""

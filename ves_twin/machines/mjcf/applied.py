@@ -76,10 +76,11 @@ def _drive(experiment: MjcfExperiment, told: RigDescription) -> Drive:
     """With the mode whose signals are those that were fed in."""
     if not experiment.drive:
         return told.drive
+    imposed = told.drive.imposed_signals.values()
     fed = {
         Mode.MOTION: set(told.drive.joints.values()),
-        Mode.CONTROL: set(told.drive.actuators.values()),
-        Mode.REFERENCE: {c.reference for c in told.controllers.values()},
+        Mode.CONTROL: {*told.drive.actuators.values(), *imposed},
+        Mode.REFERENCE: {*(c.reference for c in told.controllers.values()), *imposed},
     }
     for name in experiment.drive:
         if name not in told.signals:

@@ -8,7 +8,7 @@ from ves_twin.core.errors import InvalidInputError, UnknownNameError
 from ves_twin.core.units import to_si
 from ves_twin.machines.mjcf.description import Compared, Mode, RigDescription
 from ves_twin.machines.mjcf.joint_units import joint_units
-from ves_twin.machines.mjcf.places import typical_speed
+from ves_twin.machines.mjcf.places import SINGLE, driven_joint, typical_speed
 
 FREE = int(mujoco.mjtJoint.mjJNT_FREE)
 
@@ -20,10 +20,12 @@ def check_description(told: RigDescription, model: mujoco.MjModel) -> None:
         UnknownNameError: a signal, joint, actuator or sensor that is not there.
         InvalidInputError: no controller to follow set-points, a start that nothing measures,
             columns or noise of a signal that are not as many as the model has of it, a start in
-            other units, or no typical speed of a joint with dry friction whose motion is given.
+            other units, a joint that neither moves as recorded nor is integrated or locked, or no
+            typical speed of a joint with dry friction whose motion is given.
     """
     _signals(told)
     _parts(told, model)
+    _moved(told, model)
     _widths(told, model)
     _starts(told, model)
     _friction(told, model)
@@ -44,7 +46,7 @@ def _signals(told: RigDescription) -> None:
 
 def _parts(told: RigDescription, model: mujoco.MjModel) -> None:
     compared = told.compare.values()
-    joints = [*told.drive.joints, *told.start, *(c.joint for c in compared)]
+    joints = [*told.drive.joints, *told.drive.locked, *told.start, *(c.joint for c in compared)]
     joints += [c.joint for c in told.controllers.values()]
     actuators = [*told.drive.actuators, *told.controllers, *(c.actuator for c in compared)]
     sensors = {model.sensor(i).name for i in range(model.nsensor)}
@@ -56,6 +58,31 @@ def _parts(told: RigDescription, model: mujoco.MjModel) -> None:
         for name in filter(None, names):
             if name not in there:
                 raise UnknownNameError(f"{what} in {told.model}", name, there)
+
+
+def _moved(told: RigDescription, model: mujoco.MjModel) -> None:
+    """Every joint moves as recorded, is integrated, or is locked: none of them by silence."""
+    drive = told.drive
+    for joint in drive.imposed:
+        if joint not in drive.joints:
+            raise UnknownNameError("joint in drive.imposed", joint, drive.joints)
+        if joint in drive.locked or int(model.jnt_type[model.joint(joint).id]) not in SINGLE:
+            expected = "a hinge or a slide that is not locked"
+            raise InvalidInputError("drive.imposed", joint, expected)
+    if drive.mode is Mode.MOTION:
+        for joint in (model.joint(i).name for i in range(model.njnt)):
+            if joint not in drive.joints and joint not in drive.locked:
+                expected = (
+                    f"its signal in drive.joints, drive.locked with {joint} if it stands still,"
+                    " or mode 'control' with the other joints in drive.imposed to integrate it"
+                )
+                raise InvalidInputError(f"joint {joint}, mode 'motion'", "no motion", expected)
+        return
+    for actuator in [*(told.controllers if drive.mode is Mode.REFERENCE else drive.actuators)]:
+        name = driven_joint(model, actuator)
+        if name in (*drive.imposed, *drive.locked):
+            expected = f"joint {name} either moved by it, or imposed or locked"
+            raise InvalidInputError(f"actuator {actuator}", "fed in", expected)
 
 
 def _widths(told: RigDescription, model: mujoco.MjModel) -> None:
@@ -91,12 +118,11 @@ def _width(compared: Compared, model: mujoco.MjModel) -> tuple[int, str]:
 
 def _friction(told: RigDescription, model: mujoco.MjModel) -> None:
     """Dry friction of a given motion turns its sign round over a share of the typical speed."""
-    if told.drive.mode is not Mode.MOTION:
-        return
+    given = told.drive.joints if told.drive.mode is Mode.MOTION else told.drive.imposed
     for compared in told.compare.values():
         if compared.actuator:
             joint = model.joint(int(model.actuator(compared.actuator).trnid[0]))
-            if model.dof_frictionloss[joint.dofadr[0]] > 0.0:
+            if joint.name in given and model.dof_frictionloss[joint.dofadr[0]] > 0.0:
                 typical_speed(joint.name, told, model)
 
 

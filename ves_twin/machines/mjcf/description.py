@@ -71,6 +71,10 @@ class Drive(Part):
     `smoothing` is the corner of the low-pass before positions are differentiated. `held` says that
     recorded efforts are commands that a computer held from row to row, not samples of a current:
     what was given over a row is then compared with what its middle needs.
+
+    Joints that are `imposed` move as their signal in `joints` says while all others are integrated,
+    in mode CONTROL or REFERENCE; what their actuators must give is then predicted. Joints that are
+    `locked` stand where the model has them.
     """
 
     mode: Mode
@@ -78,13 +82,20 @@ class Drive(Part):
     actuators: dict[str, str] = Field(default_factory=dict)
     smoothing: Annotated[Hertz, Field(gt=0)] = 30.0
     held: bool = False
+    imposed: tuple[str, ...] = ()
+    locked: tuple[str, ...] = ()
+
+    @property
+    def imposed_signals(self) -> dict[str, str]:
+        """Signal of each imposed joint."""
+        return {joint: self.joints[joint] for joint in self.imposed}
 
     @model_validator(mode="after")
     def _something_is_fed(self) -> Self:
         if self.mode is Mode.MOTION and not self.joints:
             raise ValueError("drive: mode 'motion' needs drive.joints")
-        if self.mode is Mode.CONTROL and not self.actuators:
-            raise ValueError("drive: mode 'control' needs drive.actuators")
+        if self.mode is Mode.CONTROL and not (self.actuators or self.imposed):
+            raise ValueError("drive: mode 'control' needs drive.actuators or drive.imposed")
         return self
 
 

@@ -51,14 +51,15 @@ HALVINGS = 6
 
 @dataclass(frozen=True)
 class _Input:
-    """What is fed in at a joint: typical effort, speed and travel, where it begins."""
+    """What is fed in at a joint, an effort or a position: its typical sizes, where it rests."""
 
     signal: str
     joint: str
+    commanded: bool
     effort: float
     speed: float
     travel: float
-    start: float
+    rest: float
 
     @property
     def corner(self) -> float:
@@ -92,7 +93,7 @@ def offered(
     time = np.asarray(period * np.arange(round(seconds / period)), float)
     made = (
         _borne(forward, Excitation(name, time, _drive(forward, rows, like), rate=rate), inputs)
-        for name, rows in _menu(inputs, time, rate, forward.mode is Mode.CONTROL)
+        for name, rows in _menu(inputs, time, rate)
     )
     return tuple(one for one in made if one is not None)
 
@@ -124,20 +125,23 @@ def _inputs(forward: MjcfForward, like: Recording | None) -> list[_Input]:
         Mode.CONTROL: [(s, forward.joint_of(a)) for a, s in told.drive.actuators.items()],
         Mode.REFERENCE: [(c.reference, c.joint) for c in told.controllers.values()],
     }[forward.mode]
+    moved = told.drive.joints if forward.mode is Mode.MOTION else forward.imposed
     found = []
-    for signal, joint in places:
+    for signal, joint in [*places, *((s, j) for j, s in forward.imposed.items())]:
         if not joint:
             return []
         effort, speed, travel = _sizes(forward, joint)
-        needed = (effort, speed, travel) if forward.mode is Mode.CONTROL else (speed, travel)
-        watched = forward.mode is Mode.MOTION or forward.position_of(joint) in forward.compared
+        commanded = forward.mode is Mode.CONTROL and joint not in moved
+        needed = (effort, speed, travel) if commanded else (speed, travel)
+        watched = joint in moved or forward.position_of(joint) in forward.compared
         if min(needed) <= 0.0 or not watched or len(told.signals[signal].columns) != 1:
             return []
         first = float(model.qpos0[model.jnt_qposadr[model.joint(joint).id]])
         known = forward.position_of(joint)
         if like is not None and known in like.signals:
             first = float(like[known][0, 0])
-        found.append(_Input(signal, joint, effort, speed, travel, first))
+        rest = 0.0 if commanded else first
+        found.append(_Input(signal, joint, commanded, effort, speed, travel, rest))
     return found
 
 
@@ -155,10 +159,10 @@ def _sizes(forward: MjcfForward, joint: str) -> tuple[float, float, float]:
 
 
 def _menu(
-    inputs: list[_Input], time: FloatArray, rate: float, efforts: bool
+    inputs: list[_Input], time: FloatArray, rate: float
 ) -> Iterator[tuple[str, dict[str, FloatArray]]]:
     """Name and rows (n, 1) by signal."""
-    still = {one.signal: np.full((len(time), 1), 0.0 if efforts else one.start) for one in inputs}
+    still = {one.signal: np.full((len(time), 1), one.rest) for one in inputs}
     for k, (name, (low, high)) in enumerate(BANDS.items()):
         rng = np.random.default_rng([11, k])
         rows = {}
@@ -166,7 +170,7 @@ def _menu(
             band = np.minimum([low * one.corner, high * one.corner], HIGHEST * rate)
             shape = _multisine(time, (float(band[0]), float(band[1])), rng)
             size = one.effort
-            if not efforts:
+            if not one.commanded:
                 fastest = float(np.max(np.abs(np.gradient(shape, time))))
                 size = min(0.5 * one.travel, one.speed / fastest)
             rows[one.signal] = still[one.signal] + size * shape[:, None]
@@ -206,14 +210,13 @@ def _borne(
     """The excitation as large as the nominal machine bears it; None if it bears it at no size."""
     if forward.mode is Mode.MOTION:
         return excitation
-    drive, zero = dict(excitation.drive), forward.mode is Mode.CONTROL
+    drive = dict(excitation.drive)
     for _ in range(HALVINGS):
         made = Excitation(excitation.name, excitation.time, drive, rate=excitation.rate)
         if _bears(forward, made):
             return made
         for one in inputs:
-            rest = 0.0 if zero else one.start
-            drive[one.signal] = rest + 0.5 * (drive[one.signal] - rest)
+            drive[one.signal] = one.rest + 0.5 * (drive[one.signal] - one.rest)
     return None
 
 

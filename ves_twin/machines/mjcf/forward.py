@@ -6,7 +6,6 @@ from collections.abc import Container, Mapping
 from dataclasses import dataclass
 from functools import cached_property
 
-import mujoco
 import numpy as np
 
 from ves_twin.core.errors import InvalidInputError
@@ -17,6 +16,7 @@ from ves_twin.machines.mjcf.description import Compared, Mode
 from ves_twin.machines.mjcf.inverse import efforts_of_motion
 from ves_twin.machines.mjcf.joint_units import joint_units
 from ves_twin.machines.mjcf.machine import Rig
+from ves_twin.machines.mjcf.places import driven_joint
 from ves_twin.machines.mjcf.started import start_signal
 from ves_twin.machines.mjcf.stepping import motion_of_drive
 from ves_twin.machines.mjcf.work import Work
@@ -54,7 +54,12 @@ class MjcfForward:
             names = list(told.drive.actuators.values())
         else:
             names = [c.reference for c in told.controllers.values()]
-        return tuple(dict.fromkeys(names))
+        return tuple(dict.fromkeys([*names, *self.imposed.values()]))
+
+    @property
+    def imposed(self) -> dict[str, str]:
+        """Joints that move as recorded while others are integrated, with their signals."""
+        return {} if self.mode is Mode.MOTION else self.rig.description.drive.imposed_signals
 
     @cached_property
     def drive(self) -> tuple[str, ...]:
@@ -75,17 +80,15 @@ class MjcfForward:
 
     def joint_of(self, actuator: str) -> str:
         """The joint that an actuator drives; empty where it drives a tendon or a site."""
-        part = self.rig.model.actuator(actuator)
-        on_joint = int(part.trntype[0]) == int(mujoco.mjtTrn.mjTRN_JOINT)
-        return str(self.rig.model.joint(int(part.trnid[0])).name) if on_joint else ""
+        return driven_joint(self.rig.model, actuator)
 
     @cached_property
     def leaders(self) -> dict[str, str]:
         """Compared signal -> the signal fed in for its own joint, where there is one."""
         told = self.rig.description
-        of_joint = dict(told.drive.joints) if self.mode is Mode.MOTION else {}
+        of_joint = dict(told.drive.joints) if self.mode is Mode.MOTION else self.imposed
         if self.mode is Mode.REFERENCE:
-            of_joint = {c.joint: c.reference for c in told.controllers.values()}
+            of_joint |= {c.joint: c.reference for c in told.controllers.values()}
         found = {}
         for name, one in self.compared.items():
             joint = one.joint
@@ -102,9 +105,15 @@ class MjcfForward:
         told = self.rig.description.compare
         if self.mode is Mode.MOTION:
             return {n: c for n, c in told.items() if c.actuator or c.sensor}
+        predicted = {n: c for n, c in told.items() if c.joint not in self.imposed}
         if self.mode is Mode.CONTROL:
-            return {n: c for n, c in told.items() if not c.actuator}
-        return dict(told)
+            needs = self.imposed
+            return {
+                n: c
+                for n, c in predicted.items()
+                if not c.actuator or self.joint_of(c.actuator) in needs
+            }
+        return predicted
 
     @cached_property
     def channels(self) -> tuple[Channel, ...]:

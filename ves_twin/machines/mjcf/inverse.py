@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import copy
 import hashlib
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import lru_cache
 
@@ -14,7 +14,6 @@ from scipy.signal import butter, filtfilt
 
 from ves_twin.core.types import FloatArray
 from ves_twin.effects.shifted import shifted
-from ves_twin.machines.mjcf.description import Compared
 from ves_twin.machines.mjcf.work import Work, sensor_rows
 
 ORDER = 4
@@ -43,10 +42,22 @@ def efforts_of_motion(work: Work) -> dict[str, FloatArray]:
     found = {}
     for name, compared in told.compare.items():
         if compared.actuator:
-            found[name] = compared.sign * _command(work, compared, moved)[:, None]
+            found[name] = compared.sign * _command(work, compared.actuator, moved)[:, None]
         elif compared.sensor:
             found[name] = compared.sign * sensor_rows(model, moved.sensed, compared)
     return found
+
+
+def efforts_along(
+    work: Work,
+    actuators: Sequence[str],
+    position: FloatArray,
+    speed: FloatArray,
+    pull: FloatArray,
+) -> dict[str, FloatArray]:
+    """The command (n,) that each actuator needs along qpos (n, nq), qvel and qacc (n, nv)."""
+    moved = _inverted(_rigid(work.model), position, speed, pull)
+    return {name: _command(work, name, moved) for name in actuators}
 
 
 def _rigid(model: mujoco.MjModel) -> mujoco.MjModel:
@@ -89,9 +100,12 @@ class _Moved:
 
 @lru_cache(maxsize=KEPT)
 def _moved(motion: _Motion) -> _Moved:
+    """Along a motion that is fed in."""
+    return _inverted(motion.model, *_states(motion))
+
+
+def _inverted(model: mujoco.MjModel, q: FloatArray, v: FloatArray, a: FloatArray) -> _Moved:
     """MuJoCo's inverse dynamics row by row, without damping and dry friction."""
-    model = motion.model
-    q, v, a = _states(motion)
     data = mujoco.MjData(model)
     efforts, sensed = np.zeros((len(q), model.nv)), np.zeros((len(q), model.nsensordata))
     position, speed, pull = data.qpos, data.qvel, data.qacc
@@ -111,20 +125,21 @@ def _single(work: Work) -> list[tuple[str, str]]:
     return [(j, s) for j, s in joints.items() if work.programme.drive[s].shape[1] == 1]
 
 
-def _command(work: Work, compared: Compared, moved: _Moved) -> FloatArray:
+def _command(work: Work, name: str, moved: _Moved) -> FloatArray:
     model = work.model
-    actuator = model.actuator(compared.actuator)
+    actuator = model.actuator(name)
     joint = model.joint(int(actuator.trnid[0]))
     dof = int(joint.dofadr[0])
     speed = moved.speed[:, dof]
-    effort = moved.effort[:, dof] + float(model.dof_damping[dof]) * speed
+    effort = moved.effort[:, dof] + work.carried(joint.name, moved.effort[:, dof], speed)
+    effort = effort + float(model.dof_damping[dof]) * speed
     effort = effort + work.dry(joint.name, speed) + work.resistance(joint.name, speed)
     effort = effort + work.held(joint.name, moved.position[:, int(joint.qposadr[0])])
     effort = effort + work.coupled(joint.name, moved.speed)
     gain = float(actuator.gear[0]) * float(actuator.gainprm[0])
     if work.rig.description.drive.held:
         effort = shifted(effort, work.programme.time, -0.5 * work.programme.period)
-    return work.required(compared.actuator, effort / gain)
+    return work.required(name, effort / gain)
 
 
 def _states(motion: _Motion) -> tuple[FloatArray, FloatArray, FloatArray]:

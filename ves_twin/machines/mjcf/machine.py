@@ -261,8 +261,9 @@ class Rig:
         known = {found: kind for (on, found), kind in attributes().items() if on is element}
         if attribute not in known:
             raise UnknownNameError(f"attribute of {element} {name}", attribute, known)
-        axis = attribute.removeprefix("centre_")
-        return known[attribute].kind, name if axis == attribute else f"{name}.{axis}"
+        on = known[attribute].anywhere
+        axis = attribute.rpartition("_")[2]
+        return known[attribute].kind, f"{name}.{axis}" if on and on.axis else name
 
 
 def _bounds(

@@ -30,6 +30,7 @@ from ves_twin.machines.mjcf.extend import extended, write_rig
 from ves_twin.machines.mjcf.forward import MjcfForward
 from ves_twin.machines.mjcf.interleaved_split import alternate
 from ves_twin.machines.mjcf.machine import Rig
+from ves_twin.machines.mjcf.plausible import check_plausible
 from ves_twin.machines.mjcf.programmes import releases
 from ves_twin.machines.mjcf.read import read_recording
 from ves_twin.machines.mjcf.signals import rig_ranges, rig_signals
@@ -120,6 +121,7 @@ class MjcfMachine(Machine):
         for sort, recordings in zip(SORTS, groups, strict=True):
             material = material.with_sort(sort, recordings)
         machine = replace(machine, rig=begun)
+        check_plausible(machine.rig, [one.recording for one in material.measured])
         for one in material.measured:
             machine.forward.check_noise(one.recording.signals)
         return Prepared(machine, material, flaws)

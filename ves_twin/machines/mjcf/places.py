@@ -30,6 +30,9 @@ def place_of(effect: Effect, told: RigDescription, model: mujoco.MjModel) -> Pla
     element = on.element
     if element is Element.SIGNAL:
         return _signal(kind, target, on, told)
+    if element is Element.WORLD:
+        _known("axis of the world", target, ("x", "y"))
+        return Place(element, target)
     if element is Element.BODY:
         name, _, axis = target.rpartition(".") if on.axis else (target, "", "")
         if on.axis and axis not in tuple("xyz"):
@@ -66,6 +69,13 @@ def typical_speed(joint: str, told: RigDescription, model: mujoco.MjModel) -> fl
     return _positive(span.speed, unit, f"typical.joint.{joint}.speed")
 
 
+def driven_joint(model: mujoco.MjModel, actuator: str) -> str:
+    """The joint that an actuator drives; empty where it drives a tendon or a site."""
+    part = model.actuator(actuator)
+    on_joint = int(part.trntype[0]) == int(mujoco.mjtTrn.mjTRN_JOINT)
+    return str(model.joint(int(part.trnid[0])).name) if on_joint else ""
+
+
 def _joint(target: str, told: RigDescription, model: mujoco.MjModel) -> Place:
     _known("joint", target, {model.joint(i).name for i in range(model.njnt)})
     found = int(model.jnt_type[model.joint(target).id])
@@ -86,9 +96,7 @@ def _joint(target: str, told: RigDescription, model: mujoco.MjModel) -> Place:
 
 def _actuator(target: str, told: RigDescription, model: mujoco.MjModel) -> Place:
     """With the command that its joint's typical effort takes, 0 where the file says none."""
-    actuator = model.actuator(target)
-    on_joint = int(actuator.trntype[0]) == int(mujoco.mjtTrn.mjTRN_JOINT)
-    joint = model.joint(int(actuator.trnid[0])).name if on_joint else ""
+    actuator, joint = model.actuator(target), driven_joint(model, target)
     span, gain = told.typical.joint.get(joint, Span()), abs(actuator.gear[0] * actuator.gainprm[0])
     if not span.effort or not gain:
         return Place(Element.ACTUATOR, target)

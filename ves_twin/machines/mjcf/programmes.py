@@ -112,18 +112,20 @@ def driven(rig: Rig) -> list[tuple[str, Place, float]]:
     that all tones together stay within it.
     """
     told, model = rig.description, rig.model
+    imposed = [(signal, joint_of(rig, j)) for j, signal in MjcfForward.of(rig).imposed.items()]
+    moved = [(signal, at, at.travel / TONES) for signal, at in imposed]
     if told.drive.mode is not Mode.CONTROL:
         fed = [(c.reference, c.joint) for c in told.controllers.values()]
         if told.drive.mode is Mode.MOTION:
             fed = [(signal, joint) for joint, signal in told.drive.joints.items()]
         places = [(signal, joint_of(rig, joint)) for signal, joint in fed]
-        return [(signal, at, at.travel / TONES) for signal, at in places]
+        return [*((signal, at, at.travel / TONES) for signal, at in places), *moved]
     found = []
     for name, signal in told.drive.actuators.items():
         actuator = model.actuator(name)
         at = joint_of(rig, model.joint(int(actuator.trnid[0])).name)
         found.append((signal, at, at.effort / abs(float(actuator.gear[0] * actuator.gainprm[0]))))
-    return found
+    return [*found, *moved]
 
 
 def joint_of(rig: Rig, joint: str) -> Place:

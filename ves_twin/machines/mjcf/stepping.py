@@ -12,10 +12,14 @@ from ves_twin.core.units import to_si
 from ves_twin.effects.effect import Effect
 from ves_twin.effects.element import Element
 from ves_twin.machines.mjcf.description import Controller, Mode
+from ves_twin.machines.mjcf.imposed import Imposed
 from ves_twin.machines.mjcf.inverse import smoothed
 from ves_twin.machines.mjcf.joint_units import joint_units
 from ves_twin.machines.mjcf.started import start_signal
 from ves_twin.machines.mjcf.work import Work, sensor_rows
+
+CARRIED = 4
+"""Iterations of a friction that its load makes: of a tenth of the load it is then known to 1e-4."""
 
 FAILED = (
     mujoco.mjtWarning.mjWARN_BADQPOS,
@@ -45,8 +49,8 @@ def motion_of_drive(work: Work, mode: Mode, refined: bool = False) -> dict[str, 
     steps = max(1, round(period / model.opt.timestep)) * (2 if refined else 1)
     model.opt.timestep = period / steps
     state = _start(work)
-    closed = mode is Mode.REFERENCE
-    if not closed and not _resisted(work):
+    closed, drive = mode is Mode.REFERENCE, work.rig.description.drive
+    if not (closed or drive.imposed or drive.locked or _resisted(work)):
         path, sensed, commands = _open(work, state, steps)
     else:
         path, sensed, commands = _stepped(work, state, steps, closed)
@@ -98,8 +102,19 @@ def position_signal(work: Work, joint: str) -> tuple[str, int]:
 
 def _resisted(work: Work) -> bool:
     """Whether an effect depends on speed or place in a way that the model itself lacks."""
-    plain = (Effect.resist, Effect.hold)
-    return any((type(e).resist, type(e).hold) != plain and not e.steady for e, _ in work.effects)
+    plain = (Effect.resist, Effect.hold, Effect.carry)
+    return any(
+        (type(e).resist, type(e).hold, type(e).carry) != plain and not e.steady
+        for e, _ in work.effects
+    )
+
+
+def _carried(work: Work, joint: str, given: FloatArray, speed: FloatArray) -> float:
+    """Friction by a joint's load where the effort that is given (1,) holds both: by iteration."""
+    friction = np.zeros(1)
+    for _ in range(CARRIED):
+        friction = work.carried(joint, given - friction, speed)
+    return float(friction[0])
 
 
 def _steady(work: Work) -> FloatArray:
@@ -173,8 +188,11 @@ def _stepped(
     ]
     holders = {n: [e.holder() for e, _ in work.at(Element.JOINT, n)] for n, _, _ in resisted}
     path, sensed = np.zeros((rows, model.nq + model.nv)), np.zeros((rows, model.nsensordata))
-    speed, reach = np.zeros(1), _Reach(work)
+    pull, imposed = np.zeros((rows, model.nv)), Imposed.of(work, steps)
+    speed, given, reach = np.zeros(1), np.zeros(1), _Reach(work)
+    loaded = {e.target for e, _ in work.effects if type(e).carry is not Effect.carry}
     for k in range(rows):
+        imposed.move(data, k * steps)
         path[k, : model.nq], path[k, model.nq :] = data.qpos, data.qvel
         for loop in loops:
             asked[k, loop.actuator] = loop.command(k, data)
@@ -183,12 +201,17 @@ def _stepped(
             for name, dof, at in resisted:
                 speed[0], q = data.qvel[dof], float(data.qpos[at])
                 held = sum(holder(q) for holder in holders[name])
+                given[0] = data.qfrc_actuator[dof]
+                held += _carried(work, name, given, speed) if name in loaded else 0.0
                 data.qfrc_applied[dof] = -work.resistance(name, speed)[0] - held
+            imposed.move(data, k * steps + n)
             mujoco.mj_step(model, data)
             if n == 0:
-                sensed[k] = data.sensordata
+                sensed[k], pull[k] = data.sensordata, data.qacc
         if _failed(data):
             break
+    for name, command in imposed.commands(path, pull).items():
+        asked[:, model.actuator(name).id] = command
     return path, sensed, asked
 
 

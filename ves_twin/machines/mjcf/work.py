@@ -64,6 +64,13 @@ class Work:
             total = total + effect.resist(speed, SMOOTH * place.speed)
         return total
 
+    def carried(self, joint: str, load: FloatArray, speed: FloatArray) -> FloatArray:
+        """Effort [N, N m] against motion of a joint that its load makes (n,)."""
+        total = np.zeros_like(load)
+        for effect, place in self.at(Element.JOINT, joint):
+            total = total + effect.carry(load, speed, SMOOTH * place.speed)
+        return total
+
     def dry(self, joint: str, speed: FloatArray) -> FloatArray:
         """The model's friction loss along a given motion: level * tanh(v / slow) (n,)."""
         level = CoulombFriction(joint).present(self.model)

@@ -17,6 +17,7 @@ from ves_twin.diagnosis.residuals.noise import Noise
 from ves_twin.machines.case import Case, Traces
 from ves_twin.machines.ves2.declared_noise import declared_noise
 from ves_twin.machines.ves2.emulation_cost import EmulationCost, emulation_cost
+from ves_twin.machines.ves2.leg_program_check import check_leg_program
 from ves_twin.machines.ves2.loop_noise import with_loop_noise
 from ves_twin.plant.plant import Plant
 from ves_twin.scenario.experiment import COMPARED, Experiment, StartState
@@ -152,6 +153,8 @@ def ves2_case(
     rig = experiment.rig(plant, scenario)
     even = even_clock(recording, inputs)
     weight = float(rig.parameters.array("arm.mass").sum() * rig.parameters.number("gravity"))
+    full_speed = rig.parameters.number("hydraulics.full_speed")
+    program = check_leg_program(recording, scenario.legs, full_speed)
     return Ves2Case(
         name=name,
         recording=even,
@@ -160,7 +163,7 @@ def ves2_case(
         inputs=inputs,
         outputs=outputs,
         absent=tuple(n for n in wanted if n not in recording.signals),
-        checks=quality_gate(recording, weight).checks,
+        checks=(*quality_gate(recording, weight).checks, program),
         notes=_notes(recording, even, inputs, experiment),
         rows=_rows(even.time, scenario, experiment),
         offset=float(recording.time[0]),

@@ -8,10 +8,11 @@ from dataclasses import dataclass, replace
 from ves_twin.core.errors import InvalidInputError, VesTwinError
 from ves_twin.core.recording.even_clock import even_clock
 from ves_twin.core.recording.recording import Recording
-from ves_twin.data.quality.check import Check
+from ves_twin.data.quality.check import Check, Grade
 from ves_twin.data.quality.gate import quality_gate
 from ves_twin.machines.ves2.declared_load import LOAD
 from ves_twin.machines.ves2.forward import DRIVE
+from ves_twin.machines.ves2.leg_program_check import check_leg_program
 from ves_twin.plant.plant import Plant
 from ves_twin.scenario.schema import Scenario
 from ves_twin.simulator.replay import replay_scenario
@@ -54,12 +55,17 @@ def prepare_inputs(recordings: Sequence[Recording], plant: Plant, word: str) -> 
         InvalidInputError: set-points that are missing for too long.
     """
     carried, gravity = plant.parameters.array("arm.mass").sum(), plant.parameters.number("gravity")
+    full_speed = plant.parameters.number("hydraulics.full_speed")
     even, flaws = [], []
     for number, recording in enumerate(recordings, 1):
         name = f"{word} {number}"
         load = recording[LOAD.name][0, 0] if LOAD.name in recording.signals else 0.0
         failed = quality_gate(recording, float((carried + load) * gravity)).failures
         wrong = [check for check in failed if check.name in REFUSED]
+        if not wrong:  # else it would say the same in other words
+            legs = replay_scenario(recording).legs
+            program = check_leg_program(recording, legs, full_speed)
+            wrong = [program] if program.grade is Grade.FAILED else []
         if wrong:
             raise VesTwinError(f"{name}: {'; '.join(check.message for check in wrong)}")
         flaws += [replace(check, message=f"{name}: {check.message}") for check in failed]

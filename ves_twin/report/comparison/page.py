@@ -7,6 +7,8 @@ from ves_twin.data.quality.check import Grade
 from ves_twin.diagnosis.residuals.channel import ChannelComparison
 from ves_twin.machines.comparison import Basis, Comparison, RecordingComparison
 from ves_twin.report.comparison.pictures import (
+    OTHER,
+    SIMULATED,
     cells_figure,
     cells_of,
     channel_figure,
@@ -17,9 +19,11 @@ from ves_twin.report.comparison.words import (
     FED_IN,
     HELD_AGAINST,
     cost_sentence,
+    envelope_sentence,
     excess_words,
     gap_sentence,
     place_sentence,
+    rests_on,
     tolerance_sentence,
     trust_sentence,
 )
@@ -37,8 +41,8 @@ def comparison_page(comparison: Comparison) -> str:
     """The page: answer, then each recording by column, band, time and regime."""
     several = len(comparison.recordings) > 1
     parts = [_head(comparison)]
-    for recording in comparison.recordings:
-        parts.append(_answer(recording, several))
+    for k, recording in enumerate(comparison.recordings):
+        parts.append(_answer(recording, f"r{k + 1}", several))
     parts.append(_tolerance(comparison))
     for k, recording in enumerate(comparison.recordings):
         parts += _details(recording, f"r{k + 1}", several)
@@ -53,7 +57,7 @@ def _head(comparison: Comparison) -> Html:
     )
 
 
-def _answer(recording: RecordingComparison, several: bool) -> Html:
+def _answer(recording: RecordingComparison, name: str, several: bool) -> Html:
     made = f", recorded from plant {recording.made_by}" if recording.made_by else ""
     span = (
         f"{recording.stop - recording.start + 1:g} poses"
@@ -71,6 +75,13 @@ def _answer(recording: RecordingComparison, several: bool) -> Html:
         bullets(f"{c.name}: {c.message}" for c in recording.checks if c.grade is Grade.FAILED),
         paragraph(gap_sentence(recording), "bad" if loud else "good"),
     ]
+    if recording.outside:
+        parts.append(paragraph(envelope_sentence(recording)))
+    if recording.channels:
+        top = max(recording.channels, key=lambda c: (c.beyond_noise, c.loudness))
+        other = SIMULATED if recording.basis is Basis.PLANT else OTHER
+        parts.append(channel_figure(top, recording, other, f"{name}-answer"))
+    parts.append(paragraph(f"Rests on: {rests_on(recording)}"))
     cost = cost_sentence(recording)
     if cost:
         parts.append(paragraph(cost))
@@ -89,7 +100,7 @@ def _tolerance(comparison: Comparison) -> Html:
 
 def _details(recording: RecordingComparison, name: str, several: bool) -> list[Html]:
     title = f": {recording.name}" if several else ""
-    other = "simulated" if recording.basis is Basis.PLANT else "other recording"
+    other = SIMULATED if recording.basis is Basis.PLANT else OTHER
     loud = sorted(recording.channels, key=lambda c: (not c.beyond_noise, -c.loudness))[:SHOWN]
     if not recording.channels:
         return []

@@ -4,20 +4,23 @@ from __future__ import annotations
 
 import numpy as np
 
+from ves_twin.diagnosis.envelope import ENVELOPE_SD
 from ves_twin.diagnosis.residuals.cells import Cell
 from ves_twin.diagnosis.residuals.channel import ChannelComparison
 from ves_twin.machines.comparison import RecordingComparison
+from ves_twin.report.colours import BEFORE, MEASURED, REFERENCE, RESIDUAL
 from ves_twin.report.figure import new_figure, svg
 from ves_twin.report.html import Html
-from ves_twin.report.plots import (
-    MEASURED,
-    RESIDUAL,
-    SIMULATED,
-    Trace,
-    draw_cells,
-    draw_levels,
-    draw_traces,
-)
+from ves_twin.report.plots import Band, Trace, draw_cells, draw_levels, draw_traces
+
+SIMULATED = "simulated"
+"""What the expected line is called where it is a model's."""
+
+OTHER = "other recording"
+"""The same where it is another recording."""
+
+IN_ORDER = "where a machine in order may lie, by its noise and tolerances (95 % of the rows)"
+"""What a tolerance envelope is."""
 
 
 def levels_figure(recording: RecordingComparison, name: str) -> Html:
@@ -57,13 +60,23 @@ def channel_figure(
     expected = traces.expected[channel.signal][:, channel.column]
     figure = new_figure(3.4)
     above, below = figure.subplots(2, 1, sharex=True)
-    lines = [Trace("measured", measured, MEASURED), Trace(other, expected, SIMULATED)]
+    colour = BEFORE if other == SIMULATED else REFERENCE
+    lines = [Trace("measured", measured, MEASURED), Trace(other, expected, colour)]
     unit = channel.unit.replace("*", " ")
-    draw_traces(above, traces.time, lines, unit)
+    sd = traces.reach.get(channel.name)
     residual = [Trace("residual", measured - expected, RESIDUAL)]
-    draw_traces(below, traces.time, residual, f"residual, {unit}", 2.0 * channel.sigma)
+    if sd is None:
+        draw_traces(above, traces.time, lines, unit)
+        draw_traces(below, traces.time, residual, f"residual, {unit}", 2.0 * channel.sigma)
+    else:
+        reach = ENVELOPE_SD * sd
+        band = Band("machine in order", expected - reach, expected + reach)
+        draw_traces(above, traces.time, lines, unit, band)
+        draw_traces(below, traces.time, residual, f"residual, {unit}", Band("", -reach, reach))
+        below.get_legend().remove()
     below.set_xlabel(_clock(recording), fontsize=8)
-    caption = f"{channel.name} ({channel.axis}). Grey: two sigma of noise."
+    grey = "two sigma of noise" if sd is None else IN_ORDER
+    caption = f"{channel.name} ({channel.axis}). Grey: {grey}."
     return svg(figure, f"{name}-{channel.name}", caption)
 
 

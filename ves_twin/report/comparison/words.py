@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from ves_twin.core.quantity import digits, quantity
+from ves_twin.core.quantity import digits, percent, quantity
 from ves_twin.data.quality.check import Grade
 from ves_twin.diagnosis.residuals.cells import Cell
 from ves_twin.diagnosis.residuals.channel import FAR, LOUD, ChannelComparison
@@ -11,6 +11,10 @@ from ves_twin.machines.tolerance import Excess
 
 NAMED = 3
 """Channels named in a sentence."""
+
+EXPECTED_OUTSIDE = 0.15
+"""Share of the rows outside the envelope from which a column counts as outside: noise alone, which
+takes 5 % of them outside, does not reach it."""
 
 CONTRAST = 1.5
 """One regime is named where the residual is larger there by this factor."""
@@ -58,6 +62,28 @@ def gap_sentence(recording: RecordingComparison) -> str:
     return f"Gap: {len(loud)} of {count} columns are beyond noise. Loudest: {names}."
 
 
+def envelope_sentence(recording: RecordingComparison) -> str:
+    """Whether a machine in order may look like this; empty where nobody computed it."""
+    outside = recording.outside
+    if not outside:
+        return ""
+    far = sorted((n for n, s in outside.items() if s > EXPECTED_OUTSIDE), key=lambda n: -outside[n])
+    count = len(outside)
+    if not far:
+        return f"Tolerances: all {count} columns lie in the band of a machine in order."
+    named = ", ".join(f"{n} in {percent(outside[n])} of its rows" for n in far[:NAMED])
+    return (
+        f"Tolerances: {len(far)} of {count} columns leave the band of a machine in order: {named}."
+        " One column in twenty does so by chance; ves-twin diagnose tells whether it is a fault."
+    )
+
+
+def rests_on(recording: RecordingComparison) -> str:
+    """Who says how large noise and tolerances are."""
+    noise = recording.notes[0]
+    return f"{noise}; tolerances as declared." if recording.outside else f"{noise}."
+
+
 def size(channel: ChannelComparison) -> str:
     """Rms of a column in SI and in sigma."""
     return f"{quantity(channel.rms, channel.unit)} rms = {digits(channel.rms_sigma)} sigma"
@@ -66,9 +92,9 @@ def size(channel: ChannelComparison) -> str:
 def tolerance_sentence(comparison: Comparison) -> str:
     """Whether the limits are kept."""
     if comparison.excesses is None:
-        return "Tolerance: none given."
+        return "Limits: none given (--tolerance)."
     if not comparison.excesses:
-        return "Tolerance: every limit is kept."
+        return "Limits: every one is kept."
     count = len(comparison.excesses)
     some = ", ".join(excess_words(e) for e in comparison.excesses[:NAMED])
     rest = f" and {count - NAMED} more" if count > NAMED else ""

@@ -6,8 +6,17 @@ from ves_twin.core.quantity import UNSURE, digits, quantity
 from ves_twin.diagnosis.report_traces import ReportTraces
 from ves_twin.diagnosis.rivals import Rival
 from ves_twin.diagnosis.verdict import MANY, Cause, Kind, Verdict
+from ves_twin.report.diagnosis.answer import (
+    confidence_sentence,
+    nearest_sentence,
+    next_step,
+    tone,
+    verdict_sentence,
+)
+from ves_twin.report.diagnosis.basis import basis_sentences, gain_sentence, rests_on
 from ves_twin.report.diagnosis.limits import limit_sentences, next_sentences, rival_words
 from ves_twin.report.diagnosis.pictures import (
+    answer_figure,
     cells_figure,
     change_figure,
     residuals_figure,
@@ -17,23 +26,28 @@ from ves_twin.report.diagnosis.proved import proved_parts
 from ves_twin.report.diagnosis.words import (
     alone_sentences,
     ambiguity_sentences,
-    basis_sentences,
+    capital,
     ends_words,
     fitted_word,
-    gain_sentence,
-    headline,
     interval_words,
     name_of,
-    nearest_sentence,
     size_words,
     spoken,
-    tone,
 )
-from ves_twin.report.html import Html, bullets, folded, joined, paragraph, section, table
+from ves_twin.report.html import (
+    Html,
+    bullets,
+    folded,
+    joined,
+    markup,
+    paragraph,
+    section,
+    table,
+)
 from ves_twin.report.page import html_page
 
 SHOWN = 4
-"""Channels drawn large: those with the largest residual before."""
+"""Channels drawn large: those that the cause changes most beyond what tolerances can."""
 
 DRAWN = 2
 """Recordings whose traces are drawn; the numbers are of all."""
@@ -48,7 +62,11 @@ def diagnosis_page(verdict: Verdict, title: str = "Diagnosis", plant: str = "") 
         plant: what became of the extended plant, one sentence.
     """
     exhibit = verdict.exhibit
-    parts = [_answer(verdict, plant), section("Before and after", *_levels(verdict))]
+    parts = [
+        _answer(verdict, plant),
+        section("The answer in figures", *_figures(verdict)),
+        section("Before and after", *_levels(verdict)),
+    ]
     if exhibit:
         parts += _pictures(verdict, exhibit)
     parts += proved_parts(verdict)
@@ -65,8 +83,31 @@ def diagnosis_page(verdict: Verdict, title: str = "Diagnosis", plant: str = "") 
 
 
 def _answer(verdict: Verdict, plant: str) -> Html:
-    """The first screen: verdict, cause, size, gain, basis."""
-    parts = [paragraph(headline(verdict), f"lead {tone(verdict)}")]
+    """The first screen: verdict, how sure, what next, one picture."""
+    parts = [
+        paragraph(verdict_sentence(verdict), f"lead {tone(verdict)}"),
+        _said("How sure", confidence_sentence(verdict)),
+        _said("What next", next_step(verdict)),
+    ]
+    if verdict.exhibit:
+        parts.append(answer_figure(verdict.exhibit, fitted_word(verdict)))
+    parts += [_said("Rests on", capital(rests_on(verdict.basis)))]
+    failed = [check.message for check in verdict.quality]
+    if failed:
+        parts.append(paragraph("The recordings have flaws that the verdict may rest on:", "bad"))
+        parts.append(bullets(failed))
+    if plant:
+        parts.append(paragraph(plant, "note"))
+    return joined(parts)
+
+
+def _said(what: str, text: str) -> Html:
+    return paragraph(Html(f"<b>{markup(what)}.</b> {markup(text)}"))
+
+
+def _figures(verdict: Verdict) -> list[Html]:
+    """What stands behind the first screen: sizes, gain, rivals that cannot be told apart, basis."""
+    parts = []
     if verdict.causes and not verdict.proved:
         head = ("cause", "size", "90 % interval", _origin(verdict), "probability", "standing")
         parts.append(table(head, [row for c in verdict.causes for row in _cause(c, verdict)]))
@@ -84,14 +125,8 @@ def _answer(verdict: Verdict, plant: str) -> Html:
             parts.append(paragraph(said))
     parts.append(bullets(ambiguity_sentences(verdict)))
     parts.append(bullets(alone_sentences(verdict)))
-    failed = [check.message for check in verdict.quality]
-    if failed:
-        parts.append(paragraph("The recordings have flaws that the verdict may rest on:", "bad"))
-        parts.append(bullets(failed))
     parts.append(bullets(basis_sentences(verdict)))
-    if plant:
-        parts.append(paragraph(plant, "note"))
-    return joined(parts)
+    return parts
 
 
 def _origin(verdict: Verdict) -> str:
@@ -109,7 +144,7 @@ def _cause(cause: Cause, verdict: Verdict) -> list[tuple[str, ...]]:
         (
             name_of(cause) if len(cause.parameters) == 1 else f"{name_of(cause)}: {name}",
             size_words(estimate, _origin(verdict)),
-            interval_words(estimate, _origin(verdict)),
+            interval_words(estimate),
             quantity(estimate.nominal, estimate.unit),
             f"{100.0 * cause.probability:.0f} %",
             standing,
@@ -135,27 +170,27 @@ def _levels(verdict: Verdict) -> list[Html]:
 
 
 def _pictures(verdict: Verdict, exhibit: ReportTraces) -> list[Html]:
-    before = [error.before for error in verdict.residuals.values()]
-    loud = sorted(range(len(before)), key=lambda c: -before[c])[:SHOWN]
+    large = exhibit.telling[:SHOWN].tolist()
     shown = exhibit.traces[:DRAWN]
     what = (
-        f"Fitted model: {' with '.join(map(spoken, exhibit.causes))} and commissioning errors."
+        f"The model with {' with '.join(map(spoken, exhibit.causes))}, beside the best that its"
+        " tolerances alone can do, in the channels where the two differ most."
         if exhibit.causes
-        else "Fitted model: commissioning errors alone."
+        else "No cause is in the model: its tolerances alone are fitted."
     )
     if verdict.verdict is Kind.UNKNOWN and exhibit.causes:
-        what += " It is the nearest that the library has, and was not accepted."
+        what += " That cause is the nearest that the library has, and was not accepted."
     left = [
         residuals_figure(exhibit.channels, traces, f"r{k}") for k, traces in enumerate(shown, 1)
     ]
     return [
         section(
-            "Measured, nominal, fitted",
+            "Measured, without and with the cause",
             paragraph(what, "note"),
             *(
                 trace_figure(exhibit, t, c, fitted_word(verdict), f"r{k}")
                 for k, t in enumerate(shown, 1)
-                for c in loud
+                for c in large
             ),
             folded("What is left in every channel", *left),
         ),

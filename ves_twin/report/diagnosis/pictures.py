@@ -3,27 +3,25 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from ves_twin.diagnosis.adequacy import Cell
+from ves_twin.diagnosis.envelope import ENVELOPE_SD
 from ves_twin.diagnosis.forward import Channel
 from ves_twin.diagnosis.report_traces import ReportTraces, Traces
 from ves_twin.diagnosis.verdict import Verdict
+from ves_twin.report.colours import AFTER, BEFORE, MEASURED, RESIDUAL, TOLERANCES
 from ves_twin.report.figure import new_figure, svg
 from ves_twin.report.html import Html
-from ves_twin.report.plots import (
-    MEASURED,
-    RESIDUAL,
-    SIMULATED,
-    Trace,
-    draw_cells,
-    draw_change,
-    draw_traces,
-)
+from ves_twin.report.plots import Band, Trace, draw_cells, draw_change, draw_traces
 
-FITTED = "#1b7f5c"
-"""Colour of the fitted model, apart from measured and nominal."""
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+ALONE = "best without a cause, within tolerances"
+"""What the model is called that has its tolerances fitted and nothing else."""
 
 
 def change_figure(verdict: Verdict) -> Html:
@@ -31,8 +29,8 @@ def change_figure(verdict: Verdict) -> Html:
     errors = verdict.residuals
     before = [error.before for error in errors.values()]
     after = [error.after for error in errors.values()]
-    figure = draw_change(list(errors), before, after, "rms / sigma", 1.0)
-    caption = "Residual of each channel: nominal model, and the fitted one. Red: noise alone."
+    figure = draw_change(list(errors), before, after, "rms error, in sigma of the noise", 1.0)
+    caption = "Error of each channel, with the model before and after. Red: noise alone."
     return svg(figure, "change", caption)
 
 
@@ -61,26 +59,77 @@ def _ends(cell: Cell) -> str:
     return f"{cell.low:.2g}" if cell.high - cell.low < 1e-9 else f"{cell.low:.2g}-{cell.high:.2g}"
 
 
+def answer_figure(exhibit: ReportTraces, fitted: str) -> Html:
+    """`draw_answer` as a part of a page."""
+    traces, column = _telling(exhibit)
+    caption = (
+        f"{exhibit.channels[column].name} of {traces.name}, the channel that tells most; below, the"
+        " same less the model before. Grey: where a machine in order may lie, by noise and"
+        " tolerances (95 % of the rows)."
+    )
+    return svg(draw_answer(exhibit, fitted), "answer", caption)
+
+
+def _telling(exhibit: ReportTraces) -> tuple[Traces, int]:
+    """Recording and channel that tell most."""
+    column = int(exhibit.telling[0])
+    return max(exhibit.traces, key=lambda t: np.nansum(np.square(t.before[:, column]))), column
+
+
+def draw_answer(exhibit: ReportTraces, fitted: str) -> Figure:
+    """The channel that tells most: measured, model before and after, and where it may lie in order.
+
+    Below the same less the model before, since a fault is often too small to see beside a motion.
+
+    Args:
+        exhibit: traces of a verdict.
+        fitted: what the model after is called, for instance "with the cause".
+    """
+    traces, column = _telling(exhibit)
+    channel = exhibit.channels[column]
+    figure = new_figure(3.8)
+    above, below = figure.subplots(2, 1, sharex=True)
+    nominal = traces.nominal[:, column].astype(float)
+    lines = [
+        Trace("measured", traces.measured[:, column].astype(float), MEASURED),
+        Trace("model before", nominal, BEFORE),
+        Trace(f"model {fitted}", traces.fitted[:, column].astype(float), AFTER),
+    ]
+    reach = ENVELOPE_SD * traces.reach[:, column].astype(float)
+    unit = channel.unit.replace("*", " ")
+    band = Band("machine in order", nominal - reach, nominal + reach)
+    draw_traces(above, traces.time, lines, f"{channel.name}, {unit}", band)
+    gaps = [Trace(one.label, one.values - nominal, one.colour) for one in lines]
+    draw_traces(below, traces.time, gaps, f"less model before, {unit}", Band("", -reach, reach))
+    below.get_legend().remove()
+    below.set_xlabel("t, s", fontsize=8)
+    return figure
+
+
 def trace_figure(
     exhibit: ReportTraces, traces: Traces, column: int, fitted: str, name: str
 ) -> Html:
-    """One channel: measured, nominal and fitted above, both residuals in sigma below."""
+    """One channel: measured, and the model with tolerances alone and with the cause.
+
+    Below: what each of the two leaves, in sigma.
+    """
     channel = exhibit.channels[column]
     figure = new_figure(3.6)
     above, below = figure.subplots(2, 1, sharex=True)
-    lines = [
-        Trace("measured", traces.measured[:, column].astype(float), MEASURED),
-        Trace("nominal", traces.nominal[:, column].astype(float), SIMULATED),
-        Trace(fitted, traces.fitted[:, column].astype(float), FITTED),
-    ]
+    lines = [Trace("measured", traces.measured[:, column].astype(float), MEASURED)]
+    left = [Trace("before", traces.before[:, column], BEFORE)]
+    if exhibit.causes:
+        alone = traces.tolerances[:, column].astype(float)
+        lines.append(Trace(ALONE, alone, TOLERANCES))
+        left = [Trace(ALONE, traces.without[:, column], TOLERANCES)]
+    lines.append(Trace(fitted, traces.fitted[:, column].astype(float), AFTER))
+    left.append(Trace(fitted, traces.after[:, column], AFTER))
     draw_traces(above, traces.time, lines, channel.unit.replace("*", " "))
-    left = [
-        Trace("before", traces.before[:, column], SIMULATED),
-        Trace("after", traces.after[:, column], FITTED),
-    ]
-    draw_traces(below, traces.sigma_time, left, "residual, sigma", 2.0)
+    draw_traces(below, traces.sigma_time, left, "left over, sigma", 2.0)
     below.set_xlabel("t, s", fontsize=8)
-    caption = f"{channel.name}, {traces.name}. Grey: two sigma of noise."
+    caption = (
+        f"{channel.name}, {traces.name}. Below: measured less model. Grey: two sigma of noise."
+    )
     return svg(figure, f"{name}-{channel.name}", caption)
 
 

@@ -7,6 +7,7 @@ import numpy as np
 from ves_twin.core.quantity import digits, quantity
 from ves_twin.diagnosis.trend.change import Change, Course
 from ves_twin.diagnosis.trend.result import Answer, FollowedCause, Trend
+from ves_twin.report.colours import AFTER, MEASURED
 from ves_twin.report.diagnosis.trend_words import (
     trend_basis,
     trend_headline,
@@ -17,7 +18,6 @@ from ves_twin.report.diagnosis.words import spoken
 from ves_twin.report.figure import new_figure, svg
 from ves_twin.report.html import Html, bullets, paragraph, section, table
 from ves_twin.report.page import html_page
-from ves_twin.report.plots import MEASURED, SIMULATED
 
 
 def trend_page(trend: Trend, title: str = "Trend") -> str:
@@ -51,7 +51,7 @@ def _figure(trend: Trend, cause: FollowedCause, change: Change) -> Html:
     grid = np.linspace(days[0], days[-1], 400)
     course = _course(change, grid)
     if course is not None:
-        axes.plot(grid, course, color=SIMULATED, linewidth=1.4, zorder=0)
+        axes.plot(grid, course, color=AFTER, linewidth=1.4, zorder=0)
     if change.onset is not None:
         axes.axvspan(change.onset.low, change.onset.high, color="#f3e3d3", linewidth=0, zorder=-1)
     axes.axhline(cause.nominal, color="#9aa3ab", linewidth=0.8, linestyle=":")

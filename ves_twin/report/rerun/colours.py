@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-Colour = tuple[int, int, int]
-"""Red, green, blue, 0 to 255."""
+from ves_twin.report.colours import REFERENCE, Colour, rgb
 
 _CYCLE: tuple[Colour, ...] = (
     (230, 120, 60),
@@ -14,7 +13,7 @@ _CYCLE: tuple[Colour, ...] = (
     (160, 160, 160),
 )
 
-GHOST = (110, 200, 255, 70)
+GHOST = (*rgb(REFERENCE), 70)
 """Colour and opacity of the zero-g reference in the 3-D view."""
 
 BACKGROUND: Colour = (78, 88, 101)

@@ -13,19 +13,16 @@ from ves_twin.core.types import FloatArray
 from ves_twin.core.whole_file import whole_file
 from ves_twin.diagnosis.report_traces import ReportTraces, Traces
 from ves_twin.diagnosis.verdict import Verdict
-from ves_twin.report.diagnosis.words import (
-    basis_sentences,
-    fitted_word,
-    gain_sentence,
-    headline,
+from ves_twin.report.colours import AFTER, BEFORE, MEASURED, TOLERANCES, Colour, rgb
+from ves_twin.report.diagnosis.answer import (
+    confidence_sentence,
     nearest_sentence,
+    next_step,
+    verdict_sentence,
 )
-from ves_twin.report.rerun.colours import Colour
+from ves_twin.report.diagnosis.basis import basis_sentences, gain_sentence
+from ves_twin.report.diagnosis.words import fitted_word
 from ves_twin.report.rerun.series import shown
-
-MEASURED: Colour = (80, 165, 235)
-NOMINAL: Colour = (230, 120, 60)
-FITTED: Colour = (75, 185, 125)
 
 
 def write_diagnosis_rrd(verdict: Verdict, path: Path) -> Path:
@@ -64,7 +61,13 @@ def _write(verdict: Verdict, exhibit: ReportTraces, path: Path) -> None:
 
 
 def _account(verdict: Verdict) -> str:
-    said = [f"**{headline(verdict)}**", nearest_sentence(verdict), gain_sentence(verdict)]
+    said = [
+        f"**{verdict_sentence(verdict)}**",
+        f"How sure: {confidence_sentence(verdict)}",
+        f"What next: {next_step(verdict)}",
+        nearest_sentence(verdict),
+        gain_sentence(verdict),
+    ]
     return "\n\n".join([text for text in said if text] + list(basis_sentences(verdict))) + "\n"
 
 
@@ -78,15 +81,16 @@ def _send_channel(
 ) -> None:
     channel = exhibit.channels[c]
     factor, unit = shown(channel.signal, channel.unit)
-    models = (traces.measured, traces.nominal, traces.fitted)
-    names = [f"{word} [{unit}]" for word in ("measured", "nominal", fitted)]
-    colours = [MEASURED, NOMINAL, FITTED]
+    models = (traces.measured, traces.nominal, traces.tolerances, traces.fitted)
+    words = ("measured", "model before", "tolerances fitted", fitted)
+    names = [f"{word} [{unit}]" for word in words]
+    colours = [rgb(name) for name in (MEASURED, BEFORE, TOLERANCES, AFTER)]
     values = factor * np.column_stack([rows[:, c].astype(float) for rows in models])
     _send(stream, f"{root}/compared/{channel.name}", names, colours, traces.time, values)
     left = np.column_stack([traces.before[:, c], traces.after[:, c]])
     names = ["before [sigma]", "after [sigma]"]
     entity = f"{root}/sigma/{channel.name}"
-    _send(stream, entity, names, [NOMINAL, FITTED], traces.sigma_time, left)
+    _send(stream, entity, names, [rgb(BEFORE), rgb(AFTER)], traces.sigma_time, left)
 
 
 def _send(

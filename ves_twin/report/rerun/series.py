@@ -11,7 +11,8 @@ import numpy as np
 from ves_twin.core.recording.recording import Recording
 from ves_twin.core.signals import SIGNALS
 from ves_twin.core.types import FloatArray
-from ves_twin.report.rerun.colours import Colour, axis_colours, pale
+from ves_twin.report.colours import MEASURED, REFERENCE, Colour, rgb
+from ves_twin.report.rerun.colours import axis_colours, pale
 
 SHOWN_UNITS = {"m": (1e3, "mm"), "rad": (1e3, "mrad"), "Pa": (1e-5, "bar"), "1": (1.0, "-")}
 """SI unit -> factor and unit in a plot; other units are shown as they are."""
@@ -120,7 +121,7 @@ def _base_motion(recording: Recording) -> list[Series]:
     if reference in recording.signals:
         words.append("zero-g reference" if reference == "reference.pose" else "command")
         sources.append(recording[reference])
-    colours = (axis_colours(2)[1], axis_colours(2)[0])[: len(sources)]
+    colours = (rgb(MEASURED), rgb(REFERENCE))[: len(sources)]
     result = []
     for i, (axis, unit) in enumerate(zip(pose.axes, pose.units, strict=True)):
         factor, label = shown(source, unit)

@@ -1,0 +1,203 @@
+"""headline: a diagnosis in three sentences: what was found, how sure it is, what to do next."""
+
+from __future__ import annotations
+
+from ves_twin.core.quantity import percent, shares
+from ves_twin.diagnosis.disagreement import disagree
+from ves_twin.diagnosis.verdict import Cause, Kind, Verdict
+from ves_twin.report.diagnosis.limits import next_sentences
+from ves_twin.report.diagnosis.words import TOLD, capital, ends_words, name_of, size_words, spoken
+
+STRANGER = 0.5
+"""Share of a channel's own spread that stays unexplained where the model is hardly this machine."""
+
+
+def headline(verdict: Verdict) -> str:
+    """The verdict and how sure it is."""
+    return f"{verdict_sentence(verdict)} {confidence_sentence(verdict)}"
+
+
+def verdict_sentence(verdict: Verdict) -> str:
+    """What was found."""
+    names = [_sized(cause) for cause in verdict.causes]
+    match verdict.verdict:
+        case Kind.NOTHING:
+            return _nothing(verdict)
+        case Kind.UNKNOWN:
+            return _unknown(verdict)
+        case _ if verdict.proved:
+            return _proved(verdict)
+        case Kind.AMBIGUOUS | Kind.PARTIAL:
+            return verdict.naming([name_of(cause) for cause in verdict.causes])
+        case _:
+            return verdict.naming(names, _begin(verdict))
+
+
+def confidence_sentence(verdict: Verdict) -> str:
+    """How sure that is."""
+    match verdict.verdict:
+        case Kind.NOTHING:
+            return _shown(verdict)
+        case Kind.UNKNOWN:
+            return _beyond(verdict)
+        case _ if verdict.proved:
+            rate = percent(verdict.false_discovery_rate)
+            return (
+                f"Of {verdict.put_to_proof} that were tried, at a false-discovery rate of {rate};"
+                " only firm names are the mechanism."
+            )
+        case _:
+            return _doubt(verdict)
+
+
+def next_step(verdict: Verdict) -> str:
+    """What to do next: the first thing that would make it surer, else what to do about it."""
+    if tone(verdict) == "good":
+        return "Nothing to do. Smaller faults need a longer recording or more channels."
+    if tone(verdict) == "bad":
+        names = " and ".join(name_of(cause) for cause in verdict.causes[:TOLD])
+        return f"Look at {names} on the machine, and simulate with the extended model."
+    return next((text for text in next_sentences(verdict)), "Record another programme.")
+
+
+def tone(verdict: Verdict) -> str:
+    """Style of the headline: good, bad, or open where more has to be known."""
+    if verdict.verdict is Kind.NOTHING:
+        blind = [f for f in verdict.smallest_findable.values() if f.value is None]
+        return "open" if blind or verdict.unseen else "good"
+    settled = verdict.verdict in (Kind.NAMED, Kind.SEVERAL)
+    proven = verdict.gain is not None and verdict.gain.passed
+    return "bad" if settled and proven and all(c.firm for c in verdict.causes) else "open"
+
+
+def _sized(cause: Cause) -> str:
+    """A cause with its size, where it is one number."""
+    sizes = list(cause.parameters.values())
+    return f"{name_of(cause)}, {size_words(sizes[0])}" if len(sizes) == 1 else name_of(cause)
+
+
+def _nothing(verdict: Verdict) -> str:
+    count = len(verdict.smallest_findable)
+    if count and _lost(verdict) == count:
+        return f"Nothing can be said: this recording would show none of the {count} causes."
+    return "Nothing found: what is off lies within noise and commissioning tolerances."
+
+
+def _lost(verdict: Verdict) -> int:
+    return sum(f.value is None for f in verdict.smallest_findable.values())
+
+
+def _shown(verdict: Verdict) -> str:
+    """What a recording in which nothing was found would have shown."""
+    lost, count = _lost(verdict), len(verdict.smallest_findable)
+    if lost:
+        return f"About {lost} of {count} causes this recording can say nothing."
+    return f"Each of the {count} causes would have shown from the size listed below on."
+
+
+def _unknown(verdict: Verdict) -> str:
+    strange = strangers(verdict)
+    if disagree(verdict.alone):
+        return (
+            "These recordings do not agree. Each alone is in order or has one cause, but nothing"
+            " explains all of them."
+        )
+    if strange:
+        names = ", ".join(strange[:TOLD])
+        return (
+            "Something is wrong that no cause in the library explains, and the recording hardly"
+            f" looks like one of this machine: most of {names} stays unexplained."
+        )
+    return "Something is wrong that no cause in the library explains."
+
+
+def _beyond(verdict: Verdict) -> str:
+    """How far what is left is from what machines in order leave."""
+    figures = verdict.statistics
+    left = figures.misfit if figures.misfit_after is None else figures.misfit_after
+    times = left / max(figures.misfit_threshold, 1e-30)
+    if times > 1.0:
+        return f"What is left is {times:.2g} times the most that machines in order leave."
+    return "No cause fits well enough to be accepted."
+
+
+def _proved(verdict: Verdict) -> str:
+    """Of causes that were proved one by one: firm names, those that act like one, what is left."""
+    firm = [spoken(one.label) for one in verdict.proved if one.firm]
+    like = [spoken(one.label) for one in verdict.proved if not one.firm]
+    count = len(verdict.proved)
+    what = "1 extension predicts" if count == 1 else f"{count} extensions predict"
+    said = f"{what} held-out data better, each beside all others."
+    for begin, names in (("Firm", firm), ("Acting like", like)):
+        more = f" and {len(names) - TOLD} more" if len(names) > TOLD else ""
+        said += f" {begin}: {', '.join(names[:TOLD])}{more}." if names else ""
+    if verdict.verdict is Kind.PARTIAL:
+        said += " Something more stays unexplained."
+    return said
+
+
+def _begin(verdict: Verdict) -> str:
+    proven = verdict.gain is not None and verdict.gain.passed
+    return "Found:" if proven and all(c.firm for c in verdict.causes) else "Best explained by"
+
+
+def _doubt(verdict: Verdict) -> str:
+    loose = [cause for cause in verdict.causes if not cause.firm]
+    gain = verdict.gain
+    if verdict.unconfirmed and gain is not None:
+        if not gain.by_causes:
+            return "The held-out recordings are explained better without it."
+        return "The held-out recordings do not confirm it."
+    if loose:
+        return _loose(verdict, loose)
+    if verdict.basis.held_out == "none":
+        it = "Each" if verdict.verdict is Kind.AMBIGUOUS else "It"
+        return f"{it} fits these recordings; no other recording has tested it."
+    if gain is None or gain.share is None:
+        return "The held-out recordings can neither confirm nor refute it."
+    share = shares(gain.share, gain.low, gain.high)[0]
+    return f"Held-out recordings confirm it: there it takes {share} of the error beyond noise away."
+
+
+def _loose(verdict: Verdict, loose: list[Cause]) -> str:
+    """Of causes that may be commissioning errors."""
+    most = max(cause.sigmas or 0.0 for cause in loose)
+    which = "It is" if len(verdict.causes) == 1 else f"{name_of(loose[0])} is"
+    which = "Each is" if len(loose) == len(verdict.causes) > 1 else capital(which)
+    upto = "up to " if len(loose) > 1 else ""
+    if verdict.basis.baseline == "measured":
+        return (
+            f"{which} off by {upto}{most:.1f} times what a machine in order may change by since"
+            " its baseline: a fault, or a change that large."
+        )
+    return (
+        f"{which} {upto}{most:.1f} declared tolerances off: a fault, or a machine that was set up"
+        " that far off."
+    )
+
+
+def nearest_sentence(verdict: Verdict) -> str:
+    """What comes nearest where nothing in the library explains the record; else empty."""
+    left = verdict.leftover
+    if verdict.verdict is not Kind.UNKNOWN or left is None or disagree(verdict.alone):
+        return ""
+    said = ""
+    if verdict.suspect:
+        names = " with ".join(map(spoken, verdict.suspect.split(" with ")))
+        said = f"Nearest, and not accepted: {names}. "
+        if verdict.gain is not None and verdict.gain.share is not None and verdict.gain.passed:
+            share = shares(verdict.gain.share)[0]
+            said += f"It takes {share} of the held-out error away, and more is missing. "
+    if left.loud:
+        top = left.loud[0]
+        said += f"What is left is loudest in {top.channel} at {ends_words(top)}."
+    return said
+
+
+def strangers(verdict: Verdict) -> list[str]:
+    """Channels of which the best explanation leaves more than half of their own movement."""
+    return [
+        name
+        for name, error in verdict.residuals.items()
+        if error.after > 10.0 and error.after_si > STRANGER * error.spread
+    ]

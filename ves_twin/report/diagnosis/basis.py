@@ -1,0 +1,93 @@
+"""rests_on, basis_sentences, gain_sentence: what a verdict rests on, and what it is worth."""
+
+from __future__ import annotations
+
+from ves_twin.core.quantity import shares
+from ves_twin.diagnosis.tolerances import FEWEST
+from ves_twin.diagnosis.verdict import Basis, Verdict
+
+GIVEN = {
+    ("noise", "measured"): "noise measured at a standstill",
+    ("noise", "declared"): "the declared noise",
+    ("tolerances", "measured"): "tolerances measured on machines in order",
+    ("tolerances", "declared"): "the declared tolerances",
+    ("held_out", "measured"): "held-out recordings",
+    ("held_out", "split"): "every second stretch of the record, held out",
+    ("baseline", "measured"): "a recording of this machine in order",
+}
+"""Field of a basis and what it says -> what was there."""
+
+MISSING = {
+    ("held_out", "none"): "a held-out recording",
+    ("baseline", "none"): "a recording of this machine in order",
+}
+"""The same -> what was not there."""
+
+
+def rests_on(basis: Basis) -> str:
+    """What a verdict rests on and what nobody gave, in one sentence."""
+    fields = ("noise", "tolerances", "held_out", "baseline")
+    keys = [(name, getattr(basis, name)) for name in fields]
+    there = _listed([GIVEN[key] for key in keys if key in GIVEN])
+    absent = " or ".join(MISSING[key] for key in keys if key in MISSING)
+    return f"{there}; {absent} was not given." if absent else f"{there}."
+
+
+def _listed(names: list[str]) -> str:
+    return f"{', '.join(names[:-1])} and {names[-1]}" if len(names) > 1 else names[0]
+
+
+def gain_sentence(verdict: Verdict) -> str:
+    """What the extension is worth on recordings it has not seen."""
+    gain = verdict.gain
+    if gain is None:
+        if not verdict.causes:
+            return ""
+        return (
+            "Gain: not known. No held-out recording was given, so nothing shows that the extended"
+            " plant predicts better than the nominal one."
+        )
+    if gain.share is None:
+        return (
+            "Gain: the held-out recordings show no error beyond noise that an extension could take"
+            " away; they neither confirm nor refute it."
+        )
+    share, low, high = shares(gain.share, gain.low, gain.high)
+    span = f"{low} to {high}"
+    said = f"{share} of the error beyond noise on held-out recordings ({span})"
+    if gain.passed:
+        return f"Gain: the extended plant takes away {said}."
+    if not gain.by_causes:
+        return f"Gain: {said}. But the same rig without the cause predicts them better."
+    return f"Gain: {said}. That is no clear gain."
+
+
+def basis_sentences(verdict: Verdict) -> tuple[str, ...]:
+    """On what the verdict rests, in plain words."""
+    basis, limit = verdict.basis, verdict.statistics.naming_limit
+    noise = {
+        "measured": "Noise: measured at a standstill.",
+        "declared": "Noise: as declared; no standstill recording was given.",
+    }
+    unit = "declared tolerances off"
+    if basis.baseline == "measured":
+        unit = "times as far off as a machine in order may change since its baseline"
+    beyond = f" A fault is what is more than {limit:.1f} {unit}." if limit else ""
+    scale = verdict.statistics.tolerance_scale or 0.0
+    tolerances = {
+        "measured": "Tolerances: measured on commissioning recordings,"
+        f" {scale:.2g} times the declared ones.{beyond}",
+        "declared": "Tolerances: declared, not measured; they may be too small. With"
+        f" {FEWEST} commissioning recordings they would be measured.{beyond}",
+    }
+    held = {
+        "measured": "Held-out recordings: given.",
+        "split": "Held-out recordings: none were given. The record was cut into stretches, and"
+        " every second one was held out.",
+        "none": "Held-out recordings: none. The verdict was not tested on other data.",
+    }
+    return (
+        noise.get(basis.noise, f"Noise: {basis.noise}."),
+        tolerances.get(basis.tolerances, f"Tolerances: {basis.tolerances}."),
+        held.get(basis.held_out, f"Held-out recordings: {basis.held_out}."),
+    )
