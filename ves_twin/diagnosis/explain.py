@@ -10,14 +10,14 @@ from ves_twin.core.types import FloatArray
 from ves_twin.diagnosis.adequacy import Cell, cells, misfit
 from ves_twin.diagnosis.assess import Assessment, pull_limit
 from ves_twin.diagnosis.evidence import Evidence
+from ves_twin.diagnosis.fit_job import FitJob
 from ves_twin.diagnosis.forward import Hypothesis
 from ves_twin.diagnosis.linearise import Linearisation, renewed
 from ves_twin.diagnosis.null import Thresholds
 from ves_twin.diagnosis.probability import probabilities
-from ves_twin.diagnosis.refine import ROUGH, Fit, bare_residual, refine, residual_about
+from ves_twin.diagnosis.refine import Fit, bare_residual, refine, residual_about
 from ves_twin.diagnosis.runs import Progress, silent
 from ves_twin.diagnosis.screen import Candidate, Screen
-from ves_twin.diagnosis.search import RELATIVE_CONVERGENCE
 from ves_twin.diagnosis.settings import Settings
 from ves_twin.diagnosis.signature_library import build_bank
 
@@ -189,44 +189,22 @@ def _far(desk: FitContext, fits: list[Fit]) -> bool:
     return all(one.score < HOPE * power for one, _ in first.screen.pairs(first.z, 1))
 
 
-@dataclass(frozen=True)
-class _Job:
-    """One fit, as it travels to a process."""
-
-    evidence: Evidence
-    causes: tuple[Hypothesis, ...]
-    shift: FloatArray
-    local: Linearisation
-    step_share: float
-    enough: float = RELATIVE_CONVERGENCE
-
-    @staticmethod
-    def again(evidence: Evidence, fit: Fit, local: Linearisation | None = None) -> _Job:
-        """From where a fit ended, under another noise or with other columns."""
-        return _Job(evidence, fit.causes, fit.shift, local or fit.local, fit.step_share)
-
-    @staticmethod
-    def run(job: _Job) -> Fit:
-        at = (job.shift, job.local, 0, job.step_share)
-        return refine(job.evidence, job.causes, *at, enough=job.enough)
-
-
 def _job(
     evidence: Evidence,
     causes: tuple[Hypothesis, ...],
     sizes: list[FloatArray],
     start: _Start,
-) -> _Job:
+) -> FitJob:
     """From a point and the columns there, with the causes at given sizes; roughly, at first."""
     runs, shift = evidence.runs, start.shift
     for cause, size in zip(causes, sizes, strict=True):
         shift = runs.depart(shift, runs.indices(cause), size)
-    return _Job(evidence, causes, shift, start.local, start.step_share, ROUGH)
+    return FitJob(evidence, causes, shift, start.local, start.step_share, True)
 
 
-def _refined(jobs: list[_Job], desk: FitContext, what: str) -> list[Fit]:
+def _refined(jobs: list[FitJob], desk: FitContext, what: str) -> list[Fit]:
     fits: list[Fit] = []
-    for fit in desk.first.evidence.runs.workers.map(_Job.run, jobs):
+    for fit in desk.first.evidence.runs.workers.map(FitJob.run, jobs):
         desk.progress(len(fits) / len(jobs), what)
         fits.append(fit)
     return fits
@@ -259,7 +237,7 @@ def _settled(evidence: Evidence, fits: list[Fit], desk: FitContext) -> list[Fit]
         settled = _again(evidence, leader, desk.settings.rounds)
         near = RIVAL_RATIO * settled.chi2
         others = [fit for fit in fits if fit is not leader]
-        jobs = [_Job.again(evidence, f, settled.local) for f in others if f.chi2 < near]
+        jobs = [FitJob.again(evidence, f, settled.local) for f in others if f.chi2 < near]
         rivals = _refined(jobs, desk, "fitting its rivals")
         fits = [settled, *rivals, *(fit for fit in others if fit.chi2 >= near)]
         if all(rival.chi2 >= settled.chi2 for rival in rivals):
@@ -305,9 +283,9 @@ def judge(desk: FitContext, fits: list[Fit], far: bool = False) -> Explanation:
     evidence = Evidence(runs, first.evidence.measured, own)
     commissioning = _commissioning(desk, evidence, leader)
     near = RIVAL_RATIO * leader.chi2
-    jobs = [_Job.again(evidence, fit) for fit in fits if fit.chi2 < near]
+    jobs = [FitJob.again(evidence, fit) for fit in fits if fit.chi2 < near]
     if far:
-        jobs = [replace(job, enough=ROUGH) for job in jobs]
+        jobs = [replace(job, rough=True) for job in jobs]
     ranked = _refined(jobs, desk, "weighing rivals")
     ranked.sort(key=lambda fit: fit.chi2)
     best = ranked[0]
@@ -345,12 +323,12 @@ def _commissioning(desk: FitContext, evidence: Evidence, leader: Fit) -> Fit:
     """
     first, runs = desk.first, evidence.runs
     shift, start = np.where(runs.sd > 0.0, leader.shift, 0.0), _start(first)
-    at = (shift, leader.local, leader.step_share, ROUGH)
-    best = _refined([_Job(evidence, (), *at)], desk, "commissioning errors alone")[0]
+    at = (shift, leader.local, leader.step_share, True)
+    best = _refined([FitJob(evidence, (), *at)], desk, "commissioning errors alone")[0]
     last = first.commissioning
     if last is None or last.chi2 < WORSE_START * best.chi2:
-        at = (start.shift, start.local, start.step_share, ROUGH)
-        alone = _refined([_Job(evidence, (), *at)], desk, "commissioning errors alone")[0]
+        at = (start.shift, start.local, start.step_share, True)
+        alone = _refined([FitJob(evidence, (), *at)], desk, "commissioning errors alone")[0]
         best = min(best, alone, key=lambda fit: fit.chi2)
     clear = CLEAR * desk.thresholds.effect
     if best.chi2 - leader.chi2 > clear + SLACK * leader.chi2:
