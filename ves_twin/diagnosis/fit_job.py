@@ -10,7 +10,7 @@ from ves_twin.diagnosis.forward import Hypothesis
 from ves_twin.diagnosis.linearise import Linearisation
 from ves_twin.diagnosis.refine import ROUGH, Fit, refine
 
-FEW = 10
+FEW = 5
 """Steps of a rough fit: what is far from the record mimics it by ever smaller ones."""
 
 
