@@ -14,6 +14,7 @@ from ves_twin.diagnosis.build_up.build_up import Built, build_up
 from ves_twin.diagnosis.build_up.halves import split
 from ves_twin.diagnosis.build_up.result import BuildUp
 from ves_twin.diagnosis.explain import Explanation, FitContext, explain
+from ves_twin.diagnosis.fit_job import FEW
 from ves_twin.diagnosis.forecast import forecast
 from ves_twin.diagnosis.forward import Forward
 from ves_twin.diagnosis.gain import Gain, held_out_gain
@@ -138,7 +139,7 @@ def _within(found: Explanation, limit: float) -> Fit:
     best = found.best  # held within the limit it is a better start than what was strained
     start = np.where(best.local.runs.sd > 0.0, best.shift, 0.0)
     at = (start, best.local, 0, best.step_share)
-    return refine(found.evidence, (), *at, farthest=limit, enough=ROUGH)
+    return refine(found.evidence, (), *at, farthest=limit, enough=ROUGH, steps=FEW)
 
 
 def decide(

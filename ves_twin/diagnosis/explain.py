@@ -281,7 +281,7 @@ def judge(desk: FitContext, fits: list[Fit], far: bool = False) -> Explanation:
     plain = replace(declared, colour=0.0 * declared.colour, level=0.0 * declared.level + 1.0)
     own = plain.adapted(plain.apply(bare_residual(first.evidence, leader)))
     evidence = Evidence(runs, first.evidence.measured, own)
-    commissioning = _commissioning(desk, evidence, leader)
+    commissioning, rough = _commissioning(desk, evidence, leader)
     near = RIVAL_RATIO * leader.chi2
     jobs = [FitJob.again(evidence, fit) for fit in fits if fit.chi2 < near]
     if far:
@@ -289,25 +289,27 @@ def judge(desk: FitContext, fits: list[Fit], far: bool = False) -> Explanation:
     ranked = _refined(jobs, desk, "weighing rivals")
     ranked.sort(key=lambda fit: fit.chi2)
     best = ranked[0]
-    allowance = settings.model_error**2 * max(commissioning.chi2 - best.chi2, 0.0)
+    taken = max(commissioning.chi2 - best.chi2, 0.0)
+    sure = min(taken, best.power) if rough else taken
+    doubt = settings.model_error * np.sqrt(sure / max(taken, 1e-30))
+    allowance = doubt**2 * taken
     chosen, weights = probabilities(ranked, allowance, settings.odds)
     before = cells(own, commissioning.residual)
     after = cells(own, chosen[0].residual)
-    score = misfit(after, before, settings.model_error)
+    score = misfit(after, before, float(doubt))
     beside = allowance + first.allowance
     second = None if far else _second(desk, evidence, chosen[0], beside)
     limit = desk.thresholds.effect + beside
-    fall = commissioning.chi2 - chosen[0].chi2
+    fall = commissioning.chi2 - chosen[0].chi2 - (taken - sure)
     strained = chosen[0].pull > pull_limit(first.screen.bank, settings.alpha)
-    enough = fall > LEAST * desk.thresholds.effect and not strained
-    last = second is not None and second < limit
+    enough = fall > LEAST * desk.thresholds.effect and not strained and second is not None
     return Explanation(
         evidence=evidence,
         commissioning=commissioning,
         fits=tuple(ranked),
         chosen=tuple(chosen),
         weights=tuple(weights),
-        adequate=score < desk.thresholds.misfit and last and enough,
+        adequate=enough and score < desk.thresholds.misfit and (second or 0.0) < limit,
         score=score,
         second=second,
         before=tuple(before),
@@ -315,26 +317,27 @@ def judge(desk: FitContext, fits: list[Fit], far: bool = False) -> Explanation:
     )
 
 
-def _commissioning(desk: FitContext, evidence: Evidence, leader: Fit) -> Fit:
-    """The best fit without a cause, from the first look, and beside the leader.
+def _commissioning(desk: FitContext, evidence: Evidence, leader: Fit) -> tuple[Fit, bool]:
+    """The best fit without a cause, from the first look and beside the leader; whether it is rough.
 
-    Beside the leader: what it moves, where commissioning may have moved it too, stays. Where the
-    cause takes off much, a rough fit is enough; where little, columns are computed anew.
+    Beside the leader: what it moves, where commissioning may have moved it too, stays. Columns are
+    computed anew only where the cause takes off little.
     """
     first, runs = desk.first, evidence.runs
     shift, start = np.where(runs.sd > 0.0, leader.shift, 0.0), _start(first)
-    at = (shift, leader.local, leader.step_share, True)
-    best = _refined([FitJob(evidence, (), *at)], desk, "commissioning errors alone")[0]
-    last = first.commissioning
-    if last is None or last.chi2 < WORSE_START * best.chi2:
-        at = (start.shift, start.local, start.step_share, True)
-        alone = _refined([FitJob(evidence, (), *at)], desk, "commissioning errors alone")[0]
+    job = FitJob(evidence, (), shift, leader.local, leader.step_share, True)
+    best = _refined([job], desk, "commissioning errors alone")[0]
+    if (last := first.commissioning) is None or last.chi2 < WORSE_START * best.chi2:
+        job = FitJob(evidence, (), start.shift, start.local, start.step_share, True)
+        alone = _refined([job], desk, "commissioning errors alone")[0]
         best = min(best, alone, key=lambda fit: fit.chi2)
     clear = CLEAR * desk.thresholds.effect
     if best.chi2 - leader.chi2 > clear + SLACK * leader.chi2:
-        return best
+        return best, True
     best = _again(evidence, best, 0)
-    return best if best.chi2 - leader.chi2 > clear else _again(evidence, best, desk.settings.rounds)
+    if best.chi2 - leader.chi2 > clear:
+        return best, False
+    return _again(evidence, best, desk.settings.rounds), False
 
 
 def _second(desk: FitContext, evidence: Evidence, fit: Fit, allowance: float) -> float:

@@ -66,6 +66,13 @@ class Fit:
         errors = np.setdiff1d(self.active[len(self.sizes) :], self.active[: len(self.sizes)])
         return float(np.max(np.abs(self.shift[errors]) / runs.sd[errors], initial=0.0))
 
+    @property
+    def power(self) -> float:
+        """d^2 of the causes: their sizes over their covariance, as the record tells it."""
+        count = len(self.sizes)
+        known = self.posterior[:count, :count]
+        return float(self.sizes @ np.linalg.lstsq(known, self.sizes, rcond=None)[0])
+
 
 def refine(
     evidence: Evidence,
