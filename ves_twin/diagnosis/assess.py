@@ -27,7 +27,7 @@ GLANCE = 2
 """Steps of a first fit of commissioning errors: a rig in order is mostly known after them."""
 
 FAR = 4.0
-"""chi^2 for each sample from which a record is far from noise."""
+"""chi^2 for each sample from which new columns of commissioning errors are not worth their runs."""
 
 STRANGE = 1.5
 """chi^2 for each sample beside the best hypothesis above which it is not taken for the cause."""
@@ -124,9 +124,10 @@ def assess(
         return first
     look = first
     for rounds, steps in ((0, GLANCE), (0, ITERATIONS), (ROUNDS, ITERATIONS)):
-        if sparse and rounds and _far(look):
+        if sparse and rounds and _left(look) > FAR:
             break
-        fit = _fitted(look, rounds, steps, ROUGH if sparse and _far(look) else RELATIVE_CONVERGENCE)
+        rough = sparse and _left(look) > STRANGE
+        fit = _fitted(look, rounds, steps, ROUGH if rough else RELATIVE_CONVERGENCE)
         own = whitening.adapted(whitening.apply(bare_residual(look.evidence, fit)))
         look = _look(Evidence(runs, measured, own), Screen(bank, own, shaped=shaped), fit)
         look = replace(look, bends=bends)
@@ -181,10 +182,10 @@ def first_look(measured: SingleArray, shaped: Prewhitened) -> Assessment:
     return _look(Evidence(bank.base.runs, measured, own), Screen(bank, own, shaped=shaped), None)
 
 
-def _far(look: Assessment) -> bool:
-    """Whether commissioning errors leave much more than noise."""
+def _left(look: Assessment) -> float:
+    """What commissioning errors leave: chi^2 for each sample; 0 before they were fitted."""
     fit = look.commissioning
-    return fit is not None and fit.chi2 > FAR * len(fit.residual)
+    return 0.0 if fit is None else fit.chi2 / len(fit.residual)
 
 
 def _fitted(look: Assessment, rounds: int, steps: int, enough: float) -> Fit:

@@ -8,7 +8,7 @@ import numpy as np
 
 from ves_twin.core.types import FloatArray
 from ves_twin.diagnosis.adequacy import Cell, cells, misfit
-from ves_twin.diagnosis.assess import Assessment, pull_limit
+from ves_twin.diagnosis.assess import STRANGE, Assessment, pull_limit
 from ves_twin.diagnosis.evidence import Evidence
 from ves_twin.diagnosis.fit_job import FitJob
 from ves_twin.diagnosis.forward import Hypothesis
@@ -183,7 +183,7 @@ def _far(desk: FitContext, fits: list[Fit]) -> bool:
         return False
     noise = len(best.residual)
     there = first.commissioning.chi2 - noise
-    if best.chi2 - noise < (1.0 - HOPE) * there or best.chi2 < RIVAL_RATIO * noise:
+    if best.chi2 - noise < (1.0 - HOPE) * there or best.chi2 < STRANGE * noise:
         return False
     power = float(first.z @ first.left)
     return all(one.score < HOPE * power for one, _ in first.screen.pairs(first.z, 1))
