@@ -271,8 +271,7 @@ def judge(desk: FitContext, fits: list[Fit], far: bool = False) -> Explanation:
     Args:
         desk: the record before any cause.
         fits: under the first whitening.
-        far: whether all of them are so far off that they are weighed roughly, and no further
-            cause is looked for beside the best.
+        far: whether all are so far off that they are weighed roughly, and no other is looked for.
     """
     first, settings = desk.first, desk.settings
     runs = first.evidence.runs
@@ -281,7 +280,7 @@ def judge(desk: FitContext, fits: list[Fit], far: bool = False) -> Explanation:
     plain = replace(declared, colour=0.0 * declared.colour, level=0.0 * declared.level + 1.0)
     own = plain.adapted(plain.apply(bare_residual(first.evidence, leader)))
     evidence = Evidence(runs, first.evidence.measured, own)
-    commissioning, rough = _commissioning(desk, evidence, leader)
+    commissioning, rough = _commissioning(desk, evidence, leader, far)
     near = RIVAL_RATIO * leader.chi2
     jobs = [FitJob.again(evidence, fit) for fit in fits if fit.chi2 < near]
     if far:
@@ -317,7 +316,9 @@ def judge(desk: FitContext, fits: list[Fit], far: bool = False) -> Explanation:
     )
 
 
-def _commissioning(desk: FitContext, evidence: Evidence, leader: Fit) -> tuple[Fit, bool]:
+def _commissioning(
+    desk: FitContext, evidence: Evidence, leader: Fit, far: bool
+) -> tuple[Fit, bool]:
     """The best fit without a cause, from the first look and beside the leader; whether it is rough.
 
     Beside the leader: what it moves, where commissioning may have moved it too, stays. Columns are
@@ -331,13 +332,11 @@ def _commissioning(desk: FitContext, evidence: Evidence, leader: Fit) -> tuple[F
         job = FitJob(evidence, (), start.shift, start.local, start.step_share, True)
         alone = _refined([job], desk, "commissioning errors alone")[0]
         best = min(best, alone, key=lambda fit: fit.chi2)
-    clear = CLEAR * desk.thresholds.effect
-    if best.chi2 - leader.chi2 > clear + SLACK * leader.chi2:
+    clear = leader.chi2 + CLEAR * desk.thresholds.effect
+    if far or best.chi2 > clear + SLACK * leader.chi2:
         return best, True
     best = _again(evidence, best, 0)
-    if best.chi2 - leader.chi2 > clear:
-        return best, False
-    return _again(evidence, best, desk.settings.rounds), False
+    return (best if best.chi2 > clear else _again(evidence, best, desk.settings.rounds)), False
 
 
 def _second(desk: FitContext, evidence: Evidence, fit: Fit, allowance: float) -> float:
