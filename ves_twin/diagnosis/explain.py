@@ -183,7 +183,8 @@ def _far(desk: FitContext, fits: list[Fit]) -> bool:
         return False
     noise = len(best.residual)
     there = first.commissioning.chi2 - noise
-    if best.chi2 - noise < (1.0 - HOPE) * there or best.chi2 < STRANGE * noise:
+    least = STRANGE if desk.settings.sparse else RIVAL_RATIO
+    if best.chi2 - noise < (1.0 - HOPE) * there or best.chi2 < least * noise:
         return False
     power = float(first.z @ first.left)
     return all(one.score < HOPE * power for one, _ in first.screen.pairs(first.z, 1))
