@@ -6,7 +6,7 @@ PYTHON ?= $(shell for p in python3.12 python3.11 python3 python; do \
 BIN := .venv/bin
 PIP := $(BIN)/python -m pip install --quiet --disable-pip-version-check
 
-.PHONY: demo demo-diagnosis test nightly check fast fuzz attack mutation types lint layers bench figures fidelity real scorecard diagnosis-scorecard picture docs clean
+.PHONY: demo demo-diagnosis demo-law laws test nightly check fast fuzz attack mutation types lint layers bench figures fidelity real scorecard diagnosis-scorecard picture docs clean
 
 demo: .venv/.run
 	$(BIN)/ves-twin run beam_horizontal_truth --out runs/demo
@@ -20,6 +20,11 @@ demo-diagnosis: .venv/.run
 		--held-out $(HIDDEN)/case-0001/held_out.parquet \
 		--out $(HIDDEN)/diagnosis
 	$(BIN)/ves-twin blind reveal --out $(HIDDEN)
+
+# A law that no library has is drawn by the clock, hidden in a pendulum and found; KIND=drag: drag.
+KIND ?= drawn
+demo-law: .venv/.run
+	$(BIN)/python benchmarks/demo_law.py --kind $(KIND) --out runs/demo-law
 
 test: .venv/.dev lint layers types
 	$(BIN)/python -m pytest -n 2 --dist worksteal --durations=25 --costs runs/test-costs.csv
@@ -85,6 +90,10 @@ diagnosis-scorecard: .venv/.run
 figures: .venv/.dev
 	$(BIN)/python -m pytest -n 0 --figures docs/figures.md \
 		tests/mechanics/kinematics/test_stewart.py tests/plant tests/simulator
+
+# laws that no library has, hidden in the pendulum: counts for docs/laws.md
+laws: .venv/.dev
+	$(BIN)/python benchmarks/laws.py --out runs/laws
 
 # measured machines; the data are looked for in ../shared/data or VES_TWIN_DATA
 real: .venv/.dev

@@ -3,9 +3,12 @@
 from __future__ import annotations
 
 import json
+import xml.etree.ElementTree as ElementTree
 from collections.abc import Iterable
 from dataclasses import dataclass
 from pathlib import Path
+
+import mujoco
 
 from ves_twin.core.recording.recording import Recording
 from ves_twin.machines.mjcf.columns import read_rig_recording
@@ -30,6 +33,26 @@ def machine(folder: Path, name: str, model: str, description: str) -> Rig:
     (folder / f"{name}.xml").write_text(model)
     (folder / f"{name}.toml").write_text(description)
     return Rig.load(str(folder / f"{name}.toml"))
+
+
+def of_urdf(urdf: Path, joints: Iterable[str]) -> mujoco.MjSpec:
+    """An arm of a URDF without shapes, contacts, limits and friction, a motor at each joint."""
+    tree = ElementTree.parse(urdf)
+    for link in tree.getroot().iter("link"):
+        for part in (*link.findall("visual"), *link.findall("collision")):
+            link.remove(part)
+        inertia = link.find("inertial/inertia")
+        if inertia is not None and float(inertia.attrib["ixx"]) == 0.0:  # rounded to zero there
+            for axis in ("ixx", "iyy", "izz"):
+                inertia.attrib[axis] = "1e-4"
+    spec = mujoco.MjSpec.from_string(ElementTree.tostring(tree.getroot(), encoding="unicode"))
+    for k, name in enumerate(joints, 1):
+        joint = spec.joint(name)
+        joint.limited, joint.frictionloss, joint.actfrclimited = 0, 0.0, 0
+        actuator = spec.add_actuator(name=f"motor_{k}", target=name)
+        actuator.trntype = mujoco.mjtTrn.mjTRN_JOINT
+    spec.option.disableflags |= int(mujoco.mjtDisableBit.mjDSBL_CONTACT)
+    return spec
 
 
 def read(rig: Rig, path: Path) -> Recording:

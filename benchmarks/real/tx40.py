@@ -6,13 +6,12 @@ speed that another joint has in the recording run backwards. Every proved decoy 
 
 from __future__ import annotations
 
-import xml.etree.ElementTree as ElementTree
 from pathlib import Path
 
 import mujoco
 import numpy as np
 
-from real.machine import Set, effects, machine, read, stretch
+from real.machine import Set, effects, machine, of_urdf, read, stretch
 
 ROTORS = (0.362, 0.362, 0.0988, 0.0313, 0.0468, 0.0105)
 """Drive inertias at the joints [kg m^2], published with the data."""
@@ -44,21 +43,9 @@ smoothing = "25 Hz"
 
 def model(urdf: Path) -> str:
     """MJCF of the URDF: no shapes, no contacts, no limits; tendons that may couple neighbours."""
-    tree = ElementTree.parse(urdf)
-    for link in tree.getroot().iter("link"):
-        for part in (*link.findall("visual"), *link.findall("collision")):
-            link.remove(part)
-        inertia = link.find("inertial/inertia")
-        if inertia is not None and float(inertia.attrib["ixx"]) == 0.0:  # rounded to zero there
-            for axis in ("ixx", "iyy", "izz"):
-                inertia.attrib[axis] = "1e-4"
-    spec = mujoco.MjSpec.from_string(ElementTree.tostring(tree.getroot(), encoding="unicode"))
+    spec = of_urdf(urdf, JOINTS)
     for name, rotor in zip(JOINTS, ROTORS, strict=True):
-        joint = spec.joint(name)
-        joint.armature, joint.limited, joint.frictionloss = rotor, 0, 0.0
-        joint.actfrclimited = 0
-        actuator = spec.add_actuator(name=f"motor_{name[-1]}", target=name)
-        actuator.trntype = mujoco.mjtTrn.mjTRN_JOINT
+        spec.joint(name).armature = rotor
     for k, decoy in enumerate(DECOYS, 1):  # a body that nothing holds, moved by the recording
         body = spec.worldbody.add_body(name=decoy)
         body.mass, body.inertia, body.ipos = 1.0, [1.0, 1.0, 1.0], [0.0, 0.0, 0.0]
@@ -72,7 +59,6 @@ def model(urdf: Path) -> str:
         tendon = spec.add_tendon(name=pair)
         tendon.wrap_joint(f"joint_{one}", 1.0)
         tendon.wrap_joint(f"joint_{two}", 1.0 if sign == "sum" else -1.0)
-    spec.option.disableflags |= int(mujoco.mjtDisableBit.mjDSBL_CONTACT)
     spec.compile()
     return str(spec.to_xml())
 
@@ -104,6 +90,7 @@ def description() -> str:
         ("viscous_asymmetry", JOINTS),
         ("coulomb_asymmetry", JOINTS),
         ("stribeck_friction", JOINTS),
+        ("load_friction", JOINTS),
         ("quadratic_drag", JOINTS),
         ("force_offset", JOINTS),
         ("joint_spring", JOINTS),

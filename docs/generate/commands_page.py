@@ -23,10 +23,54 @@ def commands_page() -> str:
     return "\n".join(lines) + "\n"
 
 
+EXAMPLES = {
+    "scenarios": ("ves-twin scenarios",),
+    "run": (
+        "ves-twin run beam_horizontal_truth",
+        "ves-twin run position_sine --set legs.gain=16 --set run.duration=5",
+        "ves-twin run my_scenario.toml --controller my.py:Controller",
+        "ves-twin run free_float --set run.duration=5 --video free_float.gif",
+    ),
+    "sweep": ("ves-twin sweep position_sine --vary legs.gain=8..16:5 --plot sweep.png",),
+    "plan": (
+        "ves-twin plan --plant pendulum --quick",
+        "ves-twin plan --scenario identify_fast --channels leg.length --seconds 15",
+    ),
+    "diagnose": (
+        "ves-twin diagnose rec.parquet --plant my_machine.toml --held-out other.parquet",
+        "ves-twin diagnose today.parquet --plant my_machine.toml --baseline last_week.parquet",
+    ),
+    "trend": ("ves-twin trend logs/ --plant my_machine.toml",),
+    "compare": (
+        "ves-twin compare rec.parquet --plant my_machine.toml",
+        "ves-twin compare after.parquet --against before.parquet --plant my_machine.toml",
+    ),
+    "blind make": ("ves-twin blind make --machine pendulum --out runs/blind/mine",),
+    "blind answer": ("ves-twin blind answer --out runs/blind/mine",),
+    "blind play": ("ves-twin blind play --out runs/blind/mine",),
+    "blind score": ("ves-twin blind score --out runs/blind/mine",),
+    "blind reveal": ("ves-twin blind reveal --out runs/blind/mine",),
+    "reproduce": ("ves-twin reproduce", "ves-twin reproduce fig-5-2"),
+    "inspect": ("ves-twin inspect lab.csv", "ves-twin inspect lab.csv --draft-map"),
+    "import": ("ves-twin import lab.csv --map lab.map.toml --out rec.parquet",),
+    "export": ("ves-twin export runs/beam_horizontal_truth --out beam.csv",),
+    "evaluate": ("ves-twin evaluate VibrationDamping-v0 --policy lqg",),
+    "view": (
+        "ves-twin view --last",
+        "ves-twin view runs/beam_horizontal_truth --web",
+        "ves-twin view position_sine --live",
+    ),
+    "info": ("ves-twin info", "ves-twin info --plant ves2_pressure"),
+}
+"""Command -> what people type; `tests/docs` parses each."""
+
+
 def _section(parser: argparse.ArgumentParser) -> list[str]:
     parser.formatter_class = partial(argparse.HelpFormatter, width=84)  # type: ignore[assignment]
     usage = parser.format_usage().removeprefix("usage: ").rstrip()
     lines = [f"## {parser.prog}", "", f"{parser.description or ''}", ""]
+    typed = EXAMPLES.get(parser.prog.removeprefix("ves-twin "), ())
+    lines += ["Type for example:", "", *(f"    {line}" for line in typed), ""] if typed else []
     lines += ["```", usage, "```", ""]
     shown = [a for a in _actions(parser) if a.help != argparse.SUPPRESS]
     shown = [a for a in shown if not isinstance(a, argparse._HelpAction)]

@@ -14,7 +14,7 @@ from ves_twin.core.recording.recording import RecordingInfo
 from ves_twin.core.signals import SIGNALS
 from ves_twin.data.import_map import ImportMap
 from ves_twin.diagnosis.verdict import Verdict
-from ves_twin.machines.mjcf.description import KIND, RigDescription
+from ves_twin.machines.mjcf.description import KIND, SCHEMA, RigDescription
 from ves_twin.machines.mjcf.experiment import MjcfExperiment
 from ves_twin.procedures.registry import PROCEDURES
 from ves_twin.scenario.experiment import Experiment
@@ -86,8 +86,8 @@ _HEADS = {
 def format_pages() -> dict[str, str]:
     """Name of a page or schema -> its text."""
     schemas = {
-        "scenario": Scenario.model_json_schema(),
-        "rig": RigDescription.model_json_schema(),
+        "scenario": _written(Scenario.model_json_schema()),
+        "rig": _with_head(RigDescription.model_json_schema()),
         "import-map": ImportMap.model_json_schema(),
         "experiment": Experiment.model_json_schema(),
         "rig-experiment": MjcfExperiment.model_json_schema(),
@@ -105,6 +105,23 @@ def format_pages() -> dict[str, str]:
     return pages
 
 
+def _written(schema: dict[str, Any]) -> dict[str, Any]:
+    """Without what no file has as a key: its name, and the question that is its first line."""
+    told = ("name", "question")
+    kept = {key: value for key, value in schema["properties"].items() if key not in told}
+    required = [key for key in schema.get("required", []) if key not in told]
+    return {**schema, "properties": kept, "required": required}
+
+
+def _with_head(schema: dict[str, Any]) -> dict[str, Any]:
+    """With the keys that a machine's file begins with; with a base nothing else is needed."""
+    head = {"schema": {"const": SCHEMA}, "kind": {"const": KIND}, "base": {"type": "string"}}
+    needed = schema.pop("required")
+    either = [{"required": ["base"]}, {"required": needed}]
+    properties = {**head, **schema["properties"]}
+    return {**schema, "properties": properties, "required": ["schema", "kind"], "anyOf": either}
+
+
 def _procedures() -> dict[str, str]:
     text = [
         "# Procedure",
@@ -114,7 +131,7 @@ def _procedures() -> dict[str, str]:
     ]
     pages = {}
     for name, model in PROCEDURES.items():
-        schema = model.model_json_schema()
+        schema = _written(model.model_json_schema())
         text += [f"## {name}", "", f"[JSON schema]({name}.schema.json)", ""]
         text += [schema_tables(schema, level=3, title=False)]
         pages[f"formats/{name}.schema.json"] = json.dumps(schema, indent=1) + "\n"

@@ -5,6 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from commands_page import commands_page
+from credibility_page import credibility_page
 from format_pages import format_pages
 from home_page import home_page, rigs_page
 from mkdocs.config.defaults import MkDocsConfig
@@ -13,12 +14,13 @@ from notebook_pages import notebook_pages
 
 
 def on_files(files: Files, config: MkDocsConfig) -> Files:
-    """Add home, commands, file formats with their schemas, and notebooks."""
+    """Add home, commands, credibility, file formats with their schemas, and notebooks."""
     root = Path(config.config_file_path).parent
     pages = {
         "index.md": home_page(root),
         "rigs.md": rigs_page(root),
         "commands.md": commands_page(),
+        "credibility.md": credibility_page(root),
         **format_pages(),
         **notebook_pages(root / "notebooks"),
     }

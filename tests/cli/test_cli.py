@@ -2,6 +2,7 @@
 
 import json
 import math
+import os
 import signal
 import subprocess
 import sys
@@ -155,6 +156,41 @@ def test_view_names_the_nearest_run_folder_or_scenario(capsys, tmp_path, monkeyp
     assert main(["view", name]) == 2
     near = {"position_sin": "position_sine"}.get(name, name[:-1])
     assert f"did you mean '{near}'?" in capsys.readouterr().err
+
+
+def recorded(folder, age):
+    Path(folder).mkdir(parents=True)
+    Path(folder, "diagnosis.rrd").write_bytes(b"no rerun file")
+    os.utime(folder, (age, age))
+
+
+def test_view_last_shows_what_was_written_last(capsys, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    assert main(["view", "--last"]) == 2
+    assert "there is no recording below runs/ yet" in capsys.readouterr().err
+    recorded("runs/demo-2", 1e9)
+    recorded("runs/demo", 2e9)
+    assert main(["view", "--last"]) == 2  # a viewer that opened would wait for its window
+    shown = capsys.readouterr().err
+    assert "showing runs/demo\n" in shown
+    assert "expected a rerun file" in shown
+
+
+def test_view_of_a_folder_tells_of_a_newer_one_of_its_name(capsys, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    recorded("runs/demo", 1e9)
+    recorded("runs/demo-2", 2e9)
+    recorded("runs/demo-beam", 3e9)
+    assert main(["view", "runs/demo"]) == 2
+    assert "runs/demo-2 is newer; ves-twin view --last" in capsys.readouterr().err
+    assert main(["view", "runs/demo-2"]) == 2
+    assert "is newer" not in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("words", [[], ["runs/demo", "--last"]])
+def test_view_takes_a_name_or_the_newest_and_not_both(capsys, words):
+    assert main(["view", *words]) == 2
+    assert "a scenario, a recording, or --last" in capsys.readouterr().err
 
 
 def test_plant_file_of_another_version_gets_one_line(capsys, tmp_path):

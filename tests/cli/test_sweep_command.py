@@ -12,6 +12,9 @@ import pytest
 
 from ves_twin.cli.main import main
 from ves_twin.cli.sweep_text import sweep_rows
+from ves_twin.core.errors import InvalidInputError
+from ves_twin.core.signals import SIGNALS
+from ves_twin.report.sweep_picture import draw_sweep
 
 SHORT = ["--set", "run.duration=0.2", "--set", "run.settle=0.2", "--workers", "1"]
 
@@ -52,6 +55,39 @@ def test_a_sweep_prints_its_rows_with_what_was_measured(capsys, tmp_path, scenar
     measured = pq.read_table(tmp_path / "sweep.parquet")[column].to_pylist()[0]
     assert first[:3] == ["0", "8", "completed"]
     assert float(first[4]) == pytest.approx(1e3 * measured, abs=6e-4)
+
+
+def table_of(folder, outcomes, **columns):
+    rows = len(outcomes)
+    content = {"point": list(range(rows)), "outcome": outcomes, **columns}
+    for n, axis in enumerate(SIGNALS["truth.pose"].axes):
+        content[f"error.{axis}.rms"] = [1e-3 * (n + 1) * (k + 1) for k in range(rows)]
+    path = folder / "sweep.parquet"
+    pq.write_table(pa.table(content), path)
+    return path
+
+
+def test_a_sweep_is_drawn_with_a_line_for_each_setting_and_early_ends_as_crosses(tmp_path):
+    outcomes = ["completed", "completed", "completed", "sensor_range"]
+    columns = {"legs.gain": [8.0, 8.0, 12.0, 12.0], "gravity.age": [0, 1, 0, 1]}
+    table = table_of(tmp_path, outcomes, **columns)
+    figure = draw_sweep(table, {"legs.gain": "1/s", "gravity.age": ""})
+    axes = figure.axes[1]  # y
+    assert axes.get_title() == "y, mm"
+    drawn = [(line.get_marker(), line.get_xydata().tolist()) for line in axes.lines]
+    assert drawn == [
+        ("o", [[8.0, 2.0], [12.0, 6.0]]),
+        ("x", []),
+        ("o", [[8.0, 4.0]]),
+        ("x", [[12.0, 8.0]]),
+    ]
+    assert figure.axes[5].get_xlabel() == "legs.gain [1/s]"
+
+
+def test_a_sweep_over_words_alone_is_not_drawn(tmp_path):
+    table = table_of(tmp_path, ["completed", "completed"], **{"legs.filter": ["none", "error"]})
+    with pytest.raises(InvalidInputError, match="a varied number"):
+        draw_sweep(table, {"legs.filter": ""})
 
 
 def test_a_long_sweep_prints_its_first_rows_alone(tmp_path):

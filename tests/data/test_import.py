@@ -48,7 +48,7 @@ def test_unit_scale_offset_and_sign_act_in_that_order(lab):
     # a few roundings of doubles
     assert np.allclose(found.recording["arm.q"][:, 1], wanted, rtol=1e-15, atol=1e-15)
     assert np.isnan(found.recording["arm.q"][:, 0]).all()
-    assert "-(0.5 x +10) [deg] -> [rad]" in found.account.to_text()
+    assert "times 0.5, +10, deg converted to rad, sign turned" in found.account.to_text()
 
 
 def test_a_signal_of_ones_own_keeps_its_unit_through_a_file(lab, tmp_path):
@@ -203,7 +203,7 @@ def test_a_rate_stands_in_for_a_clock_that_is_not_there(lab):
         (CLOCK + channel("x", "arm.q.1", 'unit = "rad"\nframe = "tol"'), "unknown frame"),
         (CLOCK + channel("x", "arm.q.1", 'unit = "rad"\nsing = -1'), "did you mean"),
         (CLOCK + channel("x", "arm.q.1", 'unit = "rad"\nsign = 2'), "sign"),
-        (CLOCK + channel("x", "motor.current", 'unit = "A"'), "unknown signal column"),
+        (CLOCK + channel("x", "motor.current", 'unit = "A"'), "that --plant names"),
         (CLOCK.replace("t [s]", "time") + channel("p [bar]", "supply.pressure"), "time column"),
         ("[clock]\n" + channel("p [bar]", "supply.pressure"), "either column or rate"),
         ('[clock]\ncolumn = "x"\n' + channel("p [bar]", "supply.pressure"), "unit of x"),

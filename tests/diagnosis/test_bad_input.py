@@ -187,7 +187,7 @@ def test_a_recording_of_another_plant_gets_no_name(settings):
     data = record(np.random.default_rng(1))
     v = diagnose(Toy(), [with_out(data, other)], settings=settings)
     assert (v.verdict, v.causes) == (Kind.UNKNOWN, ())
-    assert "hardly looks like one of this plant" in headline(v)
+    assert "hardly looks like one of this machine" in headline(v)
 
 
 @pytest.mark.slow

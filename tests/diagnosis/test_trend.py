@@ -265,6 +265,19 @@ def test_a_day_with_what_the_library_lacks_is_named_unexplained(settings):
 
 
 @pytest.mark.slow
+def test_one_imperfect_day_hides_no_step_and_takes_the_firm_name_away(settings):
+    u = programme().drive["drive.u"][:, 0]
+    cube = (u**3)[:, None] * [0.002, 0.0]
+    sizes = [0.0, 0.0, 0.0, 0.02, 0.02, 0.02]
+    found = followed(settings, sizes, added=[None, cube, *[None] * 4])
+    assert (found.answer, found.cause.label) == (Answer.STEP, "friction@plant")
+    assert found.unexplained == (found.recordings[1],)
+    assert not found.cause.firm
+    assert (found.change.onset.low, found.change.onset.value) == (7.0, 10.0)
+    assert f"In {found.recordings[1]} something more is wrong" in trend_headline(found)
+
+
+@pytest.mark.slow
 def test_unchanged_machines_are_called_changed_as_often_as_stated(settings):
     """From recordings to answer, at a rate of 10 % so that there is something to count."""
     alpha, count = 0.10, 100

@@ -19,8 +19,9 @@ from ves_twin.scenario.schema import Scenario
 
 ROOT = Path(__file__).parents[2]
 SCENARIOS = sorted((ROOT / "scenarios").glob("*.toml"))
+MACHINES = sorted((ROOT / "models" / "machines").glob("*/*.toml"))
 CONFIG = (ROOT / "mkdocs.yml").read_text(encoding="utf-8")
-GENERATED = ("index.md", "rigs.md", "commands.md", "formats/", "notebooks/")
+GENERATED = ("index.md", "rigs.md", "commands.md", "credibility.md", "formats/", "notebooks/")
 LOADED = re.compile(
     r'<(?:script|img|iframe)[^>]*src="(https?:[^"]+)"|<link[^>]*href="(https?:[^"]+)"'
 )
@@ -67,6 +68,35 @@ def test_every_command_and_option_is_on_its_page(site):
     assert seen > 50
 
 
+def test_every_command_has_examples_and_each_is_understood(site):
+    text = html.unescape((site / "commands.html").read_text(encoding="utf-8"))
+    for parser in parsers(build_parser()):
+        if any(isinstance(a, argparse._SubParsersAction) for a in parser._actions):
+            continue  # what it holds has examples
+        section = text.split(f'id="{parser.prog.replace(" ", "-")}"')[1].split("<h2")[0]
+        typed = re.sub(r"<[^>]*>", "", section.split("Type for example:")[1].split("</pre>")[0])
+        lines = [line for line in typed.splitlines() if line.startswith(f"{parser.prog} ")]
+        lines += [line for line in typed.splitlines() if line == parser.prog]
+        assert lines, parser.prog
+        for line in lines:
+            assert build_parser().parse_args(line.split()[1:]).command == line.split()[1]
+
+
+def test_the_page_of_credibility_counts_what_is_there_and_calls_ves2_not_validated(site):
+    text = html.unescape((site / "credibility.html").read_text(encoding="utf-8"))
+    plain = re.sub(r"<[^>]*>", "", text)
+    assert "VES II: not shown." in plain
+    grades = {p.grade for p in vt.Plant.load("ves2").parameters.values()}
+    assert len(re.findall(r"<td[^>]*>\d+</td>", text.split("Input pedigree")[-1])) == len(grades)
+    assert "A. Janot" in plain
+    functions = sum(
+        bool(re.match(r"\s*def test_\w", line))
+        for path in (ROOT / "tests").rglob("test_*.py")
+        for line in path.read_text(encoding="utf-8").splitlines()
+    )
+    assert f"{functions} test functions" in plain
+
+
 def parsers(parser):
     yield parser
     for action in parser._actions:
@@ -78,15 +108,26 @@ def parsers(parser):
 @pytest.mark.parametrize("path", SCENARIOS, ids=lambda p: p.stem)
 def test_shipped_files_keep_to_the_schema_of_their_page(site, path):
     content = tomllib.loads(path.read_text(encoding="utf-8"))
-    content = {"name": path.stem, "question": "?", **content}
     name = content.get("procedure", "scenario")
     schema = json.loads((site / "formats" / f"{name}.schema.json").read_text(encoding="utf-8"))
     jsonschema.validate(content, schema)
 
 
+@pytest.mark.parametrize("path", MACHINES, ids=lambda p: p.stem)
+def test_shipped_machines_keep_to_the_schema_as_they_are_written(site, path):
+    content = tomllib.loads(path.read_text(encoding="utf-8"))
+    jsonschema.validate(content, schema_of(site, "rig"))
+    over = {"schema": 1, "kind": "rig", "base": path.name}
+    jsonschema.validate(over, schema_of(site, "rig"))
+    with pytest.raises(jsonschema.ValidationError):
+        jsonschema.validate({**over, "sginals": {}}, schema_of(site, "rig"))
+
+
 def test_the_schema_of_scenarios_refuses_what_the_program_refuses(site):
     schema = json.loads((site / "formats" / "scenario.schema.json").read_text(encoding="utf-8"))
-    good = json.loads(Scenario.load("position_sine").model_dump_json(exclude_none=True))
+    told = {"name", "question"}  # of the file's name and first line
+    good = Scenario.load("position_sine").model_dump_json(exclude_none=True, exclude=told)
+    good = json.loads(good)
     jsonschema.validate(good, schema)
     for wrong in ({"platform": {**good["platform"], "home": [0.0] * 5}}, {"unknown": 1}):
         with pytest.raises(jsonschema.ValidationError):

@@ -1,12 +1,14 @@
 """The trained baseline: what it is shown, that it repeats, and that its score is its own."""
 
+from contextlib import suppress
+
 import gymnasium as gym
 import numpy as np
 import pytest
 
 from ves_twin.core.errors import InvalidInputError
 from ves_twin.envs import ENVIRONMENTS
-from ves_twin.envs.baselines import trained
+from ves_twin.envs.baselines import BASELINES, EXPERTS, trained
 from ves_twin.envs.baselines.arm_features import SIZES, ArmFeatures
 from ves_twin.envs.baselines.trained import KEEP, TrainedDamping
 from ves_twin.envs.evaluation import Trial, evaluate
@@ -102,3 +104,14 @@ def test_its_score_is_reproduced():
     assert returns == pytest.approx(SCORES, abs=REPEATS)
     assert [episode.cost for episode in found] == [0.0, 0.0]
     assert all(r > s.metrics["return"] for r, s in zip(returns, still, strict=True))
+
+
+@pytest.mark.parametrize("identity", sorted(ENVIRONMENTS))
+def test_a_baseline_fits_a_task_or_says_that_it_does_not(identity):
+    briefing = gym.make(identity, disable_env_checker=True).unwrapped.briefing()
+    fits = set()
+    for name, policy in BASELINES.items():
+        with suppress(InvalidInputError):
+            policy.build(briefing)
+            fits.add(name)
+    assert {"still", EXPERTS[identity]} <= fits

@@ -10,6 +10,7 @@ from toy import Toy, programme, record
 
 from ves_twin.core.errors import InvalidInputError
 from ves_twin.core.quantity import shares
+from ves_twin.data.quality.check import Check, Grade
 from ves_twin.diagnosis.build_up.result import Inseparable, Left, Proved, Size
 from ves_twin.diagnosis.diagnose import diagnose
 from ves_twin.diagnosis.envelope import ENVELOPE_SD
@@ -25,9 +26,14 @@ from ves_twin.diagnosis.settings import Settings
 from ves_twin.diagnosis.verdict import Kind
 from ves_twin.diagnosis.whitening import whitening_declared
 from ves_twin.report.diagnosis.answer import headline, tone
+from ves_twin.report.diagnosis.credibility import Pedigree, credibility
 from ves_twin.report.diagnosis.page import diagnosis_page
 from ves_twin.report.diagnosis.words import spoken
-from ves_twin.report.rerun.diagnosis import write_diagnosis_rrd
+from ves_twin.report.rerun.diagnosis import (
+    diagnosis_blueprint,
+    onset_of,
+    write_diagnosis_rrd,
+)
 
 HELD = programme(9)
 
@@ -219,7 +225,8 @@ def test_the_rerun_file_has_every_channel_of_the_three_models(friction, tmp_path
     path = write_diagnosis_rrd(friction, tmp_path / "diagnosis.rrd")
     found = {}
     for chunk in RrdReader(path).stream():
-        if not chunk.is_static and str(chunk.entity_path).startswith("/r1/"):
+        entity = str(chunk.entity_path)
+        if not chunk.is_static and entity.startswith(("/r1/compared", "/r1/sigma")):
             rows = chunk.to_record_batch().column("Scalars:scalars").to_pylist()
             found.setdefault(chunk.entity_path, []).extend(rows)
     assert set(found) == {
@@ -258,6 +265,24 @@ def test_measured_nominal_and_extended_lie_over_each_other_in_one_view(friction,
 def turned_up(settings):
     """A cause that commissioning knows too, 15 of its sd off."""
     return said(settings, {"plant.gain": 0.3})
+
+
+def test_the_rerun_file_jumps_to_the_onset_and_has_a_line_of_heat_for_each_channel(
+    friction, tmp_path
+):
+    reader = RrdReader(write_diagnosis_rrd(friction, tmp_path / "diagnosis.rrd"))
+    entities = {str(chunk.entity_path) for chunk in reader.stream()}
+    for name in ("before", "after"):
+        assert {f"/r1/heat/{name}/{part}" for part in ("map", "channels", "now")} <= entities
+    assert "/r1/events" in entities
+    assert not any(entity.startswith("/r1/bodies") for entity in entities)  # a toy has none
+    exhibit = friction.exhibit
+    onset = onset_of(exhibit, 0)
+    quiet = replace(exhibit, before=exhibit.after)
+    assert exhibit.traces[0].time[0] <= onset < exhibit.traces[0].time[-1]
+    assert onset_of(quiet, 0) is None
+    assert onset_of(exhibit, 1) is None  # there is no second recording
+    diagnosis_blueprint(quiet)
 
 
 def test_tolerances_alone_stay_within_what_a_machine_in_order_may_have(turned_up):
@@ -414,3 +439,41 @@ def test_no_loud_cell_is_said_beside_the_threshold_and_not_as_noise(proven):
     page = diagnosis_page(quiet)
     assert "beyond noise." not in page[page.index("What is left") :]
     assert "the most that rigs in order leave" in page
+
+
+def factor(verdict, name):
+    return next(one for one in credibility(verdict) if one.name == name)
+
+
+def test_validated_is_said_of_external_held_out_recordings_with_a_gain_and_of_nothing_else(proven):
+    """Every other basis, whatever else it has, must not bring the word onto the page."""
+    assert proven.basis.recordings == "unknown"  # a toy wrote them
+    external = replace(proven, basis=replace(proven.basis, recordings="external"))
+    assert factor(external, "validation").standing is Pedigree.VALIDATED
+    assert ">validated<" in diagnosis_page(external)
+    without = (
+        proven,
+        replace(external, basis=replace(external.basis, held_out="none"), gain=None),
+        replace(external, gain=None),
+        replace(external, gain=Gain(0.5, -0.1, 1.1, 2.0, 1.5)),
+        replace(external, gain=Gain(0.6, 0.4, 0.8, 2.0, 1.4, without=1.02)),
+        replace(external, verdict=Kind.UNKNOWN, causes=()),
+        replace(external, verdict=Kind.NOTHING, causes=()),
+        replace(external, basis=replace(external.basis, recordings="simulated")),
+    )
+    for verdict in without:
+        assert factor(verdict, "validation").standing is Pedigree.OPEN
+        assert "validated" not in diagnosis_page(verdict)
+
+
+def test_what_is_declared_is_called_assumed_and_what_is_flawed_is_not_called_measured(proven):
+    assert factor(proven, "results uncertainty").standing is Pedigree.ASSUMED
+    told = replace(proven, basis=replace(proven.basis, noise="measured", tolerances="measured"))
+    assert factor(told, "results uncertainty").standing is Pedigree.MEASURED
+    half = replace(proven, basis=replace(proven.basis, noise="measured"))
+    said = factor(half, "results uncertainty").said
+    assert "Noise: measured; tolerances: declared." in said
+    flawed = replace(proven, quality=(Check("gaps", Grade.FAILED, (), "two"),))
+    assert factor(flawed, "input pedigree").standing is Pedigree.OPEN
+    assert "gaps" in factor(flawed, "input pedigree").said
+    assert len(credibility(proven)) == 8

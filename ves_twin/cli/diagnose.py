@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import argparse
+import sys
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -10,6 +12,9 @@ if TYPE_CHECKING:
     from ves_twin.machines.diagnose import Diagnosis
 
 from ves_twin.cli.given import Given, add_machine_options, bank_settings
+
+LAW_PICTURE = "law.png"
+"""File with the picture of a law."""
 
 SUMMARY = "name what the simulation gets wrong in recordings, extend the plant, measure the gain"
 
@@ -42,6 +47,17 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         help="hold out every second stretch of LENGTH s, or poses, of each recording (without"
         " LENGTH: that of the machine's file)",
     )
+    parser.add_argument(
+        "--law",
+        action=argparse.BooleanOptionalAction,
+        help="where no cause explains the recordings, look for a law (default: if that takes"
+        " minutes at most)",
+    )
+    parser.add_argument(
+        "--model",
+        metavar="MODEL",
+        help="in place of --plant: draft the machine's file in the output folder, as `new` does",
+    )
     parser.add_argument("--out", metavar="DIR", help="output folder (default: runs/diagnosis)")
     parser.add_argument("--json", action="store_true", help="the verdict as JSON on stdout")
 
@@ -52,11 +68,27 @@ def execute(arguments: argparse.Namespace) -> int:
     from ves_twin.core.recording.files import recording_name
 
     with output_folder(arguments.out, "diagnosis") as held:
+        if arguments.model:
+            arguments.plant = _drafted(arguments, held.path)
         found = _diagnose(arguments)
         _write(found, held.path, ", ".join(map(recording_name, arguments.measured)))
         text = found.verdict.to_json() if arguments.json else _text(found, held.path)
     print(text)
     return 0
+
+
+def _drafted(arguments: argparse.Namespace, folder: Path) -> str:
+    """The machine's file, drafted beside what the diagnosis writes; what it rests on to stderr."""
+    from ves_twin.cli.new_text import new_text
+    from ves_twin.core.errors import InvalidInputError
+    from ves_twin.machines.new_machine import new_machine
+
+    if arguments.plant or arguments.map:
+        raise InvalidInputError("--model", arguments.model, "no --plant and no --map beside it")
+    model, logs = Path(arguments.model), [Path(name) for name in arguments.measured]
+    drafted = new_machine(model, logs, folder / f"{model.stem}.toml")
+    print(new_text(drafted, model, logs), file=sys.stderr)
+    return str(drafted.path)
 
 
 def _diagnose(arguments: argparse.Namespace) -> Diagnosis:
@@ -78,24 +110,35 @@ def _diagnose(arguments: argparse.Namespace) -> Diagnosis:
             exclude=arguments.exclude,
             experiment=given.experiment,
             alternate=arguments.alternate,
-            settings=bank_settings(),
+            settings=replace(bank_settings(), laws=arguments.law),
             progress=progress.share,
         )
 
 
 def _write(found: Diagnosis, folder: Path, names: str) -> None:
     from ves_twin.machines.machine import SCENARIO, SETPOINTS
+    from ves_twin.report.diagnosis.law import draw_law
     from ves_twin.report.diagnosis.page import diagnosis_page
     from ves_twin.report.page import write_page
+    from ves_twin.report.picture import save_picture
     from ves_twin.report.rerun.diagnosis import write_diagnosis_rrd
 
-    for name in ("plant.toml", "plant.candidate.toml", SETPOINTS, SCENARIO):  # of an earlier run
+    for name in (
+        "plant.toml",
+        "plant.candidate.toml",
+        LAW_PICTURE,
+        SETPOINTS,
+        SCENARIO,
+    ):  # of an earlier run
         (folder / name).unlink(missing_ok=True)
     found.verdict.save(folder / "verdict.json")
     title = f"Diagnosis of {names} by the model {found.machine.name}"
     page = diagnosis_page(found.verdict, title, _plant_sentence(found))
     write_page(folder / "report.html", page)
-    write_diagnosis_rrd(found.verdict, folder / "diagnosis.rrd")
+    write_diagnosis_rrd(found.verdict, folder / "diagnosis.rrd", found.machine.drawing())
+    law = found.verdict.law
+    if law is not None and law.shape == "table":
+        save_picture(draw_law(law), folder / LAW_PICTURE)
     note = f"Extended by ves-twin diagnose: {found.verdict.words}"
     if found.extended is not None and found.refused:
         path = folder / "plant.candidate.toml"
@@ -111,6 +154,9 @@ def _write(found: Diagnosis, folder: Path, names: str) -> None:
 
 def _plant_sentence(found: Diagnosis) -> str:
     """What became of the extended plant."""
+    law = found.verdict.law
+    if law is not None and law.claimed and found.refused:
+        return f"The plant with the law is a candidate, plant.candidate.toml: {found.refused}."
     if found.extended is None and found.verdict.causes:
         return f"No extended plant was written: {found.refused}."
     if found.nearest is not None:
@@ -129,6 +175,7 @@ def _text(found: Diagnosis, folder: Path) -> str:
     from ves_twin.core.quantity import shares
     from ves_twin.report.diagnosis.answer import confidence_sentence, next_step, verdict_sentence
     from ves_twin.report.diagnosis.basis import rests_on
+    from ves_twin.report.diagnosis.law import law_sentences
     from ves_twin.report.diagnosis.proved import (
         inseparable_sentences,
         proof_sentence,
@@ -153,6 +200,10 @@ def _text(found: Diagnosis, folder: Path) -> str:
         lines.append(
             f"gain      {share} of the error beyond noise on held-out recordings ({low} to {high})"
         )
+    if verdict.law is not None:
+        said = law_sentences(verdict.law)
+        first, *rest = said[2:] if verdict.law.claimed else said
+        lines += [f"law       {first}", *(f"          {text}" for text in rest)]
     if verdict.put_to_proof is not None:
         lines += ["", f"  {proof_sentence(verdict)}", *map(proved_line, verdict.proved)]
         lines += [f"  not separated: {text}" for text in inseparable_sentences(verdict)]

@@ -24,6 +24,7 @@ from ves_twin.cli import (
     import_log,
     info,
     inspect,
+    new,
     plan,
     reproduce,
     run,
@@ -33,6 +34,7 @@ from ves_twin.cli import (
     view,
 )
 from ves_twin.cli.exit_codes import BAD_INPUT, DONE, INTERRUPTED
+from ves_twin.cli.given import refuse_missing
 from ves_twin.core.cache_folder import cache_folder
 from ves_twin.core.errors import (
     InvalidInputError,
@@ -47,6 +49,7 @@ COMMANDS = {
     "run": run,
     "sweep": sweep,
     "plan": plan,
+    "new": new,
     "diagnose": diagnose,
     "trend": trend,
     "compare": compare,
@@ -65,7 +68,8 @@ COMMANDS = {
 BEGIN = """\
 begin with:
   ves-twin run beam_horizontal_truth          writes runs/beam_horizontal_truth/
-  ves-twin view runs/beam_horizontal_truth    shows it in 3-D; --web for a browser
+  ves-twin view --last                        shows it in 3-D; --web for a browser
+  ves-twin diagnose REC --plant MACHINE       names what the model of a machine gets wrong
   ves-twin COMMAND --help                     what a command takes
 
 exit codes: 0 done, 2 bad input, 3 the run ended early, 4 out of tolerance, 130 interrupted
@@ -103,7 +107,7 @@ def build_parser() -> Parser:
     """The parser of all commands."""
     parser = Parser(
         prog="ves-twin",
-        description="Digital twin of the VES II micro-gravity emulator.",
+        description="Find out what a simulation gets wrong about a machine, of your own or VES II.",
         epilog=BEGIN,
         formatter_class=partial(argparse.RawDescriptionHelpFormatter, max_help_position=14),
     )
@@ -173,6 +177,7 @@ def _answered(words: list[str]) -> int:
         found, rest = parser.parse_known_args(words)
         if rest:
             raise parser.unknown(rest[0])
+        refuse_missing(found)
         return int(COMMANDS[found.command].execute(found))
     except VesTwinError as error:
         print(f"ves-twin: {one_line(error)}", file=sys.stderr)

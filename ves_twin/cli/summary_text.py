@@ -56,8 +56,13 @@ def _error_table(errors: dict[str, AxisError]) -> list[str]:
             f"  {axis:<3}{unit:>5}{rms:8.3f}{peak:10.3f}{share:>14}{legs:13.3f}{rest:11.3f}"
         )
     rows.append(
-        "  (legs alone: rms that the legs' bandwidth alone causes; the rest: rms without it)"
+        "  (legs alone = rms error from the legs' lag only; the rest = rms of everything else)"
     )
+    if any((error.relative or 0.0) > 1.0 for error in errors.values()):
+        rows.append(
+            "  (above 100 %: the base went further by its error than it should move. A base that no"
+            " spring holds drifts so: sensor noise pushes it, the longer the further)"
+        )
     return rows
 
 

@@ -53,6 +53,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "--workers", type=int, metavar="N", help="processes on this machine (default: its cores)"
     )
     parser.add_argument("--out", metavar="DIR", help="folder (default: runs/SCENARIO-sweep)")
+    parser.add_argument("--plot", metavar="FILE", help="draw the errors over what was varied (PNG)")
     parser.add_argument("--json", action="store_true", help="the account as JSON on stdout")
 
 
@@ -72,6 +73,11 @@ def execute(arguments: argparse.Namespace) -> int:
             engine,
             lambda done, points: bar.share(done / points, f"{done} of {points} points"),
         )
+    if arguments.plot is not None:
+        from ves_twin.report.picture import save_picture
+        from ves_twin.report.sweep_picture import draw_sweep
+
+        save_picture(draw_sweep(account.table, plan.keys), Path(arguments.plot))
     if arguments.json:
         print(json_text(_account(plan, account)))
     else:

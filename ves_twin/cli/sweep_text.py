@@ -9,6 +9,7 @@ import pyarrow.parquet as pq
 
 from ves_twin.core.arrow_file import arrow_file
 from ves_twin.core.signals import SIGNALS
+from ves_twin.report.sweep_picture import KINDS
 
 MOST_ROWS = 12
 """Rows that are printed; the table has them all."""
@@ -17,7 +18,6 @@ WIDEST = 24
 """Characters of a varied value or an outcome; longer ones are cut."""
 
 _MILLI = 1e3
-_KINDS = {"error": "emulation error", "tracking": "tracking error"}
 
 
 def sweep_rows(table: Path, keys: Mapping[str, str]) -> list[str]:
@@ -30,7 +30,7 @@ def sweep_rows(table: Path, keys: Mapping[str, str]) -> list[str]:
     with arrow_file(table) as file:
         found = pq.read_table(file)
     rows = found.slice(0, MOST_ROWS).to_pylist()
-    prefix = next((name for name in _KINDS if f"{name}.x.rms" in found.column_names), "")
+    prefix = next((name for name in KINDS if f"{name}.x.rms" in found.column_names), "")
     axes = SIGNALS["truth.pose"].axes if prefix else ()
     head = ["point", *keys, "outcome", *axes]
     cells = [
@@ -45,9 +45,7 @@ def sweep_rows(table: Path, keys: Mapping[str, str]) -> list[str]:
     if len(found) > MOST_ROWS:
         lines.append(f"  ... and {len(found) - MOST_ROWS} rows more in the table")
     if prefix:
-        lines.append(
-            f"  (x to rz: rms of the {_KINDS[prefix]} in mm and mrad, up to the run's end)"
-        )
+        lines.append(f"  (x to rz: rms of the {KINDS[prefix]} in mm and mrad, up to the run's end)")
     return lines
 
 

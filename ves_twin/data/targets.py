@@ -2,15 +2,20 @@
 
 from __future__ import annotations
 
+import difflib
 import re
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass
 
-from ves_twin.core.errors import InvalidInputError, UnknownNameError
+from ves_twin.core.errors import InvalidInputError, UnknownNameError, VesTwinError
 from ves_twin.core.signals import SIGNALS, Signal
 from ves_twin.core.units import to_unit
 from ves_twin.data.import_map import MAIN, Channel, ImportMap
 from ves_twin.data.log import Kind, Log
+
+SLIP = 0.85
+"""Likeness of a name to one of VES II from which on it is taken for a slip of the pen: a letter or
+two; "joint.torque.3" of another machine is no "arm.torque.3"."""
 
 COLUMN = re.compile("[1-9][0-9]{0,2}")
 """Number of a column of a signal of one's own; a larger one is taken for a slip of the pen."""
@@ -50,10 +55,13 @@ class Target:
     def conversion(self) -> str:
         """What is done to the numbers, in words."""
         c = self.channel
-        inner = f"{c.scale:g} x" if c.scale != 1.0 else "x"
-        inner += f" {c.offset:+g}" if c.offset else ""
-        inner = f"-({inner})" if c.sign < 0 else inner
-        return f"{inner} [{self.unit}] -> [{self.si}]"
+        said = [f"times {c.scale:g}"] if c.scale != 1.0 else []
+        said += [f"{c.offset:+g}"] if c.offset else []
+        said += (
+            [f"{self.unit} converted to {self.si}"] if self.unit != self.si else [f"in {self.si}"]
+        )
+        said += ["sign turned"] if c.sign < 0 else []
+        return ", ".join(said)
 
 
 def resolve(log: Log, told: ImportMap, given: Sequence[Signal] = ()) -> tuple[Target, ...]:
@@ -86,7 +94,7 @@ def resolve(log: Log, told: ImportMap, given: Sequence[Signal] = ()) -> tuple[Ta
         if column.kind is Kind.TEXT:
             raise InvalidInputError(f"{where} {channel.from_}", "a text", "numbers")
         if channel.to not in columns:
-            raise UnknownNameError("signal column", channel.to, columns)
+            raise _unknown(channel.to, columns, bool(given))
         for kind, name, known in (
             ("clock", channel.clock, {MAIN, *told.clocks}),
             ("frame", channel.frame, set(told.frames)),
@@ -102,6 +110,14 @@ def resolve(log: Log, told: ImportMap, given: Sequence[Signal] = ()) -> tuple[Ta
         found.append(Target(channel, table.name, column.name, signal, place, unit))
     _check_frames(found)
     return tuple(found)
+
+
+def _unknown(name: str, columns: Collection[str], machine: bool) -> VesTwinError:
+    """What to raise; of VES II, which was not asked for, only a name that is a slip of the pen."""
+    if machine or difflib.get_close_matches(name, columns, n=1, cutoff=SLIP):
+        return UnknownNameError("signal column", name, columns)
+    expected = "a signal of VES II, of the machine that --plant names, or of the map's [signals]"
+    return VesTwinError(f"unknown signal column '{name}'; expected {expected}")
 
 
 def _own_signals(told: ImportMap) -> list[Signal]:

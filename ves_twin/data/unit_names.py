@@ -47,7 +47,9 @@ _KNOWN = (
 )
 _IN_BRACKETS = re.compile(r"^(?P<name>.*?)\s*[\[({](?P<unit>[^\[\](){}]*)[\])}]\s*$")
 _BEHIND_SLASH = re.compile(r"^(?P<name>.*?)\s+/\s*(?P<unit>\S+)$")
-_BEHIND_BAR = re.compile(r"^(?P<name>.+)_(?P<unit>[A-Za-z°µ]+(?:_s2?)?)$")
+_BEHIND_BAR_RATE = re.compile(r"^(?P<name>.+)_(?P<unit>[A-Za-z°µ]+_s2?)$")
+_BEHIND_BAR = re.compile(r"^(?P<name>.+)_(?P<unit>[A-Za-z°µ]+)$")
+_PATTERNS = (_IN_BRACKETS, _BEHIND_SLASH, _BEHIND_BAR_RATE, _BEHIND_BAR)
 
 
 def spelled(unit: str) -> str:
@@ -63,7 +65,7 @@ def is_unit(text: str) -> bool:
 
 def unit_of_name(name: str) -> str:
     """The unit that a column's name gives: "x [mm]", "x (mm)", "x / mm", "x_mm"; else empty."""
-    for pattern in (_IN_BRACKETS, _BEHIND_SLASH, _BEHIND_BAR):
+    for pattern in _PATTERNS:
         match = pattern.match(name)
         if match and is_unit(match["unit"]) and match["unit"]:
             return spelled(match["unit"])
@@ -72,7 +74,7 @@ def unit_of_name(name: str) -> str:
 
 def bare_name(name: str) -> str:
     """The name without the unit that it gives."""
-    for pattern in (_IN_BRACKETS, _BEHIND_SLASH, _BEHIND_BAR):
+    for pattern in _PATTERNS:
         match = pattern.match(name)
         if match and is_unit(match["unit"]):
             return match["name"].strip()

@@ -18,6 +18,7 @@ from ves_twin.diagnosis.explain import Explanation
 from ves_twin.diagnosis.findable import findable_sizes, twins
 from ves_twin.diagnosis.forward import Hypothesis
 from ves_twin.diagnosis.gain import Gain
+from ves_twin.diagnosis.law.result import LawFinding
 from ves_twin.diagnosis.null import Thresholds
 from ves_twin.diagnosis.preprocess import Dataset
 from ves_twin.diagnosis.refine import Fit
@@ -55,8 +56,11 @@ class Findings:
         proposals: next programmes.
         apart: what each recording says alone.
         widened: factor on the declared commissioning sd in this view.
+        differs: largest difference of the baseline's inputs, of their range; None without one.
         built: what building up proved.
         before: the model without a cause, within its tolerances; None where nothing was found.
+        law: that was found where no cause explains the record; None if nobody looked.
+        shown: what the report shows as fitted, if not `found`: a law that is claimed.
     """
 
     seen: Dataset
@@ -65,14 +69,22 @@ class Findings:
     settings: Settings
     kappa: float
     scale: float | None
+    widened: float = 1.0
+    differs: float | None = None
     found: Explanation | None = None
     gain: Gain | None = None
     forecast: Gain | None = None
     proposals: tuple[Proposal, ...] = ()
     apart: tuple[Alone, ...] = ()
-    widened: float = 1.0
     built: BuildUp | None = None
     before: Fit | None = None
+    law: LawFinding | None = None
+    shown: Explanation | None = None
+
+    @property
+    def fitted(self) -> Explanation | None:
+        """What tuned numbers and residuals are of."""
+        return self.shown or self.found
 
 
 def assemble_verdict(
@@ -83,11 +95,11 @@ def assemble_verdict(
     named = found is not None and kind.names_causes
     causes, alternatives = _causes(findings, found) if named and found else ((), ())
     built = findings.built
-    proved = _sized(built, causes) if built and named else ()
+    proved = sized(built, causes) if built and named else ()
     firm = {one.label: one.firm for one in proved}
     causes = tuple(replace(c, firm=firm.get(f"{c.effect}@{c.target}", c.firm)) for c in causes)
     nearest = _causes(findings, found)[0] if found and not named else ()
-    exhibit = exhibit_of(findings.seen, first, found, findings.before)
+    exhibit = exhibit_of(findings.seen, first, findings.fitted, findings.before)
     least = first.limit(limits.effect)
     sizes = findable_sizes(first.screen, least)
     units = {h.label: _unit(findings, h) for h in first.screen.bank.hypotheses}
@@ -132,6 +144,7 @@ def assemble_verdict(
         left=built.left if built else {},
         inseparable=built.inseparable if built else (),
         nearest=nearest,
+        law=findings.law,
     )
     return _provisional(verdict) if verdict.unconfirmed else verdict
 
@@ -144,7 +157,7 @@ def _provisional(verdict: Verdict) -> Verdict:
     )
 
 
-def _sized(built: BuildUp, causes: Sequence[Cause]) -> tuple[Proved, ...]:
+def sized(built: BuildUp, causes: Sequence[Cause]) -> tuple[Proved, ...]:
     """What is proved with its sizes.
 
     Firm only where no commissioning error explains it either, and no interval holds the value that
@@ -226,10 +239,10 @@ def _cause(
 
 def _tuned(findings: Findings) -> dict[str, Estimate]:
     """Commissioning numbers of the plant at the best fit, with what is known of them then."""
-    fit = findings.found.best if findings.found else findings.first.commissioning
+    fit = findings.fitted.best if findings.fitted else findings.first.commissioning
     if fit is None:
         return {}
-    runs, z = findings.seen.runs, float(norm.isf(0.5 * (1.0 - findings.settings.confidence)))
+    runs, z = fit.local.runs, float(norm.isf(0.5 * (1.0 - findings.settings.confidence)))
     free, estimates = set(fit.active[: len(fit.sizes)]), {}
     for n, i in enumerate(fit.active):
         parameter = runs.coordinates[int(i)].parameter
@@ -266,7 +279,7 @@ def _rms(pieces: Sequence[FloatArray | SingleArray]) -> float:
 
 
 def _leftover(findings: Findings) -> ResidualStructure:
-    found, first = findings.found, findings.first
+    found, first = findings.fitted, findings.first
     limit = findings.limits.misfit
     if found:
         best = found.best

@@ -87,6 +87,11 @@ class HeldOut:
         base = _kept_columns(seen.runs, settings) if settings.sparse and settings.cache else None
         return HeldOut(seen, whitening_of(seen.runs, standstill), settings, base)
 
+    @property
+    def pair(self) -> tuple[Dataset, Whitening]:
+        """The recordings and their noise."""
+        return self.seen, self.whitening
+
     def gain(self, before: Fit, after: Fit) -> Gain:
         """Of one fit over another."""
         return held_out_gain(

@@ -16,6 +16,8 @@ from ves_twin.diagnosis.differential import differential
 from ves_twin.diagnosis.disagreement import Alone, disagreement
 from ves_twin.diagnosis.explain import Explanation, FitContext, explain
 from ves_twin.diagnosis.forward import Excitation, Forward
+from ves_twin.diagnosis.law.explained import lawful_explanation
+from ves_twin.diagnosis.law.propose import Limits
 from ves_twin.diagnosis.likeness import check_likeness
 from ves_twin.diagnosis.next_experiment import separations
 from ves_twin.diagnosis.null import cached_thresholds
@@ -137,16 +139,19 @@ class _View:
         recordings, standstill = material.recordings, material.standstill
         seen = preprocess(forward, recordings, workers, chosen.rate)
         whitening = whitening_of(seen.runs, standstill)
+        differs = None
         if material.baseline:
             usual = material.baseline
-            seen, whitening = _changed(seen, whitening, recordings, usual, standstill, chosen)
+            seen, whitening, differs = _changed(
+                seen, whitening, recordings, usual, standstill, chosen
+            )
         bank = _bank(seen, chosen, progress).without(material.exclude)
         limits = cached_thresholds(bank, whitening, chosen, progress)
         pull = pull_limit(bank, chosen.alpha)
         levels = (limits.effect, limits.misfit, pull, limits.bends, chosen.sparse)
         first = assess(seen.measured, bank, whitening, *levels)
         kappa, scale = naming_limit(bank, material.scale), material.scale
-        findings = Findings(seen, first, limits, chosen, kappa, scale, widened=widened)
+        findings = Findings(seen, first, limits, chosen, kappa, scale, widened, differs)
         return _View(forward, material, findings, pull, whitening)
 
     @property
@@ -155,11 +160,17 @@ class _View:
         limits = self.findings.limits
         return self.findings.first.exceeds(limits.effect, limits.misfit, self.pull)
 
+    @property
+    def limits(self) -> Limits:
+        """Of a claim."""
+        misfit = self.findings.limits.misfit
+        return Limits(misfit, self.pull, self.findings.settings.model_error)
+
     def verdict(self, progress: Progress, alone: bool = False) -> Verdict:
         """Explain it; `alone` asks for a single cause that leaves noise, and for nothing else."""
         findings, material = self.findings, self.material
         seen, chosen, first = findings.seen, findings.settings, findings.first
-        basis = _basis(material)
+        basis = replace(_basis(material), baseline_differs=findings.differs)
         if not self.loud:
             return assemble_verdict(findings, Kind.NOTHING, basis, material.exclude)
         desk = FitContext(first, findings.limits, chosen, progress)
@@ -178,11 +189,19 @@ class _View:
             apart = disagreement(seen, bank, self.whitening, limits, chosen, progress)
         if end.cut:
             basis = replace(basis, held_out="split")
+        lawful = None
+        if kind is Kind.UNKNOWN:
+            progress(0.0, "looking for a law")
+            lawful = lawful_explanation(
+                first, found, self.limits, chosen, held.pair if held else None, progress
+            )
         findings = replace(
             findings,
+            law=lawful.finding if lawful else None,
+            shown=lawful.explanation if lawful else None,
             found=found,
             built=end.built,
-            gain=end.gain,
+            gain=lawful.gain if lawful and lawful.explanation else end.gain,
             forecast=end.forecast,
             before=end.before,
             proposals=proposals,
@@ -204,15 +223,15 @@ def _changed(
     baseline: Sequence[Recording],
     standstill: Recording | None,
     settings: Settings,
-) -> tuple[Dataset, Whitening]:
-    """The record about the rig as its baseline shows it, and its noise."""
+) -> tuple[Dataset, Whitening, float]:
+    """The record about the rig as its baseline shows it, its noise, what the inputs differ by."""
 
     def again(tuned: Forward) -> Dataset:
         return preprocess(tuned, recordings, seen.runs.workers, settings.rate)
 
     changed = differential(seen, baseline, again, whitening)
     own = whitening_of(changed.seen.runs, standstill)
-    return changed.seen, replace(own, level=own.level * changed.noise)
+    return changed.seen, replace(own, level=own.level * changed.noise), changed.differs
 
 
 def _bank(seen: Dataset, settings: Settings, progress: Progress) -> SignatureLibrary:

@@ -7,14 +7,14 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ves_twin.core.errors import InvalidInputError
 from ves_twin.core.recording.recording import Recording
-from ves_twin.core.types import FloatArray, SingleArray
+from ves_twin.core.types import FloatArray
+from ves_twin.diagnosis.baseline import usual_rows
 from ves_twin.diagnosis.evidence import Evidence
 from ves_twin.diagnosis.forward import Excitation, Forward, Parameter
 from ves_twin.diagnosis.forward_wrapper import ForwardWrapper
 from ves_twin.diagnosis.linearise import linearise, with_bends
-from ves_twin.diagnosis.preprocess import Dataset, preprocess
+from ves_twin.diagnosis.preprocess import Dataset
 from ves_twin.diagnosis.refine import refine
 from ves_twin.diagnosis.runs import Runs
 from ves_twin.diagnosis.unmodelled_dynamics import CHANGE, PARAMETERS, Lacking
@@ -22,9 +22,6 @@ from ves_twin.diagnosis.whitening import Whitening
 
 KEPT = 0.3
 """Share of a commissioning sd that a rig is allowed to change by between two recordings."""
-
-SAME = 1e-3
-"""Difference of two set-points, of their range, up to which programmes count as the same."""
 
 
 @dataclass(frozen=True)
@@ -34,10 +31,12 @@ class Differential:
     Attributes:
         seen: the record, about the tuned model.
         noise: sd of its noise against that of one recording.
+        differs: largest difference of the baseline's inputs from the record's, of their range.
     """
 
     seen: Dataset
     noise: float
+    differs: float
 
 
 def differential(
@@ -65,7 +64,8 @@ def differential(
         InvalidInputError: a programme without a baseline.
     """
     runs = seen.runs
-    rows, count = _usual(seen, baseline)
+    found = usual_rows(seen, baseline)
+    rows, count = found.rows, found.count
     local = with_bends(linearise(runs, runs.origin))
     fit = refine(Evidence(runs, rows, whitening), (), runs.origin, local, 1)
     noise = float(np.sqrt(1.0 + 1.0 / count))
@@ -75,7 +75,7 @@ def differential(
     usual = rows - tuned.runs.one(tuned.runs.origin) - step
     traces = Lacking.of(tuned.runs, usual)
     free = again(replace(own, lacking=traces))
-    return Differential(replace(free, measured=free.measured - usual), noise)
+    return Differential(replace(free, measured=free.measured - usual), noise, found.differs)
 
 
 @dataclass(frozen=True)
@@ -135,36 +135,3 @@ class Tuned(ForwardWrapper):
             if trace.programme == programme.identity:
                 rows = rows + np.tensordot(sizes, trace.traces, axes=1)
         return rows
-
-
-def _usual(seen: Dataset, baseline: Sequence[Recording]) -> tuple[SingleArray, int]:
-    """Mean baseline of each programme (rows, c), and the fewest recordings of one."""
-    runs = seen.runs
-    rate = runs.programmes[0].rate
-    others = [preprocess(runs.forward, [recording], runs.workers, rate) for recording in baseline]
-    pieces, fewest = [], len(others)
-    for k, programme in enumerate(runs.programmes):
-        same = [
-            other.measured
-            for other in others
-            if other.runs.columns == runs.columns
-            and _alike(other.runs.programmes[0].drive, programme.drive)
-        ]
-        if not same:
-            raise InvalidInputError(
-                f"baseline of recording {k + 1} ({programme.name})",
-                "none with its set-points",
-                "a recording of the same programme, made while the rig was in order",
-            )
-        pieces.append(np.mean(same, axis=0, dtype=np.float32))
-        fewest = min(fewest, len(same))
-    return np.concatenate(pieces), fewest
-
-
-def _alike(one: Mapping[str, FloatArray], two: Mapping[str, FloatArray]) -> bool:
-    """Whether two programmes feed in the same."""
-    return all(
-        one[name].shape == two[name].shape
-        and np.abs(one[name] - two[name]).max() <= SAME * max(float(np.ptp(two[name])), 1e-9)
-        for name in two
-    )

@@ -25,10 +25,10 @@ RIVAL_RATIO = 4.0
 """A fit with this many times the chi^2 of the best is not worth new nuisance columns."""
 
 LEAST = 0.7
-"""Part of the threshold that a cause must take off chi^2: the fit moves the screen's figure."""
+"""Part of the threshold that a cause must take off chi^2; a fit changes the screen's value."""
 
 CLEAR = 3.0
-"""Times the threshold that a cause must take off chi^2 to make a better fit without it idle."""
+"""Times the threshold that a cause must take off chi^2 to outweigh a better fit without it."""
 
 FAR = 0.5
 """Share of the likeliest suspect's score that another must have to be fitted at once."""
@@ -176,15 +176,14 @@ def _tried(desk: FitContext, suspects: list[Candidate]) -> list[Fit]:
 def _far(desk: FitContext, fits: list[Fit]) -> bool:
     """Whether what causes take is so little that neither new columns nor a second one would do.
 
-    With more than two causes asked for, building up goes on from any of them.
+    Of a machine of many parameters alone: of others runs are cheap, and laws may be looked for.
     """
     first, best = desk.first, min(fits, key=lambda fit: fit.chi2)
-    if first.commissioning is None or desk.settings.causes > TOGETHER:
+    if not desk.settings.sparse or desk.settings.causes > TOGETHER or first.commissioning is None:
         return False
     noise = len(best.residual)
     there = first.commissioning.chi2 - noise
-    least = STRANGE if desk.settings.sparse else RIVAL_RATIO
-    if best.chi2 - noise < (1.0 - HOPE) * there or best.chi2 < least * noise:
+    if best.chi2 - noise < (1.0 - HOPE) * there or best.chi2 < STRANGE * noise:
         return False
     power = float(first.z @ first.left)
     return all(one.score < HOPE * power for one, _ in first.screen.pairs(first.z, 1))
@@ -327,16 +326,17 @@ def _commissioning(
     """
     first, runs = desk.first, evidence.runs
     shift, start = np.where(runs.sd > 0.0, leader.shift, 0.0), _start(first)
-    job = FitJob(evidence, (), shift, leader.local, leader.step_share, True)
+    sparse, last = desk.settings.sparse, first.commissioning
+    job = FitJob(evidence, (), shift, leader.local, leader.step_share, sparse)
     best = _refined([job], desk, "commissioning errors alone")[0]
-    if (last := first.commissioning) is None or last.chi2 < WORSE_START * best.chi2:
-        job = FitJob(evidence, (), start.shift, start.local, start.step_share, True)
+    if not sparse or last is None or last.chi2 < WORSE_START * best.chi2:
+        job = FitJob(evidence, (), start.shift, start.local, start.step_share, sparse)
         alone = _refined([job], desk, "commissioning errors alone")[0]
         best = min(best, alone, key=lambda fit: fit.chi2)
     clear = leader.chi2 + CLEAR * desk.thresholds.effect
-    if far or best.chi2 > clear + SLACK * leader.chi2:
+    if sparse and (far or best.chi2 > clear + SLACK * leader.chi2):
         return best, True
-    best = _again(evidence, best, 0)
+    best = _again(evidence, best, 0) if sparse else best
     return (best if best.chi2 > clear else _again(evidence, best, desk.settings.rounds)), False
 
 

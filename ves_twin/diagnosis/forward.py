@@ -188,7 +188,10 @@ class Excitation:
             fed = {signal: recording[signal] for signal in drive}
             return Excitation(name, recording.time, fed, True, rate)
         if len(steps) < 2 or np.ptp(steps) > 0.01 * np.mean(steps):
-            raise InvalidInputError("recording time", "uneven or too few rows", "equidistant rows")
+            expected = (
+                "equidistant rows; window in the machine's file or experiment, or rate in a map"
+            )
+            raise InvalidInputError("recording time", "uneven or too few rows", expected)
         fed = {signal: recording[signal] for signal in drive}
         return Excitation(name, recording.time, fed, False, rate)
 

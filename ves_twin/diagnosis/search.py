@@ -86,9 +86,9 @@ class Search:
 
     J has a column for each free parameter, for one sd of each nuisance, and for delta. After a
     move m that changed the prediction by c instead of J m it becomes J + (c - J m) (B m)' / m'B m,
-    with B the squares of what the columns may be off by: a surprise is laid to those that bend,
-    and the others stay right. They are turned before whitening too, for whoever goes on from the
-    fit, with another noise or another cause.
+    with B the squares of what the columns may be off by: the difference between a run and its
+    linear prediction updates the nonlinear columns, the others stay. They are updated before
+    whitening too, for whoever goes on from the fit, with another noise or another cause.
 
     Source: Broyden 1965, the good update, with weights: the most probable J if its columns' errors
     are independent and normal with the covariance B.

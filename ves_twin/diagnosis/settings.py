@@ -29,6 +29,8 @@ class Settings:
         causes: that may be named together; beyond two only on held-out recordings.
         rate: of the analysis grid [Hz].
         sparse: whether banks are built with fewer runs, as a machine of many parameters needs.
+        laws: whether a law is looked for where no cause explains the record, and the plant can
+            have laws; None where that takes minutes at most.
     """
 
     alpha: float = 0.002
@@ -45,6 +47,7 @@ class Settings:
     causes: int = 2
     rate: float = RATE
     sparse: bool = False
+    laws: bool | None = False
 
     @property
     def bank(self) -> str:

@@ -15,6 +15,7 @@ from ves_twin.diagnosis.aliases import Lookalike
 from ves_twin.diagnosis.build_up.result import Inseparable, Left, Proved
 from ves_twin.diagnosis.disagreement import Alone
 from ves_twin.diagnosis.gain import Gain
+from ves_twin.diagnosis.law.result import LawFinding
 from ves_twin.diagnosis.report_traces import ReportTraces
 from ves_twin.diagnosis.residual_structure import ResidualStructure
 from ves_twin.diagnosis.rivals import Rival
@@ -131,12 +132,20 @@ class ChannelError:
 
 @dataclass(frozen=True)
 class Basis:
-    """On what the verdict rests: each measured, declared or none."""
+    """On what the verdict rests: each measured, declared or none.
+
+    `recordings` is "external" where every one, held-out ones too, comes from a log of a machine,
+    "unknown" otherwise: a simulated one, or one that does not say where it comes from.
+    `baseline_differs` is the largest difference of the baseline's inputs from those of the record,
+    of their range.
+    """
 
     noise: str
     tolerances: str
     held_out: str
     baseline: str = "none"
+    recordings: str = "unknown"
+    baseline_differs: float | None = None
 
 
 @dataclass(frozen=True)
@@ -188,8 +197,10 @@ class Verdict:
     by itself, where all together have no explanation. `proved` are the causes that held-out data
     prove one by one, out of `put_to_proof`, with the false-discovery rate that this keeps; `left`
     is what then stays of each channel, `inseparable` what is known only in combination. `nearest`
-    are the causes that come nearest where none is named. `exhibit` has the traces of the
-    report, and stays out of verdict.json.
+    are the causes that come nearest where none is named. `law` is what was found where no cause
+    explains the record and a law was looked for; if it is claimed, `tuned`, `residuals`,
+    `leftover` and `gain` are with it. `exhibit` has the traces of the report, and stays out of
+    verdict.json.
     """
 
     verdict: Kind
@@ -219,6 +230,7 @@ class Verdict:
     left: Mapping[str, Left] = field(default_factory=dict)
     inseparable: tuple[Inseparable, ...] = ()
     nearest: tuple[Cause, ...] = ()
+    law: LawFinding | None = None
     exhibit: ReportTraces | None = field(default=None, repr=False, compare=False)
     schema: int = SCHEMA
 
@@ -247,6 +259,8 @@ class Verdict:
             case Kind.NOTHING:
                 return "Nothing beyond noise and commissioning tolerances."
             case Kind.UNKNOWN:
+                if self.law is not None and self.law.claimed:
+                    return f"No cause in the library explains it. A law does: {self.law.words}."
                 hint = f"; the nearest of its causes is {self.suspect}" if self.suspect else ""
                 return f"Something is wrong that the library does not explain{hint}."
             case _:

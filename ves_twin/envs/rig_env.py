@@ -153,9 +153,20 @@ class RigEnv(gym.Env[Any, FloatArray], abc.ABC, Generic[Hand]):
     def metrics(self) -> dict[str, float]:
         """Figures of the episode so far, in physical units."""
 
-    @abc.abstractmethod
     def prior(self) -> StateSpace:
-        """The linear model that the believed rig has: actions in, deviations of readings out."""
+        """The linear model that the believed rig has: actions in, deviations of readings out.
+
+        Raises:
+            InvalidInputError: a task whose actions are no input of a linear model.
+        """
+        raise InvalidInputError(type(self).__name__, "no linear prior", "a task that moves the rig")
+
+    def hidden(self, plant: Plant) -> Plant:
+        """A plant with what the task hides in it, drawn by `np_random` alone; as it is by default.
+
+        Called for plants without effects: whoever gives a rig with faults has hidden his own.
+        """
+        return plant
 
     def briefing(self) -> TaskSpec:
         """What a policy may know before it begins: tables, times, beliefs, the linear model."""
@@ -214,6 +225,7 @@ class RigEnv(gym.Env[Any, FloatArray], abc.ABC, Generic[Hand]):
         if "scenario" in given:
             self.check(scenario)
         plant = self.plant_of(given)
+        plant = plant if plant.effects else self.hidden(plant)
         scenario, goal = self.draw(scenario, given.get("goal"))
         say_that_it_compiles()
         self._rig = self._rigs.find(plant, scenario) or self._rigs.keep(

@@ -9,9 +9,10 @@ import numpy as np
 
 from ves_twin.core.errors import InvalidInputError
 from ves_twin.core.types import FloatArray
-from ves_twin.envs.arm_env import POSE_LIMIT, POSE_UNITS, WRENCH_UNITS
+from ves_twin.envs.arm_env import POSE_LIMIT, POSE_UNITS
 from ves_twin.envs.channels import Channel, Channels
 from ves_twin.envs.commanded_legs import CommandedLegs
+from ves_twin.envs.leg_channels import distance, leg_channels, leg_readings
 from ves_twin.envs.priors import legs_prior
 from ves_twin.envs.rig_env import RigEnv
 from ves_twin.envs.true_state import true_state
@@ -27,11 +28,6 @@ if TYPE_CHECKING:
 
 OFFSET = 0.03
 """Offset of a leg's set-point of a share of 1 [m]; the reference's own lag is about 0.01."""
-
-RADIUS = 0.3
-"""Lever arm with which an angle counts as a length [m]; about the platform's joint circle."""
-
-MILLIMETRE = 1e-3
 
 AMPLITUDE = np.array([0.05, 0.05, 0.04, 0.07, 0.07, 0.10])
 """Largest amplitude of a reference [m, rad]; of position_sine. Drawn from 0.3 to 1 times that."""
@@ -67,24 +63,8 @@ class PlatformTracking(RigEnv[CommandedLegs]):
 
     def channels(self, scenario: Scenario) -> tuple[Channels, Channels]:
         """Pose, legs, valves, sensor, supply, and the reference with its rate."""
-        array = Plant.load(scenario.belief).parameters.array
-        travel = float(array("leg.stroke")) / 2.0
         observed = Channels(
-            Channel.within(
-                "platform.pose", POSE_UNITS, POSE_LIMIT, "pose from home by the leg lengths"
-            ),
-            Channel.within("leg.travel", ("m",) * 6, travel, "measured leg length less home"),
-            Channel.within("leg.setpoint", ("m",) * 6, travel, "set-point in force less home"),
-            Channel.within("valve.command", ("1",) * 6, 1.0, "spool command"),
-            Channel.within(
-                "sensor.wrench",
-                WRENCH_UNITS,
-                array("sensor.range"),
-                "payload on platform, sensor axes",
-            ),
-            Channel(
-                "supply.pressure", ("Pa",), np.zeros(1), np.array([3e7]), "gauge of the manifold"
-            ),
+            *leg_channels(scenario),
             Channel.within("reference.pose", POSE_UNITS, POSE_LIMIT, "where to be now"),
             Channel.within(
                 "reference.ahead", POSE_UNITS, POSE_LIMIT, "where to be one step from now"
@@ -140,20 +120,13 @@ class PlatformTracking(RigEnv[CommandedLegs]):
         return sum(away)
 
     def _distance(self, pose: FloatArray, time: float) -> float:
-        error = pose - self._motion.pose(time)
-        error[3:] *= RADIUS
-        return float(np.linalg.norm(error)) / MILLIMETRE
+        return distance(pose, self._motion.pose(time))
 
     def readings(self, board: SignalBus) -> dict[str, FloatArray]:
         """Measurements, set-points, reference."""
-        home, now = self._costs.home_lengths, self.sim.time
+        now = self.sim.time
         return {
-            "platform.pose": self.measured_pose,
-            "leg.travel": board["leg.length"] - home,
-            "leg.setpoint": board["leg.command"] - home,
-            "valve.command": board["valve.command"],
-            "sensor.wrench": board["sensor.wrench"],
-            "supply.pressure": board["supply.pressure"],
+            **leg_readings(board, self.measured_pose, self._costs.home_lengths),
             "reference.pose": self._motion.pose(now),
             "reference.ahead": self._motion.pose(now + self.span),
         }

@@ -25,7 +25,8 @@ class Diagnosis:
     Attributes:
         verdict: with the magnitudes of the effects as the names of its parameters.
         machine: that was tried, as the experiment has it.
-        extended: it with the causes; None where no causes are named.
+        extended: it with the causes, or with a law; None where no causes are named and no law is
+            claimed.
         refused: why the extension is only a candidate; empty where it passed on held-out data.
         excitation: that should part the causes, where they cannot be told apart.
         nearest: it with what comes nearest, where no causes are named; None if nothing does.
@@ -108,8 +109,15 @@ def diagnose(
     )
     causes = tuple(cause.shortened for cause in verdict.causes)
     near = tuple(cause.shortened for cause in verdict.nearest)
-    verdict = replace(verdict, causes=causes, nearest=near, quality=prepared.flaws)
+    basis = replace(verdict.basis, recordings=_origin(given))
+    verdict = replace(verdict, causes=causes, nearest=near, quality=prepared.flaws, basis=basis)
     return _concluded(verdict, machine, offered)
+
+
+def _origin(given: Material) -> str:
+    """Whether all that was fitted and held out comes from logs: what simulates writes no log."""
+    told = (*given.measured, *given.held_out)
+    return "external" if all(one.recording.info.imported for one in told) else "unknown"
 
 
 def _concluded(verdict: Verdict, machine: Machine, offered: Sequence[Excitation]) -> Diagnosis:
@@ -117,6 +125,8 @@ def _concluded(verdict: Verdict, machine: Machine, offered: Sequence[Excitation]
     if verdict.verdict.names_a_plant:
         new = machine.extended(verdict)
         return Diagnosis(verdict, machine, new, machine.refusal(verdict))
+    if verdict.law is not None and verdict.law.claimed:
+        return Diagnosis(verdict, machine, machine.extended(verdict), verdict.law.refusal)
     best = verdict.next_experiment[0].programme if verdict.next_experiment else ""
     chosen = next((one for one in offered if one.name == best), None)
     why = f"the verdict is {verdict.verdict.value}"

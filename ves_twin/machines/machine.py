@@ -17,6 +17,7 @@ from ves_twin.diagnosis.refusal import refusal
 from ves_twin.diagnosis.settings import Settings
 from ves_twin.diagnosis.verdict import Verdict
 from ves_twin.machines.case import Case
+from ves_twin.machines.drawing import Drawing
 from ves_twin.scenario.experiment_file import ExperimentFile
 
 SETPOINTS, SCENARIO = "next_experiment.csv", "next_experiment.toml"
@@ -222,6 +223,10 @@ class Machine(ABC):
         Raises:
             FileAccessError: not writable.
         """
+
+    def drawing(self) -> Drawing | None:
+        """Its bodies, for pictures; None where its recordings do not say where they are."""
+        return None
 
     def settings(self, settings: Settings, excitation: Excitation) -> Settings:
         """Settings as the size of this machine makes sensible.

@@ -11,6 +11,7 @@ import numpy as np
 from ves_twin.core.recording.recording import Recording
 from ves_twin.diagnosis.forward import Excitation, Forward
 from ves_twin.diagnosis.grid import RATE
+from ves_twin.suites.hidden_law import HiddenLaw
 
 
 @dataclass(frozen=True)
@@ -23,6 +24,7 @@ class BlindRig:
         size: of that.
         deployed: keys of the scenario that the rig's programs have otherwise than it says.
         background: further kinds that the library lacks, with their sizes.
+        law: a function that no library has; None if none.
     """
 
     values: Mapping[str, float] = field(default_factory=dict)
@@ -30,6 +32,7 @@ class BlindRig:
     size: float = 0.0
     deployed: Mapping[str, object] = field(default_factory=dict)
     background: Mapping[str, float] = field(default_factory=dict)
+    law: HiddenLaw | None = None
 
     def odd(self, kind: str) -> float:
         """Size of a kind that the library lacks; 0 if the rig has none of it."""

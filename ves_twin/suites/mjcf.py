@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import copy
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import final
@@ -17,7 +17,10 @@ from ves_twin.core.recording.recording import Recording, RecordingInfo
 from ves_twin.core.types import FloatArray
 from ves_twin.core.units import to_si
 from ves_twin.diagnosis.forward import Excitation
+from ves_twin.effects.effect import Effect
+from ves_twin.effects.element import Element
 from ves_twin.effects.joints import Backlash
+from ves_twin.effects.place import Place
 from ves_twin.machines.mjcf.description import Mode
 from ves_twin.machines.mjcf.forward import MjcfForward
 from ves_twin.machines.mjcf.machine import Rig
@@ -25,6 +28,7 @@ from ves_twin.machines.mjcf.mjcf_machine import MjcfMachine
 from ves_twin.machines.mjcf.programmes import Multisine, driven, joint_of, multisine
 from ves_twin.machines.mjcf.signals import rig_signals
 from ves_twin.machines.mjcf.started import start_of, start_signal
+from ves_twin.suites.hidden_law import Acts, HiddenCommand, HiddenEffort
 from ves_twin.suites.machine import BlindMachine, BlindRig
 
 COUNT = 0.2
@@ -83,11 +87,17 @@ class _Measured(Rig):
     """The two files with another model: as the laboratory has it."""
 
     compiled: mujoco.MjModel = field(kw_only=True, compare=False)
+    hidden: tuple[tuple[Effect, Place], ...] = field(default=(), kw_only=True, compare=False)
 
     @cached_property
     def model(self) -> mujoco.MjModel:
         """As compiled."""
         return self.compiled
+
+    def effects_at(self, values: Mapping[str, float]) -> Iterator[tuple[Effect, Place]]:
+        """With what is hidden."""
+        yield from super().effects_at(values)
+        yield from self.hidden
 
 
 @final
@@ -215,7 +225,24 @@ class BlindMjcf(BlindMachine):
             model.jnt_range[joint.id] = STOPS[0] * at.travel, STOPS[1] * at.travel
             model.jnt_solref[joint.id] = (-40.0 * stop, -stop)
         told = self.rig
-        return _Measured(told.description, told.folder, told.file, told.payloads, compiled=model)
+        return _Measured(
+            told.description,
+            told.folder,
+            told.file,
+            told.payloads,
+            compiled=model,
+            hidden=self._hidden(rig, at),
+        )
+
+    def _hidden(self, rig: BlindRig, at: Place) -> tuple[tuple[Effect, Place], ...]:
+        """A law that no library has, at the first driven joint, its actuator, or a column."""
+        law = rig.law
+        if law is None or law.acts is Acts.READING:
+            return ()
+        if law.acts is not Acts.COMMAND:
+            return ((HiddenEffort(at.name, law), at),)
+        name = next(iter(self.rig.description.drive.actuators))
+        return ((HiddenCommand(name, law), Place(Element.ACTUATOR, name)),)
 
     def _recorded(
         self, fed: Excitation, rows: FloatArray, rig: BlindRig, rng: np.random.Generator
@@ -224,6 +251,9 @@ class BlindMjcf(BlindMachine):
         rows, channels = rows.copy(), self.forward.channels
         odd, span = self._place()
         rows[:, odd] = _misread(rows[:, odd], fed.time, span, rig, rng)
+        if rig.law is not None and rig.law.acts is Acts.READING:
+            at = [channel.name for channel in channels].index(rig.law.place)
+            rows[:, at] += rig.law.function(rows[:, at])
         white = rng.uniform(*LEVELS) * rng.standard_normal(rows.shape) * [c.sd for c in channels]
         rows += lfilter([1.0], [1.0, -rng.uniform(*COLOURS)], white, axis=0)
         signals = dict(fed.drive)

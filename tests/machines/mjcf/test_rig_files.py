@@ -16,10 +16,10 @@ from ves_twin.core.resources import resource_folder
 from ves_twin.diagnosis.verdict import Basis, Cause, Estimate, Kind, Statistics, Verdict
 from ves_twin.machines.data_folder import find_data
 from ves_twin.machines.mjcf.columns import read_rig_recording
-from ves_twin.machines.mjcf.description import is_rig, shipped_rigs
 from ves_twin.machines.mjcf.extend import extended, write_rig
 from ves_twin.machines.mjcf.forward import MjcfForward
 from ves_twin.machines.mjcf.interleaved_split import alternate
+from ves_twin.machines.mjcf.load_description import is_rig, shipped_rigs
 from ves_twin.machines.mjcf.machine import Rig
 
 LOG = "t,f,m,set,x,a,fx,fy,fz\n" + "\n".join(

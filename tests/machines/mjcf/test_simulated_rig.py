@@ -116,12 +116,12 @@ def test_an_effect_that_edits_any_number_of_the_model_changes_the_efforts(machin
     """Through what is kept of earlier motions: as with nothing kept."""
     fed = programme()
     begun = Work.begin(machine, fed, {})
-    plain = efforts_of_motion(begun)["drive.force"]
+    plain = efforts_of_motion(begun)[0]["drive.force"]
     model = copy.copy(begun.model)
     LongerArm("arm", shift=0.2).edit_model(model)
-    found = efforts_of_motion(replace(begun, model=model))["drive.force"]
+    found = efforts_of_motion(replace(begun, model=model))[0]["drive.force"]
     inverse._moved.cache_clear()
-    assert np.array_equal(found, efforts_of_motion(replace(begun, model=model))["drive.force"])
+    assert np.array_equal(found, efforts_of_motion(replace(begun, model=model))[0]["drive.force"])
     assert np.max(np.abs(found - plain)) > 0.1
 
 
@@ -153,7 +153,7 @@ def test_an_effect_on_an_actuator_is_at_work_in_closed_loop_too(machine):
 
     def cart(rig, *effects):
         work = replace(Work.begin(rig, fed, {}), effects=tuple((e, place) for e in effects))
-        return motion_of_drive(work, Mode.REFERENCE)["cart.position"]
+        return motion_of_drive(work, Mode.REFERENCE).signals["cart.position"]
 
     assert not np.array_equal(cart(machine), cart(limited))
     assert np.array_equal(cart(machine, limit), cart(limited))

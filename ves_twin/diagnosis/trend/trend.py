@@ -28,6 +28,9 @@ from ves_twin.diagnosis.verdict import Basis
 ALPHA = 0.01
 """Rate of false alarms for a whole series, where nobody states another."""
 
+FEWEST_DAYS = 5
+"""Days from which one may be imperfect: four tell a step by themselves."""
+
 FEWEST = 3
 """Recordings of a series."""
 
@@ -122,7 +125,23 @@ def _answer(series: Series, study: Study, calendar: Calendar) -> Trend:
         study.progress(n / len(suspects), f"following {cause.label}")
         followed.append(follow(days, cause, study.workers, settings.rounds, settings.model_error))
     followed.sort(key=lambda one: one.chi2)
-    return _concluded(bare, series, followed, settings)
+    told = _concluded(bare, series, followed, settings)
+    if len(told.unexplained) == 1 and len(days) >= FEWEST_DAYS:
+        return _without(told, series, study)
+    return told
+
+
+def _without(told: Trend, series: Series, study: Study) -> Trend:
+    """The course over all other days, where one is imperfect; its name is then not firm.
+
+    That day pulls the commissioning errors that all days share, and so the others' sizes.
+    """
+    others = [day for day in series.days if day.name not in told.unexplained]
+    rest = _answer(Series.of(others, study.causes, study.settings), study, told.calendar)
+    if rest.answer not in (Answer.STEP, Answer.RAMP) or rest.cause is None:
+        return told
+    cause = replace(rest.cause, firm=False)
+    return replace(rest, cause=cause, recordings=told.recordings, unexplained=told.unexplained)
 
 
 def _concluded(

@@ -134,12 +134,31 @@ def mjcf_cases(
                 outputs=outputs,
                 absent=tuple(n for n in forward.compared if n not in ready.signals),
                 checks=checks,
-                notes=(f"the first {forget:g} s are not compared",) if forget else (),
+                notes=(
+                    *((f"the first {forget:g} s are not compared",) if forget else ()),
+                    *_beyond(forward, ready),
+                ),
                 rows=slice(first, len(time)),
                 offset=0.0,
                 standstill=standstill,
             )
         )
+    return tuple(found)
+
+
+def _beyond(forward: MjcfForward, recording: Recording) -> tuple[str, ...]:
+    """Where the motion leaves the range in which a law was seen, beyond which it is held."""
+    if not forward.rig.laws:
+        return ()
+    fed = Excitation.of(recording, forward.drive)
+    along, found = forward.visited(fed, {}), []
+    for law in forward.rig.laws:
+        share = law.beyond(*(along[name] for name in law.of))
+        if share > 0.0:
+            found.append(
+                f"the law {law.label} is held in {100.0 * share:.2g} % of the rows, which are"
+                " beyond the range in which it was seen"
+            )
     return tuple(found)
 
 

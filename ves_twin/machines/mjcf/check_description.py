@@ -6,10 +6,12 @@ import mujoco
 
 from ves_twin.core.errors import InvalidInputError, UnknownNameError
 from ves_twin.core.units import to_si
+from ves_twin.effects.law import LawKind
 from ves_twin.machines.mjcf.description import Compared, Mode, RigDescription
 from ves_twin.machines.mjcf.joint_units import joint_units
 from ves_twin.machines.mjcf.places import SINGLE, driven_joint, typical_speed
 
+BALL = int(mujoco.mjtJoint.mjJNT_BALL)
 FREE = int(mujoco.mjtJoint.mjJNT_FREE)
 
 
@@ -25,10 +27,12 @@ def check_description(told: RigDescription, model: mujoco.MjModel) -> None:
     """
     _signals(told)
     _parts(told, model)
+    _units(told, model)
     _moved(told, model)
     _widths(told, model)
     _starts(told, model)
     _friction(told, model)
+    _laws(told, model)
 
 
 def _signals(told: RigDescription) -> None:
@@ -58,6 +62,20 @@ def _parts(told: RigDescription, model: mujoco.MjModel) -> None:
         for name in filter(None, names):
             if name not in there:
                 raise UnknownNameError(f"{what} in {told.model}", name, there)
+
+
+def _units(told: RigDescription, model: mujoco.MjModel) -> None:
+    """Of signals that say their joint themselves."""
+    for name, signal in told.signals.items():
+        kind = int(model.jnt_type[model.joint(signal.joint).id]) if signal.joint else FREE
+        if kind in (FREE, BALL):
+            continue
+        expected = joint_units(model, signal.joint)[signal.of == "speed"]
+        if signal.unit != expected:
+            what = f"signals.{name}.unit"
+            raise InvalidInputError(
+                what, signal.unit, f"{expected}, as joint {signal.joint} has it"
+            )
 
 
 def _moved(told: RigDescription, model: mujoco.MjModel) -> None:
@@ -140,3 +158,23 @@ def _starts(told: RigDescription, model: mujoco.MjModel) -> None:
                 to_si(value, place, f"start.{joint}.elsewhere")
             for value in (there.speed, there.speed_sd):
                 to_si(value, speed, f"start.{joint}.elsewhere")
+
+
+def _laws(told: RigDescription, model: mujoco.MjModel) -> None:
+    """Places and variables of laws."""
+    single = [model.joint(i).name for i in range(model.njnt) if int(model.jnt_type[i]) in SINGLE]
+    columns = [
+        name if len(told.signals[name].columns) == 1 else f"{name}.{i + 1}"
+        for name in told.compare
+        for i in range(len(told.signals[name].columns))
+    ]
+    moving = [f"{what}@{joint}" for what in ("position", "speed") for joint in single]
+    fed = [*told.drive.actuators, *told.controllers]
+    known = {"time", *moving, *(f"command@{name}" for name in fed)}
+    for law in told.laws:
+        there = single if law.kind is LawKind.EFFORT else columns
+        if law.place not in there:
+            raise UnknownNameError(f"place of a law of {law.kind}s", law.place, there)
+        for name in law.of:
+            if name not in known:
+                raise UnknownNameError(f"variable of the law at {law.place}", name, known)

@@ -1,33 +1,42 @@
-"""read_rig_recording: a CSV or Parquet file as a recording, by the columns a rig names."""
+"""read_rig_recording: a raw log as a recording, by the columns that a machine's file names."""
 
 from __future__ import annotations
 
-import csv
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
-import pyarrow as pa
-import pyarrow.csv as pacsv
-import pyarrow.parquet as pq
 
-from ves_twin.core.arrow_file import arrow_file
 from ves_twin.core.errors import FileAccessError, InvalidInputError, UnknownNameError
 from ves_twin.core.recording.recording import POSES, Recording, RecordingInfo
-from ves_twin.core.types import FloatArray
-from ves_twin.machines.mjcf.description import Column
+from ves_twin.core.signals import Role
+from ves_twin.core.types import BoolArray, FloatArray
+from ves_twin.data.clock_report import usual_step
+from ves_twin.data.column_expression import ColumnExpression
+from ves_twin.data.log import Kind, Log
+from ves_twin.data.open_log import open_log
+from ves_twin.machines.mjcf.description import Column, RigDescription
 from ves_twin.machines.mjcf.machine import Rig
+from ves_twin.machines.mjcf.signals import rig_signals
 from ves_twin.machines.mjcf.turned import turned
-from ves_twin.scenario.columns import QUOTED_ROW
 
 UNEVEN = 0.01
 """Largest departure of a time step from the mean that passes as an even clock."""
+
+HOLE = 5.0
+"""Periods over which a line is drawn between two rows; a longer gap is left to be refused."""
 
 
 def read_rig_recording(path: Path, rig: Rig) -> Recording:
     """A recording of a rig.
 
+    Rows outside the file's `window` are left out before anything is refused. Where stamps jitter
+    by more than UNEVEN of a step, every signal is read at even rows: measurements straight
+    between the rows, commands held.
+
     Args:
-        path: .csv with a header line, or .parquet.
+        path: of any format that `ves-twin inspect` reads.
         rig: whose signals are read.
 
     Raises:
@@ -38,49 +47,120 @@ def read_rig_recording(path: Path, rig: Rig) -> Recording:
     if not path.is_file():
         raise FileAccessError(f"recording file '{path}' does not exist")
     told = rig.description
-    table = _table(path)
-    if len(table) == 0:
-        raise InvalidInputError(str(path), "0 rows", "a recording")
-    time = told.clock.scale * _column(table, told.clock.column, path)
-    signals = {name: _signal(table, c, path) for name, c in told.signals.items()}
+    table = _Table.of(open_log(path), told)
+    time, inside = _times(table, told, path)
+    signals = {name: _signal(table, c, inside, path) for name, c in told.signals.items()}
     for name, column in told.signals.items():
         if column.into:
             signals[name] = turned(signals[name], signals, name, column.into)
     log = POSES if told.clock.poses else ""
     info = RecordingInfo("measured", scenario=path.stem, log=log, outcome="finished")
-    return Recording(time if told.clock.poses else _even(time), signals, info)
+    if told.clock.poses:
+        return Recording(time, signals, info)
+    return _even(Recording(time, signals, info), rig)
 
 
-def _even(time: FloatArray) -> FloatArray:
-    """Times of an even clock that rounding or jitter below 1 % of a step made uneven."""
-    steps = np.diff(time)
-    if len(steps) and np.ptp(steps) > 0.0 and np.ptp(steps) <= UNEVEN * np.mean(steps):
-        return np.linspace(time[0], time[-1], len(time))
-    return time
+@dataclass(frozen=True)
+class _Table:
+    """Columns of one table of a log."""
+
+    rows: int
+    columns: Mapping[str, FloatArray]
+
+    @staticmethod
+    def of(log: Log, told: RigDescription) -> _Table:
+        """Those that a description names, by themselves or in formulas."""
+        known = log.full_names()
+        asked = [c for one in told.signals.values() for c in one.columns]
+        names = [name for text in asked for name in needed(text, known)]
+        names += [told.clock.column] if told.clock.column else []
+        for name in names:
+            if name not in known:
+                raise UnknownNameError(f"column of {log.path.name}", name, known)
+            if known[name][1].kind is Kind.TEXT:
+                raise InvalidInputError(f"column {name} of {log.path.name}", "a text", "numbers")
+        tables = sorted({known[name][0].name for name in names})
+        if len(tables) > 1:
+            expected = "columns of one table; a map (--map) puts several onto one clock"
+            raise InvalidInputError(f"columns of {log.path.name}", f"tables {tables}", expected)
+        own = {name: known[name][1].name for name in names}
+        read = log.read(tables[0], list(dict.fromkeys(own.values())))
+        rows = min((len(values) for values in read.values()), default=0)
+        if rows == 0:
+            raise InvalidInputError(str(log.path), "0 rows", "a recording")
+        return _Table(rows, {name: read[column] for name, column in own.items()})
+
+    def column(self, text: str, inside: BoolArray, path: Path) -> FloatArray:
+        """A column or a formula of columns (n,) in some rows, all of them numbers."""
+        values = self.columns.get(text)
+        if values is None:
+            formula = ColumnExpression(text)
+            values = formula.value(self.columns)
+        values = np.asarray(np.broadcast_to(values, self.rows)[inside])
+        bad = np.flatnonzero(~np.isfinite(values))
+        if len(bad):
+            came = f"{len(bad)} empty rows, the first is row {bad[0] + 1}"
+            expected = "numbers; window in the machine's file leaves a stretch out"
+            raise InvalidInputError(f"column {text} of {path.name}", came, expected)
+        return values
 
 
-def _table(path: Path) -> pa.Table:
-    try:
-        with arrow_file(path) as file:
-            return pq.read_table(file) if path.suffix == ".parquet" else pacsv.read_csv(file)
-    except (pa.ArrowInvalid, OSError, csv.Error) as error:
-        reason = QUOTED_ROW.sub(r"\1", str(error).split("\n", 1)[0])
-        raise InvalidInputError(str(path), reason, "a CSV file with a header, or Parquet") from None
+def needed(text: str, known: Mapping[str, object]) -> tuple[str, ...]:
+    """Columns behind a text: the column of that name, else those of a formula.
+
+    Raises:
+        InvalidInputError: no formula either, in a text with signs of one.
+    """
+    if text in known or not any(sign in text for sign in "+-*/(`"):
+        return (text,)
+    return ColumnExpression(text).columns
 
 
-def _column(table: pa.Table, name: str, path: Path) -> FloatArray:
-    if name not in table.column_names:
-        raise UnknownNameError(f"column of {path.name}", name, table.column_names)
-    column = table.column(name)
-    if not (pa.types.is_floating(column.type) or pa.types.is_integer(column.type)):
-        raise InvalidInputError(f"column {name} of {path.name}", str(column.type), "numbers")
-    values = np.array(column.to_numpy(), dtype=float)
-    bad = int(np.count_nonzero(~np.isfinite(values)))
-    if bad:
-        raise InvalidInputError(f"column {name} of {path.name}", f"{bad} empty rows", "numbers")
-    return values
+def _times(table: _Table, told: RigDescription, path: Path) -> tuple[FloatArray, BoolArray]:
+    """Times of the rows in the window [s], and which rows these are."""
+    clock, whole = told.clock, np.ones(table.rows, dtype=bool)
+    if clock.column:
+        time = clock.scale * table.column(clock.column, whole, path)
+    else:
+        time = np.asarray(np.arange(table.rows) / clock.rate, np.float64)
+    since = time - time[0]
+    inside = (since >= told.window.start - 1e-9) & (since < told.window.stop - 1e-9)
+    if not inside.any():
+        came = f"{told.window.start:g} to {told.window.stop:g} s"
+        raise InvalidInputError("window", came, f"a stretch of 0 to {since[-1]:.4g} s")
+    return time[inside], inside
 
 
-def _signal(table: pa.Table, told: Column, path: Path) -> FloatArray:
-    columns = [_column(table, name, path) for name in told.columns]
+def _signal(table: _Table, told: Column, inside: BoolArray, path: Path) -> FloatArray:
+    columns = [table.column(name, inside, path) for name in told.columns]
     return np.asarray(told.scale * np.stack(columns, axis=1) + told.offset)
+
+
+def _even(recording: Recording, rig: Rig) -> Recording:
+    """With times of an even clock that rounding or jitter made uneven."""
+    time = recording.time
+    steps = np.diff(time)
+    if not len(steps) or np.ptp(steps) == 0.0:
+        return recording
+    if np.ptp(steps) <= UNEVEN * np.mean(steps):
+        return replace(recording, time=np.linspace(time[0], time[-1], len(time)))
+    period = usual_step(time)
+    if np.max(steps) > HOLE * period:  # whoever needs even rows says so
+        return recording
+    rows = np.asarray(time[0] + period * np.arange(int((time[-1] - time[0]) / period) + 1))
+    roles = {signal.name: signal.role for signal in rig_signals(rig)}
+    read = {
+        name: np.stack([_at(rows, c, time, roles[name]) for c in values.T], axis=1)
+        for name, values in recording.signals.items()
+    }
+    jitter = float(np.max(np.abs(steps - period))) / period
+    note = f"stamps jitter by up to {jitter:.0%}: read at even {1.0 / period:.5g} Hz"
+    info = replace(recording.info, imported={"notes": [note]})
+    return Recording(rows, read, info)
+
+
+def _at(rows: FloatArray, values: FloatArray, time: FloatArray, role: Role) -> FloatArray:
+    """A column at other times: the newest command, or straight between measurements."""
+    if role is Role.COMMAND:
+        return np.asarray(values[np.searchsorted(time, rows + 1e-9, "right") - 1])
+    return np.asarray(np.interp(rows, time, values))

@@ -3,26 +3,34 @@
 from __future__ import annotations
 
 from enum import StrEnum
-from pathlib import Path
-from typing import Annotated, Any, Literal, Self
+from typing import Annotated, Literal, Self
 
-from pydantic import Field, ValidationError, model_validator
+from pydantic import Field, model_validator
 
-from ves_twin.core.errors import InvalidInputError
-from ves_twin.core.resources import find_resource, resource_folder
-from ves_twin.core.toml_file import check_schema, read_toml
-from ves_twin.core.units import SI_UNITS
+from ves_twin.core.units import SI_UNITS, to_unit
+from ves_twin.data.import_map import Window
 from ves_twin.diagnosis.grid import RATE
 from ves_twin.effects.element import Element
-from ves_twin.scenario.fields import Hertz, Part, Seconds, named
-from ves_twin.scenario.load import refusal
+from ves_twin.machines.mjcf.law_table import LawTable
+from ves_twin.scenario.fields import Hertz, Part, Seconds, named, si
 
 KIND = "rig"
 """What the file calls itself; a plant of VES II says nothing."""
 
 SCHEMA = 1
 
-Unit = Annotated[str, named("unit", sorted(SI_UNITS))]
+LAB_UNITS = {
+    **dict.fromkeys(("mm", "cm", "um", "in"), "m"),
+    **dict.fromkeys(("deg", "mrad"), "rad"),
+    **dict.fromkeys(("mm/s", "cm/s"), "m/s"),
+    **dict.fromkeys(("deg/s", "mrad/s", "rpm"), "rad/s"),
+    **dict.fromkeys(("kN", "mN"), "N"),
+    **dict.fromkeys(("mN*m", "kN*m"), "N*m"),
+    **dict.fromkeys(("kPa", "MPa", "bar", "psi"), "Pa"),
+}
+"""Other units that a signal may have, which are converted -> SI unit."""
+
+Unit = Annotated[str, named("unit", sorted({*SI_UNITS, *LAB_UNITS}))]
 Number = float | str
 """A number in SI, or a text with a unit; the place that reads it knows which."""
 
@@ -43,8 +51,10 @@ class Mode(StrEnum):
 class Column(Part):
     """A signal: columns of the file, and what makes them SI.
 
-    value = scale * column + offset, then, for vectors given in the world, turned into the frame
-    of a signal that holds a quaternion x, y, z, w (sensor to world).
+    value = scale * column + offset, in the unit, then, for vectors given in the world, turned into
+    the frame of a signal that holds a quaternion x, y, z, w (sensor to world). A column may be a
+    formula of columns. Where the signal says `joint`, `actuator` or `sensor`, it needs no entry in
+    `compare` and none in `drive`: that mode and place decide whether it is fed in or compared.
     """
 
     columns: tuple[str, ...] = Field(min_length=1)
@@ -53,15 +63,41 @@ class Column(Part):
     offset: float = 0.0
     noise: Number | tuple[Number, ...] = 0.0
     into: str = ""
+    joint: str = ""
+    of: Literal["position", "speed"] = "position"
+    actuator: str = ""
+    sensor: str = ""
     source: str = ""
+
+    @model_validator(mode="before")
+    @classmethod
+    def _in_si(cls, content: object) -> object:
+        """With the unit converted, so that all behind has SI alone; noise is told in SI or text."""
+        if not isinstance(content, dict):
+            return content
+        given, numbers = content.get("unit"), [content.get(k, 0.0) for k in ("scale", "offset")]
+        if not isinstance(given, str) or given not in LAB_UNITS or not all(map(_number, numbers)):
+            return content
+        si_unit = LAB_UNITS[given]
+        factor, zero = to_unit(given, si_unit, "unit")
+        scale, offset = content.get("scale", 1.0), content.get("offset", 0.0)
+        si = {"unit": si_unit, "scale": factor * scale, "offset": factor * offset + zero}
+        return {**content, **si}
 
 
 class Clock(Part):
-    """The column of time, or of the order of poses at rest."""
+    """The column of time (s = scale * column), or of the order of poses at rest; else a rate."""
 
-    column: str
+    column: str = ""
     scale: Annotated[float, Field(gt=0)] = 1.0
+    rate: Annotated[Hertz, Field(ge=0)] = 0.0
     poses: bool = False
+
+    @model_validator(mode="after")
+    def _one_of_two(self) -> Self:
+        if bool(self.column) == bool(self.rate):
+            raise ValueError("clock: expected either column or rate")
+        return self
 
 
 class Drive(Part):
@@ -202,6 +238,8 @@ class Setting(Part):
 class Allowed(Part):
     """A kind of effect that may be at work, where, and sizes other than the typical ones.
 
+    "*" as the kind is every one that the model has a place for, in `on` every place of it; an
+    entry of its own comes before that.
     `sd` makes it a commissioning error as well; 0 is "absent by declaration". `low` and `high`
     bound its size, where not by the largest one: a delay that is known to 0.2 ms may be below zero.
     """
@@ -270,98 +308,66 @@ class MultisineRange(Part):
 
 
 class RigDescription(Part):
-    """The whole file, see docs/bring-your-own-rig.md."""
+    """The whole file, see docs/bring-your-own-rig.md.
+
+    `tolerances` says how well all values of an attribute are known that have no sd of their own, as
+    a share of them: `mass = "5 %"`.
+    """
 
     name: str
     model: str
     about: str = ""
     rate: Annotated[Hertz, Field(gt=0)] = RATE
     clock: Clock
+    window: Window = Window()
     signals: dict[str, Column]
     drive: Drive
-    compare: dict[str, Compared]
+    compare: dict[str, Compared] = Field(default_factory=dict)
     controllers: dict[str, Controller] = Field(default_factory=dict)
     start: dict[str, Start] = Field(default_factory=dict)
     parameters: tuple[Setting, ...] = ()
+    tolerances: dict[str, Annotated[float, si("dimensionless"), Field(gt=0, le=1)]] = Field(
+        default_factory=dict
+    )
     effects: tuple[Allowed, ...] = ()
     typical: Typical = Typical()
     drift: Drift | None = None
     excitation: MultisineRange = MultisineRange()
     present: dict[str, dict[str, dict[str, float]]] = Field(default_factory=dict)
+    laws: tuple[LawTable, ...] = ()
     data: tuple[Data, ...] = ()
     causes: Annotated[int, Field(ge=1, le=6)] = 4
     block: Seconds = 0.0
 
+    @model_validator(mode="before")
+    @classmethod
+    def _places_of_signals(cls, content: object) -> object:
+        """With `compare` and `drive` of the signals that say themselves where the model has them.
 
-def is_rig(name_or_path: str) -> bool:
-    """Whether a --plant option means an MJCF machine rather than a plant of VES II."""
-    path = Path(name_or_path)
-    if not path.suffix and len(path.parts) == 1:
-        return name_or_path in shipped_rigs()
-    return path.is_file() and read_toml("plant", path)[0].get("kind") == KIND
-
-
-def shipped_rigs() -> list[str]:
-    """Names of the rigs that come with the twin."""
-    return sorted(p.name for p in _machines().iterdir() if _shipped(p.name).is_file())
-
-
-def load_description(name_or_path: str) -> tuple[RigDescription, Path]:
-    """The description of a rig, and the folder that its model is found from.
-
-    A file with `base` adds to another one: its tables `parameters` and `present` are put on top.
-
-    Raises:
-        FileAccessError: missing file.
-        UnknownNameError: unknown name or key; says the nearest one.
-        InvalidInputError: wrong type or unit; says the key.
-        VersionError: another schema.
-    """
-    shipped = name_or_path in shipped_rigs()
-    path = _shipped(name_or_path) if shipped else find_resource("rig", "models", name_or_path)
-    content, folder = _content(path, 0)
-    try:
-        return RigDescription.model_validate(content), folder
-    except ValidationError as error:
-        raise refusal(error, path.name, RigDescription) from None
+        A position is fed in where motion is, an actuator's where commands are.
+        """
+        if not isinstance(content, dict) or not isinstance(content.get("signals"), dict):
+            return content
+        compare, drive = dict(content.get("compare", {})), dict(content.get("drive", {}))
+        joints, actuators = dict(drive.get("joints", {})), dict(drive.get("actuators", {}))
+        for name, signal in content["signals"].items():
+            if not isinstance(signal, dict):
+                continue
+            keys = ("joint", "of", "actuator", "sensor")
+            place = {key: signal[key] for key in keys if key in signal}
+            if not place:
+                continue
+            if name in compare:
+                raise ValueError(f"compare.{name}: signals.{name} says it already")
+            compare[name] = place
+            if place.get("of", "position") == "position" and "joint" in place:
+                joints.setdefault(place["joint"], name)
+            if "actuator" in place:
+                actuators.setdefault(place["actuator"], name)
+        given = {"joints": joints, "actuators": actuators}
+        drive |= {key: value for key, value in given.items() if value}
+        return {**content, "compare": compare, "drive": drive}
 
 
-def _machines() -> Path:
-    return resource_folder("models") / "machines"
-
-
-def _shipped(name: str) -> Path:
-    return _machines() / name / f"{name}.toml"
-
-
-def _content(path: Path, depth: int) -> tuple[dict[str, Any], Path]:
-    content, _ = read_toml("rig", path)
-    check_schema(content, path, SCHEMA)
-    if content.pop("kind", None) != KIND:
-        raise InvalidInputError(f"{path}: kind", None, f'"{KIND}"')
-    content.pop("schema")
-    base = content.pop("base", None)
-    if base is None:
-        return content, path.parent
-    if depth > 3 or not isinstance(base, str):
-        raise InvalidInputError(f"{path}: base", base, "the file of a rig, four deep at most")
-    below = _shipped(base) if base in shipped_rigs() else path.parent / base
-    under, folder = _content(below, depth + 1)
-    return _over(under, content), folder
-
-
-def _over(under: dict[str, Any], top: dict[str, Any]) -> dict[str, Any]:
-    """The base with what is put on top of it."""
-    merged = {**under, **{k: v for k, v in top.items() if k not in ("parameters", "present")}}
-    new = list(top.get("parameters", []))
-    places = {_place(s) for s in new}
-    merged["parameters"] = [s for s in under.get("parameters", []) if _place(s) not in places] + new
-    present = {kind: dict(targets) for kind, targets in under.get("present", {}).items()}
-    for kind, targets in top.get("present", {}).items():
-        present.setdefault(kind, {}).update(targets)
-    merged["present"] = present
-    return merged
-
-
-def _place(setting: dict[str, Any]) -> tuple[object, ...]:
-    return tuple(setting.get(key) for key in ("body", "joint", "actuator", "tendon", "attribute"))
+def _number(value: object) -> bool:
+    return isinstance(value, int | float) and not isinstance(value, bool)

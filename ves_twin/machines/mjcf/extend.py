@@ -6,8 +6,13 @@ import os
 from pathlib import Path
 
 from ves_twin.core.toml_file import write_toml
+from ves_twin.diagnosis.law.finding import SOURCE
+from ves_twin.diagnosis.law.result import LawFinding
 from ves_twin.diagnosis.verdict import Verdict
-from ves_twin.machines.mjcf.description import KIND, SCHEMA, Setting, load_description, shipped_rigs
+from ves_twin.effects.law import LawKind, LawShape
+from ves_twin.machines.mjcf.description import KIND, SCHEMA, Setting
+from ves_twin.machines.mjcf.law_table import LawTable
+from ves_twin.machines.mjcf.load_description import shipped_rigs
 from ves_twin.machines.mjcf.machine import Entry, Rig
 
 
@@ -32,10 +37,35 @@ def extended(rig: Rig, verdict: Verdict) -> Rig:
             settings[_place(new)] = new
         else:
             present.setdefault(entry.effect.kind, {})[entry.effect.target] = moved
+    laws = {(law.place, law.of): law for law in rig.description.laws}
+    for one in rig.promoted:
+        if one.name in values:
+            laws[one.place, one.of] = one.scaled(values[one.name])
+    if verdict.law is not None and verdict.law.claimed:
+        new_law = _law_table(verdict.law)
+        laws[new_law.place, new_law.of] = new_law
     told = rig.description.model_copy(
-        update={"parameters": tuple(settings.values()), "present": present}
+        update={
+            "parameters": tuple(settings.values()),
+            "present": present,
+            "laws": tuple(laws.values()),
+        }
     )
     return Rig(told, rig.folder, rig.file)
+
+
+def _law_table(found: LawFinding) -> LawTable:
+    return LawTable(
+        place=found.place,
+        kind=LawKind(found.kind),
+        shape=LawShape(found.shape),
+        of=found.of,
+        knots=found.knots,
+        values=found.values,
+        form=found.form,
+        seen=found.seen,
+        source=SOURCE,
+    )
 
 
 def _place(setting: Setting) -> tuple[str, ...]:
@@ -47,7 +77,7 @@ def _setting(entry: Entry, value: float, there: dict[tuple[str, ...], Setting]) 
     name, attribute = entry.effect.setting
     new = Setting.model_validate({"attribute": attribute, str(entry.effect.element): name})
     old = there.get(_place(new), new)
-    return old.model_copy(update={"value": value, "source": "ves-twin diagnose"})
+    return old.model_copy(update={"value": value, "source": SOURCE})
 
 
 def write_rig(rig: Rig, path: Path, note: str = "") -> None:
@@ -56,7 +86,7 @@ def write_rig(rig: Rig, path: Path, note: str = "") -> None:
     Raises:
         FileAccessError: not writable.
     """
-    before = load_description(rig.file)[0]
+    before = Rig.load(rig.file).description
     shipped = rig.file in shipped_rigs()
     base = rig.file if shipped else os.path.relpath(Path(rig.file), path.parent)
     content: dict[str, object] = {"schema": SCHEMA, "kind": KIND, "base": base}
@@ -65,4 +95,6 @@ def write_rig(rig: Rig, path: Path, note: str = "") -> None:
         content["parameters"] = [s.model_dump(mode="json", exclude_defaults=True) for s in changed]
     if rig.description.present:
         content["present"] = rig.description.present
+    if rig.description.laws:
+        content["laws"] = [law.model_dump(mode="json") for law in rig.description.laws]
     write_toml(path, content, note)

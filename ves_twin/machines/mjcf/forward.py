@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Container, Mapping
-from dataclasses import dataclass
-from functools import cached_property
+from collections.abc import Container, Mapping, Sequence
+from dataclasses import dataclass, field
+from functools import cached_property, lru_cache
 
 import numpy as np
 
@@ -12,14 +12,20 @@ from ves_twin.core.errors import InvalidInputError
 from ves_twin.core.types import FloatArray
 from ves_twin.core.units import to_si
 from ves_twin.diagnosis.forward import Channel, Excitation, Hypothesis, Parameter
+from ves_twin.diagnosis.law.place import LawPlace
+from ves_twin.effects.law import Law, LawKind
 from ves_twin.machines.mjcf.description import Compared, Mode
 from ves_twin.machines.mjcf.inverse import efforts_of_motion
 from ves_twin.machines.mjcf.joint_units import joint_units
+from ves_twin.machines.mjcf.law_places import law_places
 from ves_twin.machines.mjcf.machine import Rig
 from ves_twin.machines.mjcf.places import driven_joint
 from ves_twin.machines.mjcf.started import start_signal
 from ves_twin.machines.mjcf.stepping import motion_of_drive
 from ves_twin.machines.mjcf.work import Work
+
+KEPT = 4
+"""Motions that are kept while laws of readings are tried: they change none."""
 
 
 @dataclass(frozen=True)
@@ -153,15 +159,43 @@ class MjcfForward:
                 raise InvalidInputError(f"signals.{channel.signal}.noise", channel.sd, expected)
 
     def simulate(
-        self, programme: Excitation, values: Mapping[str, float], refined: bool = False
+        self,
+        programme: Excitation,
+        values: Mapping[str, float],
+        refined: bool = False,
+        laws: Sequence[Law] = (),
     ) -> FloatArray:
-        """Channels (n, channels) that a rig with these values records, without noise."""
-        work = Work.begin(self.rig, programme, values)
-        if self.mode is Mode.MOTION:
-            found = efforts_of_motion(work)
-        else:
-            found = motion_of_drive(work, self.mode, refined)
-        return np.concatenate([work.reading(n, found[n]) for n in self.compared], axis=1)
+        """Channels (n, channels) that a rig with these values and laws records, without noise."""
+        work = Work.begin(self.rig, programme, values, laws)
+        signals, along = self._moved(work, refined)
+        rows = np.concatenate([work.reading(n, signals[n]) for n in self.compared], axis=1)
+        for law in work.laws:
+            if law.kind is LawKind.READING:
+                at = self._labels.index(law.place)
+                rows[:, at] = law.read(rows[:, at], *(along[name] for name in law.of))
+        return rows
+
+    def visited(
+        self, programme: Excitation, values: Mapping[str, float], laws: Sequence[Law] = ()
+    ) -> Mapping[str, FloatArray]:
+        """Variables that laws depend on (n,), as simulated."""
+        return self._moved(Work.begin(self.rig, programme, values, laws), False)[1]
+
+    def law_places(self) -> tuple[LawPlace, ...]:
+        """Joints and compared columns at which a law may act."""
+        return law_places(self.rig, self.channels, self.mode)
+
+    def _moved(
+        self, work: Work, refined: bool
+    ) -> tuple[Mapping[str, FloatArray], Mapping[str, FloatArray]]:
+        """Signals and variables."""
+        if any(law.kind is LawKind.READING for law in work.laws):
+            return _kept(_Asked(_key(work, self.mode, refined), work, self.mode, refined))
+        return _moved(work, self.mode, refined)
+
+    @cached_property
+    def _labels(self) -> list[str]:
+        return [channel.name for channel in self.channels]
 
     def _starts(self) -> tuple[Parameter, ...]:
         found = []
@@ -174,3 +208,35 @@ class MjcfForward:
                 name = f"start@{joint}:{what}"
                 found.append(Parameter(name, unit, 0.0, -reach, reach, sd, per_recording=True))
         return tuple(found)
+
+
+Moved = tuple[Mapping[str, FloatArray], Mapping[str, FloatArray]]
+"""Signals (n, w), and variables (n,)."""
+
+
+def _moved(work: Work, mode: Mode, refined: bool) -> Moved:
+    if mode is Mode.MOTION:
+        return efforts_of_motion(work)
+    motion = motion_of_drive(work, mode, refined)
+    return motion.signals, motion.variables
+
+
+@dataclass(frozen=True)
+class _Asked:
+    """A motion; equal to another one if its key is. Laws of readings do not change it."""
+
+    key: tuple[object, ...]
+    work: Work = field(compare=False)
+    mode: Mode = field(compare=False)
+    refined: bool = field(compare=False)
+
+
+def _key(work: Work, mode: Mode, refined: bool) -> tuple[object, ...]:
+    values = tuple(sorted(work.values.items()))
+    laws = tuple(law for law in work.laws if law.kind is LawKind.EFFORT)
+    return work.rig.identity, work.programme.identity, values, laws, mode, refined
+
+
+@lru_cache(maxsize=KEPT)
+def _kept(asked: _Asked) -> Moved:
+    return _moved(asked.work, asked.mode, asked.refined)

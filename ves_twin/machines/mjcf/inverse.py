@@ -13,8 +13,9 @@ import numpy as np
 from scipy.signal import butter, filtfilt
 
 from ves_twin.core.types import FloatArray
+from ves_twin.effects.law import LawKind
 from ves_twin.effects.shifted import shifted
-from ves_twin.machines.mjcf.work import Work, sensor_rows
+from ves_twin.machines.mjcf.work import Work, sensor_rows, variables
 
 ORDER = 4
 """Of the Butterworth low-pass before differentiation, run forth and back: no phase."""
@@ -24,12 +25,15 @@ KEPT = 24
 """Motions whose rigid-body efforts are kept: most causes change none of them."""
 
 
-def efforts_of_motion(work: Work) -> dict[str, FloatArray]:
+def efforts_of_motion(work: Work) -> tuple[dict[str, FloatArray], dict[str, FloatArray]]:
     """Signals (n, w) that the rig's description compares and that motion determines.
 
     Positions are low-passed without phase and differentiated by central differences; MuJoCo's
     inverse dynamics gives the effort at each joint, with springs and gravity. Damping is added,
     and dry friction with a smoothed sign. Rows that are poses at rest have no speed.
+
+    Returns:
+        Signals, and the variables that laws depend on (n,).
     """
     told, model = work.rig.description, work.model
     positions = {j: work.position(j, work.programme.drive[s][:, 0]) for j, s in _single(work)}
@@ -45,7 +49,8 @@ def efforts_of_motion(work: Work) -> dict[str, FloatArray]:
             found[name] = compared.sign * _command(work, compared.actuator, moved)[:, None]
         elif compared.sensor:
             found[name] = compared.sign * sensor_rows(model, moved.sensed, compared)
-    return found
+    path = np.hstack([moved.position, moved.speed])
+    return found, variables(model, work.programme.time, path)
 
 
 def efforts_along(
@@ -136,6 +141,9 @@ def _command(work: Work, name: str, moved: _Moved) -> FloatArray:
     effort = effort + work.dry(joint.name, speed) + work.resistance(joint.name, speed)
     effort = effort + work.held(joint.name, moved.position[:, int(joint.qposadr[0])])
     effort = effort + work.coupled(joint.name, moved.speed)
+    if any(law.kind is LawKind.EFFORT for law in work.laws):
+        along = variables(model, work.programme.time, np.hstack([moved.position, moved.speed]))
+        effort = effort - work.lawful(joint.name, along)
     gain = float(actuator.gear[0]) * float(actuator.gainprm[0])
     if work.rig.description.drive.held:
         effort = shifted(effort, work.programme.time, -0.5 * work.programme.period)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import hashlib
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
 
@@ -15,13 +15,19 @@ from ves_twin.core.errors import FileAccessError, InvalidInputError, UnknownName
 from ves_twin.core.units import to_si
 from ves_twin.diagnosis.forward import Hypothesis, Parameter
 from ves_twin.effects.effect import Effect
+from ves_twin.effects.law import Law
 from ves_twin.effects.magnitude import Magnitude, Sign
 from ves_twin.effects.place import Place
 from ves_twin.effects.registry import EFFECTS, attributes, build_anywhere, kind_anywhere
 from ves_twin.machines.mjcf.check_description import check_description
-from ves_twin.machines.mjcf.description import Allowed, RigDescription, Setting, load_description
+from ves_twin.machines.mjcf.description import Allowed, RigDescription, Setting
+from ves_twin.machines.mjcf.law_table import CAUSE as LAW
+from ves_twin.machines.mjcf.law_table import FACTORS as LAW_FACTORS
+from ves_twin.machines.mjcf.law_table import LawTable
+from ves_twin.machines.mjcf.load_description import load_description
 from ves_twin.machines.mjcf.places import anywhere, place_of
 from ves_twin.machines.mjcf.stiff_friction import stiff_friction
+from ves_twin.machines.mjcf.unfolded import unfolded
 
 
 @dataclass(frozen=True)
@@ -90,7 +96,15 @@ class Rig:
         Raises:
             VesTwinError: a file that is missing or wrong, or names that do not fit together.
         """
-        rig = Rig(*load_description(name_or_path), name_or_path)
+        return Rig.of(*load_description(name_or_path), name_or_path)
+
+    @staticmethod
+    def of(description: RigDescription, folder: Path, file: str = "") -> Rig:
+        """A description as it was read, with its shorthands written out; raises as `load`."""
+        folded = Rig(description, folder, file)
+        check_description(folded.description, folded.model)
+        told = unfolded(folded.description, folded.model)
+        rig = folded if told is folded.description else replace(folded, description=told)
         rig.check()
         return rig
 
@@ -125,6 +139,16 @@ class Rig:
             raise InvalidInputError(str(path), one_line(error), "a model that can move") from None
         return model
 
+    @property
+    def laws(self) -> tuple[Law, ...]:
+        """Those of the description that are at work."""
+        return tuple(told.law for told in self.description.laws if not told.cause)
+
+    @property
+    def promoted(self) -> tuple[LawTable, ...]:
+        """Those of the description that are causes."""
+        return tuple(told for told in self.description.laws if told.cause)
+
     @cached_property
     def entries(self) -> tuple[Entry, ...]:
         """Everything that may differ, causes and commissioning errors."""
@@ -158,7 +182,8 @@ class Rig:
                 name = entry.name(m)
                 one = entry.per_recording
                 found.append(Parameter(name, m.unit, nominal, low, high, m.sd, one))
-        return tuple(found)
+        most = LAW_FACTORS[1]
+        return (*found, *(Parameter(law.name, "1", 0.0, -most, most) for law in self.promoted))
 
     @cached_property
     def hypotheses(self) -> tuple[Hypothesis, ...]:
@@ -183,7 +208,15 @@ class Rig:
                     starts=entry.effect.starts(entry.place),
                 )
             )
-        return tuple(found)
+        least, most = LAW_FACTORS
+        laws = (
+            Hypothesis(
+                LAW, law.law.label, (law.name,), (least,), (most,), source=law.source,
+                transient="time" in law.of,
+            )
+            for law in self.promoted
+        )  # fmt: skip
+        return (*found, *laws)
 
     @cached_property
     def identity(self) -> str:

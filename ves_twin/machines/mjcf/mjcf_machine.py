@@ -21,9 +21,11 @@ from ves_twin.diagnosis.verdict import Verdict
 from ves_twin.effects.registry import causes_anywhere
 from ves_twin.machines.case import Case
 from ves_twin.machines.data_folder import find_data
+from ves_twin.machines.drawing import Drawing
 from ves_twin.machines.machine import Machine, Material, Named, Prepared
 from ves_twin.machines.mjcf.applied import applied
 from ves_twin.machines.mjcf.case import mjcf_cases
+from ves_twin.machines.mjcf.drawn import drawn
 from ves_twin.machines.mjcf.excitations import SECONDS, offered, write_inputs
 from ves_twin.machines.mjcf.experiment import MjcfExperiment
 from ves_twin.machines.mjcf.extend import extended, write_rig
@@ -136,6 +138,10 @@ class MjcfMachine(Machine):
     def split(self, recording: Recording, length: float) -> tuple[list[Recording], list[Recording]]:
         """Stretches, or poses; the length of the file if zero."""
         return alternate(recording, length or self.rig.description.block)
+
+    def drawing(self) -> Drawing | None:
+        """By the joints whose positions are compared."""
+        return drawn(self.rig)
 
     def settings(self, settings: Settings, excitation: Excitation) -> Settings:
         """Rate and number of causes of the file; one process where a prediction is quick."""

@@ -1,4 +1,4 @@
-"""place_of and typical_speed: a target as a place in model or signals, with typical sizes."""
+"""place_of, typical_speed, typical_span: a target as a place, with its typical sizes."""
 
 from __future__ import annotations
 
@@ -67,6 +67,19 @@ def typical_speed(joint: str, told: RigDescription, model: mujoco.MjModel) -> fl
     _, unit = joint_units(model, joint)
     span = told.typical.joint.get(joint, Span())
     return _positive(span.speed, unit, f"typical.joint.{joint}.speed")
+
+
+def typical_span(signal: str, told: RigDescription) -> float:
+    """Typical range of a signal [its unit]: its own, or that of its joint; 0 if nobody says."""
+    unit, own = told.signals[signal].unit, told.typical.signal.get(signal)
+    if own is not None:
+        return to_si(own.span, unit, f"typical.signal.{signal}.span")
+    compared = told.compare.get(signal)
+    if compared is None or not compared.joint:
+        return 0.0
+    joint = told.typical.joint.get(compared.joint, Span())
+    value = joint.travel if compared.of == "position" else joint.speed
+    return to_si(value, unit, f"typical.joint.{compared.joint}")
 
 
 def driven_joint(model: mujoco.MjModel, actuator: str) -> str:
@@ -150,8 +163,7 @@ def _signal(kind: str, target: str, on: Anywhere, told: RigDescription) -> Place
             raise InvalidInputError(
                 f"target of {kind}", target, f"columns of {name} from 1 to {len(column.columns)}"
             )
-    told_span = told.typical.signal.get(name, Span()).span
-    span = _positive(told_span, column.unit, f"typical.signal.{name}.span")
+    span = _positive(typical_span(name, told), column.unit, f"typical.signal.{name}.span")
     place = Place(Element.SIGNAL, target, unit=column.unit, span=span)
     if not on.transient:
         return place

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 from ves_twin.core.recording.files import is_recording, load_recording, recording_name
@@ -33,7 +34,8 @@ def read_recording(path: Path, rig: Rig, told: ImportMap | None = None) -> Recor
     if is_recording(path):
         return rig_recording(load_recording(path), rig, name)
     if told is None:
-        return read_rig_recording(path, rig)
+        raw = read_rig_recording(path, rig)
+        return replace(raw, info=replace(raw.info, imported={"file": path.name}))
     known, plausible = rig_signals(rig), rig_ranges(rig)
     imported = import_log(open_log(path), told, plausible=plausible, known=known)
     return rig_recording(imported.recording, rig, name)

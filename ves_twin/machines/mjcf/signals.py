@@ -6,9 +6,9 @@ import numpy as np
 
 from ves_twin.core.signals import Role, Signal
 from ves_twin.core.types import FloatArray
-from ves_twin.core.units import to_si
-from ves_twin.machines.mjcf.description import Column, RigDescription, Span
+from ves_twin.machines.mjcf.description import Column
 from ves_twin.machines.mjcf.machine import Rig
+from ves_twin.machines.mjcf.places import typical_span
 
 WIDE = 10.0
 """Times the typical size that a signal may be before another unit is suspected: typical sizes are
@@ -35,21 +35,8 @@ def rig_ranges(rig: Rig) -> dict[str, tuple[FloatArray, FloatArray]]:
     """Range about zero that each signal with a typical size can have, WIDE of it either way."""
     found = {}
     for name, column in rig.description.signals.items():
-        size = _typical(rig.description, name, column)
+        size = typical_span(name, rig.description)
         if size > 0.0:
             reach = np.full(len(column.columns), WIDE * size)
             found[name] = (-reach, reach)
     return found
-
-
-def _typical(told: RigDescription, name: str, column: Column) -> float:
-    """Typical size of a signal: its own, or that of the joint it measures; 0 if nobody says."""
-    own = told.typical.signal.get(name)
-    if own is not None:
-        return to_si(own.span, column.unit, f"typical.signal.{name}.span")
-    compared = told.compare.get(name)
-    if compared is None or not compared.joint:
-        return 0.0
-    joint = told.typical.joint.get(compared.joint, Span())
-    value = joint.travel if compared.of == "position" else joint.speed
-    return to_si(value, column.unit, f"typical.joint.{compared.joint}")

@@ -2,6 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cached_property
+
 import mujoco
 import numpy as np
 from mujoco import rollout
@@ -15,8 +19,9 @@ from ves_twin.machines.mjcf.description import Controller, Mode
 from ves_twin.machines.mjcf.imposed import Imposed
 from ves_twin.machines.mjcf.inverse import smoothed
 from ves_twin.machines.mjcf.joint_units import joint_units
+from ves_twin.machines.mjcf.law_loop import CompiledLaws, lawful_rows
 from ves_twin.machines.mjcf.started import start_signal
-from ves_twin.machines.mjcf.work import Work, sensor_rows
+from ves_twin.machines.mjcf.work import Work, sensor_rows, variables
 
 CARRIED = 4
 """Iterations of a friction that its load makes: of a tenth of the load it is then known to 1e-4."""
@@ -30,8 +35,39 @@ FAILED = (
 """After these MuJoCo goes on from its reference state, or without commands: not what was asked."""
 
 
-def motion_of_drive(work: Work, mode: Mode, refined: bool = False) -> dict[str, FloatArray]:
-    """Signals (n, w) that the rig's description compares, by forward simulation.
+@dataclass(frozen=True)
+class Motion:
+    """What was simulated.
+
+    Attributes:
+        work: with the model.
+        path: positions and speeds (n, nq + nv).
+        sensed: all sensors (n, all).
+        commands: as they reached the actuators (n, nu).
+    """
+
+    work: Work
+    path: FloatArray
+    sensed: FloatArray
+    commands: FloatArray
+
+    @cached_property
+    def signals(self) -> dict[str, FloatArray]:
+        """Signals (n, w) that the rig's description compares."""
+        return _signals(self.work, self.path, self.sensed, self.commands)
+
+    @property
+    def variables(self) -> Mapping[str, FloatArray]:
+        """What laws depend on, by name (n,)."""
+        model, told = self.work.model, self.work.rig.description
+        return variables(model, self.work.programme.time, self.path) | {
+            f"command@{name}": self.commands[:, model.actuator(name).id]
+            for name in (*told.drive.actuators, *told.controllers)
+        }
+
+
+def motion_of_drive(work: Work, mode: Mode, refined: bool = False) -> Motion:
+    """What the rig's description compares, by forward simulation.
 
     Row k holds the state at t_k; its command acts from then on. The model's step is the whole part
     of a row's period nearest to the model's own, half of it if refined.
@@ -42,7 +78,7 @@ def motion_of_drive(work: Work, mode: Mode, refined: bool = False) -> dict[str, 
         refined: with half the step.
 
     Returns:
-        Signals; NaN throughout where the motion diverged and MuJoCo had to start it anew.
+        The motion; NaN throughout where it diverged and MuJoCo had to start it anew.
     """
     log_engine()
     model, period = work.model, work.programme.period
@@ -57,7 +93,7 @@ def motion_of_drive(work: Work, mode: Mode, refined: bool = False) -> dict[str, 
     if _failed(state):
         path, sensed = np.full_like(path, np.nan), np.full_like(sensed, np.nan)
         commands = np.full_like(commands, np.nan)
-    return _signals(work, path, sensed, commands)
+    return Motion(work, path, sensed, commands)
 
 
 def _failed(data: mujoco.MjData) -> bool:
@@ -129,6 +165,9 @@ def _open(work: Work, data: mujoco.MjData, steps: int) -> tuple[FloatArray, Floa
     """Recorded commands, stepped by MuJoCo's own loop."""
     model = work.model
     commands = _commands(work)
+    laws = CompiledLaws.of(work.laws, model)
+    if len(laws.codes):
+        return *lawful_rows(model, data, commands, _steady(work), steps, laws), commands
     size = mujoco.mj_stateSize(model, mujoco.mjtState.mjSTATE_FULLPHYSICS)
     state = np.zeros(size)
     mujoco.mj_getState(model, data, state, mujoco.mjtState.mjSTATE_FULLPHYSICS)
@@ -191,6 +230,7 @@ def _stepped(
     pull, imposed = np.zeros((rows, model.nv)), Imposed.of(work, steps)
     speed, given, reach = np.zeros(1), np.zeros(1), _Reach(work)
     loaded = {e.target for e, _ in work.effects if type(e).carry is not Effect.carry}
+    laws, own = CompiledLaws.of(work.laws, model), np.zeros(model.nv)
     for k in range(rows):
         imposed.move(data, k * steps)
         path[k, : model.nq], path[k, model.nq :] = data.qpos, data.qvel
@@ -198,12 +238,15 @@ def _stepped(
             asked[k, loop.actuator] = loop.command(k, data)
         data.ctrl[:] = reach.at(asked[k], k) if closed else asked[k]
         for n in range(steps):
+            data.qfrc_applied[:] = 0.0
             for name, dof, at in resisted:
                 speed[0], q = data.qvel[dof], float(data.qpos[at])
                 held = sum(holder(q) for holder in holders[name])
                 given[0] = data.qfrc_actuator[dof]
                 held += _carried(work, name, given, speed) if name in loaded else 0.0
                 data.qfrc_applied[dof] = -work.resistance(name, speed)[0] - held
+            if len(laws.codes):
+                laws.push(data, own)
             imposed.move(data, k * steps + n)
             mujoco.mj_step(model, data)
             if n == 0:

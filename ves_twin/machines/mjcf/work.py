@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import copy
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import mujoco
@@ -14,10 +14,11 @@ from ves_twin.diagnosis.forward import Excitation
 from ves_twin.effects.effect import Effect
 from ves_twin.effects.element import Element
 from ves_twin.effects.joints import CoulombFriction
+from ves_twin.effects.law import Law, LawKind
 from ves_twin.effects.place import Place
 from ves_twin.machines.mjcf.description import Compared
 from ves_twin.machines.mjcf.machine import Rig
-from ves_twin.machines.mjcf.places import tendon_joints, typical_speed
+from ves_twin.machines.mjcf.places import SINGLE, tendon_joints, typical_speed
 
 SMOOTH = 0.0005
 """Share of the typical speed over which a sign is smoothed, chosen on EMPS: four times as much
@@ -34,6 +35,7 @@ class Work:
         model: with effects of the model.
         effects: all that are at work.
         values: parameter -> value.
+        laws: of the rig's file, and others.
     """
 
     rig: Rig
@@ -41,17 +43,25 @@ class Work:
     model: mujoco.MjModel
     effects: tuple[tuple[Effect, Place], ...]
     values: Mapping[str, float]
+    laws: tuple[Law, ...] = ()
 
     @staticmethod
-    def begin(rig: Rig, programme: Excitation, values: Mapping[str, float]) -> Work:
-        """A copy of the rig's model with the effects that the values say."""
+    def begin(
+        rig: Rig,
+        programme: Excitation,
+        values: Mapping[str, float],
+        laws: Sequence[Law] = (),
+    ) -> Work:
+        """A copy of the rig's model with the effects that the values say; laws beside its own."""
         effects = tuple(rig.effects_at(values))
         model = copy.copy(rig.model)
         for effect, _ in effects:
             effect.edit_model(model)
         if effects:
             mujoco.mj_setConst(model, mujoco.MjData(model))
-        return Work(rig, programme, model, effects, values)
+        factors = [(told, values.get(told.name, 0.0)) for told in rig.promoted]
+        named = (told.scaled(factor).law for told, factor in factors if factor != 0.0)
+        return Work(rig, programme, model, effects, values, (*rig.laws, *named, *laws))
 
     def at(self, element: Element, name: str) -> list[tuple[Effect, Place]]:
         """Effects on one target."""
@@ -107,6 +117,14 @@ class Work:
             total = total + share * effort
         return total
 
+    def lawful(self, joint: str, along: Mapping[str, FloatArray]) -> FloatArray:
+        """Effort [N, N m] of the laws at a joint along variables (n,) each."""
+        total = np.zeros(len(self.programme.time))
+        for law in self.laws:
+            if law.kind is LawKind.EFFORT and law.place == joint:
+                total = total + law.at(*(along[name] for name in law.of))
+        return total
+
     def position(self, joint: str, position: FloatArray) -> FloatArray:
         """A joint's position behind the effects between it and where it is measured (n,)."""
         for effect, _ in self.at(Element.JOINT, joint):
@@ -133,6 +151,17 @@ class Work:
             if effect.element is Element.SIGNAL and (_covers(name, signal) or _of(name, signal)):
                 reading = effect.edit_reading(reading, true, self.programme.time, place)
         return reading
+
+
+def variables(model: mujoco.MjModel, time: FloatArray, path: FloatArray) -> dict[str, FloatArray]:
+    """Time [s], position and speed of every hinge and slide (n,), of states (n, nq + nv)."""
+    found = {"time": time - time[0]}
+    for number in range(model.njnt):
+        joint = model.joint(number)
+        if int(joint.type[0]) in SINGLE:
+            found[f"position@{joint.name}"] = path[:, int(joint.qposadr[0])]
+            found[f"speed@{joint.name}"] = path[:, model.nq + int(joint.dofadr[0])]
+    return found
 
 
 def _covers(target: str, signal: str) -> bool:

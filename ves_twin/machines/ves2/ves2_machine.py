@@ -23,10 +23,12 @@ from ves_twin.diagnosis.verdict import Verdict
 from ves_twin.effects.registry import causes_of_today
 from ves_twin.machines.case import Case
 from ves_twin.machines.data_folder import find_data
+from ves_twin.machines.drawing import Drawing
 from ves_twin.machines.machine import Machine, Material, Named, Prepared
 from ves_twin.machines.ves2.applied import applied
 from ves_twin.machines.ves2.case import ves2_case
 from ves_twin.machines.ves2.declared_load import LOAD, loads_of
+from ves_twin.machines.ves2.drawn import drawn
 from ves_twin.machines.ves2.effects_of import effects_of
 from ves_twin.machines.ves2.excitations import offered_programmes
 from ves_twin.machines.ves2.filter_place import EFFECT as FILTER_PLACE
@@ -200,6 +202,10 @@ class Ves2Machine(Machine):
             raise InvalidInputError(what, recording.info.outcome, "a run that is completed")
         fed = replace(self, plant=plant, scenario=one_step(replay_scenario(recording)))
         return fed, Excitation.of(recording, DRIVE, scenario.name)
+
+    def drawing(self) -> Drawing:
+        """By leg lengths and joint angles."""
+        return drawn(self._rig)
 
     def save_excitation(self, excitation: Excitation, folder: Path) -> None:
         """Set-points, and a scenario that plays them."""

@@ -5,6 +5,7 @@ from __future__ import annotations
 from ves_twin.core.quantity import percent, shares
 from ves_twin.diagnosis.disagreement import disagree
 from ves_twin.diagnosis.verdict import Cause, Kind, Verdict
+from ves_twin.report.diagnosis.law import worth_sentence
 from ves_twin.report.diagnosis.limits import next_sentences
 from ves_twin.report.diagnosis.words import TOLD, capital, ends_words, name_of, size_words, spoken
 
@@ -38,6 +39,8 @@ def confidence_sentence(verdict: Verdict) -> str:
     match verdict.verdict:
         case Kind.NOTHING:
             return _shown(verdict)
+        case Kind.UNKNOWN if verdict.law is not None and verdict.law.claimed:
+            return worth_sentence(verdict.law)
         case Kind.UNKNOWN:
             return _beyond(verdict)
         case _ if verdict.proved:
@@ -57,6 +60,9 @@ def next_step(verdict: Verdict) -> str:
     if tone(verdict) == "bad":
         names = " and ".join(name_of(cause) for cause in verdict.causes[:TOLD])
         return f"Look at {names} on the machine, and simulate with the extended model."
+    if verdict.law is not None and verdict.law.claimed:
+        place = verdict.law.place
+        return f"Look at {place} on the machine, and simulate with the law in the model."
     return next((text for text in next_sentences(verdict)), "Record another programme.")
 
 
@@ -102,6 +108,8 @@ def _unknown(verdict: Verdict) -> str:
             "These recordings do not agree. Each alone is in order or has one cause, but nothing"
             " explains all of them."
         )
+    if verdict.law is not None and verdict.law.claimed:
+        return f"No cause in the library explains it. A law does: {verdict.law.words}."
     if strange:
         names = ", ".join(strange[:TOLD])
         return (
@@ -180,6 +188,8 @@ def nearest_sentence(verdict: Verdict) -> str:
     """What comes nearest where nothing in the library explains the record; else empty."""
     left = verdict.leftover
     if verdict.verdict is not Kind.UNKNOWN or left is None or disagree(verdict.alone):
+        return ""
+    if verdict.law is not None and verdict.law.claimed:
         return ""
     said = ""
     if verdict.suspect:

@@ -90,4 +90,13 @@ def basis_sentences(verdict: Verdict) -> tuple[str, ...]:
         noise.get(basis.noise, f"Noise: {basis.noise}."),
         tolerances.get(basis.tolerances, f"Tolerances: {basis.tolerances}."),
         held.get(basis.held_out, f"Held-out recordings: {basis.held_out}."),
+        *_repeats(basis),
     )
+
+
+def _repeats(basis: Basis) -> tuple[str, ...]:
+    """How well the baseline's inputs are those of the record."""
+    if not basis.baseline_differs:
+        return ()
+    share = f"{100.0 * basis.baseline_differs:.2g} %"
+    return (f"Baseline: its inputs differ from the record's by up to {share} of their range.",)

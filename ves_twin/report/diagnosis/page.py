@@ -14,6 +14,8 @@ from ves_twin.report.diagnosis.answer import (
     verdict_sentence,
 )
 from ves_twin.report.diagnosis.basis import basis_sentences, gain_sentence, rests_on
+from ves_twin.report.diagnosis.credibility import credibility
+from ves_twin.report.diagnosis.law import law_parts
 from ves_twin.report.diagnosis.limits import limit_sentences, next_sentences, rival_words
 from ves_twin.report.diagnosis.pictures import (
     answer_figure,
@@ -70,6 +72,8 @@ def diagnosis_page(verdict: Verdict, title: str = "Diagnosis", plant: str = "") 
     if exhibit:
         parts += _pictures(verdict, exhibit)
     parts += proved_parts(verdict)
+    if verdict.law is not None:
+        parts.insert(1, section("A law in place of a cause", *law_parts(verdict.law)))
     if verdict.rivals:
         parts.append(section("Rivals, and why they lost", _rivals(verdict.rivals)))
     parts += [
@@ -79,6 +83,7 @@ def diagnosis_page(verdict: Verdict, title: str = "Diagnosis", plant: str = "") 
     if verdict.leftover:
         parts.append(section("What is left", *_leftover(verdict)))
     parts.append(section("Next experiment", *_next(verdict)))
+    parts.append(section("How credible this is", *_credibility(verdict)))
     return html_page(title, parts)
 
 
@@ -282,6 +287,12 @@ def _leftover(verdict: Verdict) -> list[Html]:
         if abs(f.correlation) > 0.1
     ]
     return [*parts, table(head, rows), bullets(goes)]
+
+
+def _credibility(verdict: Verdict) -> list[Html]:
+    rows = [(one.name, one.standing.value, one.said) for one in credibility(verdict)]
+    note = "The eight factors of NASA-STD-7009. The project's own are on its page Credibility."
+    return [paragraph(note, "note"), table(("factor", "standing", "on what"), rows)]
 
 
 def _next(verdict: Verdict) -> list[Html]:

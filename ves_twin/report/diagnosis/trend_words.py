@@ -106,7 +106,13 @@ def _doubt(trend: Trend) -> str:
     if cause is not None and cause.equals:
         names = " or ".join(map(spoken, cause.equals[:TOLD]))
         said += f" These recordings cannot tell it from {names}."
-    if cause is not None and not cause.firm:
+    if trend.unexplained:
+        days = ", ".join(_short(list(trend.unexplained)))
+        said += (
+            f" In {days} something more is wrong: that day tells nothing of the course, and the"
+            " library may lack what is at work."
+        )
+    elif cause is not None and not cause.firm:
         off = f"{cause.sigmas or 0.0:.1f} declared tolerances"
         said += f" It is {off} off: a fault, or an error of commissioning that large."
     if change is not None and change.other > DOUBT and change.onset is not None:

@@ -1,0 +1,19 @@
+"""A proved name is firm only where its sizes are known apart from what the model has already."""
+
+from __future__ import annotations
+
+import pytest
+
+from ves_twin.diagnosis.assemble_verdict import sized
+from ves_twin.diagnosis.build_up.result import BuildUp, Proved
+from ves_twin.diagnosis.verdict import Cause, Estimate
+
+
+@pytest.mark.parametrize(("low", "firm"), [(0.2, True), (-0.2, False)])
+def test_a_size_whose_interval_holds_the_models_own_value_is_not_firm(low, firm):
+    size = Estimate(1.0, low, 1.8, "N", 0.0)
+    cause = Cause("coulomb_friction", "joint", {"level": size}, 1.0, True, None)
+    one = Proved("coulomb_friction", "joint", {}, 1e-3, 20, {"torque": (2.0, 1.0)}, True)
+    (told,) = sized(BuildUp((one,), 1, 0.05, {}, {}), (cause,))
+    assert told.parameters["level"].value == 1.0
+    assert told.firm is firm

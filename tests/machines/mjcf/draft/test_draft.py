@@ -1,0 +1,210 @@
+"""A draft finds what each column is, says by name what is wrong, and loads as a machine."""
+
+from __future__ import annotations
+
+import tomllib
+
+import numpy as np
+import pytest
+
+from ves_twin.machines.mjcf.draft.draft import draft
+from ves_twin.machines.mjcf.machine import Rig
+from ves_twin.machines.mjcf.read import read_recording
+
+
+def drafted(arm, log, rate=None):
+    found = draft(arm, [log], arm.with_name("my.toml"), rate)
+    arm.with_name("my.toml").write_text(found.text)
+    return found, Rig.load(str(arm.with_name("my.toml")))
+
+
+def changed(columns, **new):
+    return {name: new.get(name, values) for name, values in columns.items()}
+
+
+def scales(rig):
+    return {n: c.scale for n, c in rig.description.signals.items()}
+
+
+def columns_of(rig):
+    return {n: c.columns[0] for n, c in rig.description.signals.items()}
+
+
+RIGHT = {
+    **{f"{j}.position": f"q{i}" for i, j in enumerate(("turn", "lift", "bend"), 1)},
+    **{f"m{i}.effort": f"tau{i}" for i in (1, 2, 3)},
+}
+
+
+def test_an_arm_in_order_is_matched_by_number_and_nothing_is_suspected(arm, columns, write):
+    found, rig = drafted(arm, write(columns))
+    assert columns_of(rig) == RIGHT
+    assert set(scales(rig).values()) == {1.0}
+    assert found.mode.startswith("motion")
+    assert found.look == ("clock t: no unit is given, s is a guess",)
+    assert found.left == {f"dq{i}": "is a speed" for i in (1, 2, 3)}
+    assert min(found.explained.values()) > 0.9
+
+
+def test_a_draft_of_six_columns_is_short_and_reads_its_log(arm, columns, write):
+    log = write(columns)
+    found, rig = drafted(arm, log)
+    assert len(found.text.splitlines()) < 40
+    recording = read_recording(log, rig)
+    assert recording["m2.effort"][:, 0] == pytest.approx(columns["tau2"], rel=1e-6)
+
+
+def test_a_torque_of_the_wrong_sign_is_named_and_turned(arm, columns, write):
+    found, rig = drafted(arm, write(changed(columns, tau2=-columns["tau2"])))
+    assert any("tau2 has the wrong sign" in words for words in found.look)
+    assert {n for n, scale in scales(rig).items() if scale < 0.0} == {"m2.effort"}
+
+
+def test_a_position_that_counts_backwards_is_named_and_turned(arm, columns, write):
+    found, rig = drafted(arm, write(changed(columns, q3=-columns["q3"], dq3=-columns["dq3"])))
+    assert any("q3 counts against position of joint bend" in words for words in found.look)
+    assert {n for n, scale in scales(rig).items() if scale < 0.0} == {"bend.position"}
+
+
+def test_degrees_in_place_of_radians_are_named(arm, columns, write):
+    degrees = {f"q{i}": np.degrees(columns[f"q{i}"]) for i in (1, 2, 3)}
+    found, rig = drafted(arm, write(changed(columns, **degrees)))
+    assert any("q1, q2, q3" in words and "deg" in words for words in found.look)
+    assert scales(rig)["lift.position"] == pytest.approx(np.pi / 180.0)
+
+
+@pytest.mark.parametrize(("one", "two"), [("tau1", "tau2"), ("tau2", "tau3"), ("q2", "q3")])
+def test_swapped_columns_are_named_and_taken_the_other_way_round(arm, columns, write, one, two):
+    log = write(changed(columns, **{one: columns[two], two: columns[one]}))
+    found, rig = drafted(arm, log)
+    assert any(f"{one} and {two} look swapped" in words for words in found.look)
+    assert {n: c for n, c in columns_of(rig).items() if c in (one, two)} == {
+        n: two if c == one else one for n, c in RIGHT.items() if c in (one, two)
+    }
+
+
+def test_kilonewtons_are_suspected_by_their_factor(arm, columns, write):
+    found, _ = drafted(arm, write(changed(columns, tau2=columns["tau2"] / 1000.0)))
+    assert any("tau2 is 0.001 times what the model needs" in words for words in found.look)
+
+
+def test_an_electrical_command_gets_the_constant_that_fits_and_a_word_to_replace_it(
+    arm, columns, write
+):
+    volts = {("u2_V" if n == "tau2" else n): v for n, v in columns.items()}
+    volts["u2_V"] = volts["u2_V"] / 12.5
+    found, rig = drafted(arm, write(volts))
+    assert scales(rig)["m2.effort"] == pytest.approx(12.5, rel=0.05)
+    assert any("u2_V is electrical" in words for words in found.look)
+    assert rig.description.tolerances["gain"] == 0.2
+
+
+def test_an_arm_that_drifts_open_loop_has_its_motion_given_though_it_is_noisy(arm, columns, write):
+    rng = np.random.default_rng(4)
+    noisy = {f"q{i}": columns[f"q{i}"] + 0.003 * rng.standard_normal(1600) for i in (1, 2, 3)}
+    found, rig = drafted(arm, write(changed(columns, **noisy)))
+    assert found.mode.startswith("motion: open loop the model explains")
+    # what is differentiated twice makes noise in the efforts, which the file counts
+    quiet = drafted(arm, write(columns))[1].description.signals["m2.effort"].noise
+    assert rig.description.signals["m2.effort"].noise > 3.0 * quiet
+
+
+def test_positions_too_noisy_to_differentiate_are_predicted_where_a_model_can(swing, write):
+    found, rig = drafted(swing[0], write(swing[1]))
+    assert found.mode.startswith("control: q is too noisy")
+    signals = rig.description.signals
+    assert signals["joint.position"].noise == pytest.approx(0.003, rel=0.15)
+    assert signals["joint.speed"].noise == pytest.approx(0.02, rel=0.15)
+    assert rig.description.start["joint"].sd == pytest.approx(0.003, rel=0.15)
+    assert min(found.explained.values()) > 0.9
+
+
+def test_a_speed_that_counts_backwards_is_turned(swing, write):
+    found, rig = drafted(swing[0], write(changed(swing[1], dq=-swing[1]["dq"])))
+    assert scales(rig)["joint.speed"] == -1.0
+    assert any("dq counts against q" in words for words in found.look)
+
+
+def test_a_speed_in_degrees_is_told_by_its_position(swing, write):
+    found, rig = drafted(swing[0], write(changed(swing[1], dq=np.degrees(swing[1]["dq"]))))
+    assert scales(rig)["joint.speed"] == pytest.approx(np.pi / 180.0)
+    assert any("as deg/s" in words for words in found.look)
+
+
+def test_a_speed_that_follows_no_position_is_left_out(swing, write):
+    rng = np.random.default_rng(1)
+    found, rig = drafted(swing[0], write(changed(swing[1], dq=rng.standard_normal(1500))))
+    assert "joint.speed" not in rig.description.signals
+    assert any("dq does not follow q" in words for words in found.look)
+
+
+def test_noise_is_told_from_rest_where_the_log_begins_at_rest(arm, columns, write):
+    rng, still = np.random.default_rng(6), 400
+    rested = {"t": 0.005 * np.arange(1600 + still)}
+    for name, values in columns.items():
+        if name != "t":
+            scatter = 0.3 * rng.standard_normal(still) if name == "tau2" else 0.0
+            rested[name] = np.concatenate([values[0] + scatter * np.ones(still), values])
+    rested["q1"][:still] += 1e-6 * rng.standard_normal(still)
+    found, rig = drafted(arm, write(rested))
+    assert rig.description.signals["m2.effort"].noise == pytest.approx(0.3, rel=0.1)
+    assert "scatter at rest" in found.text
+
+
+def test_a_column_that_fits_nothing_is_listed_and_not_guessed(arm, columns, write):
+    extra = {**columns, "temperature": 20.0 + columns["q1"], "flag": np.ones(1600)}
+    found, _ = drafted(arm, write(extra))
+    assert found.left["temperature"] == "nothing in the model has this name or unit"
+    assert found.left["flag"] == "never changes"
+    assert "# not used: temperature" in found.text
+
+
+def test_a_command_beside_a_measured_torque_is_told_as_the_other_choice(arm, columns, write):
+    both = {f"{n}_meas" if n.startswith("tau") else n: v for n, v in columns.items()}
+    both |= {f"{n}_cmd": v for n, v in columns.items() if n.startswith("tau")}
+    found, rig = drafted(arm, write(both))
+    assert columns_of(rig)["m1.effort"] == "tau1_meas"
+    (guess,) = (g for g in found.guesses if g.column == "tau1_meas")
+    assert guess.others == "tau1_cmd would do as well"
+
+
+def test_columns_numbered_from_zero_are_those_of_the_first_joint_on(arm, columns, write):
+    zero = {n[:-1] + str(int(n[-1]) - 1) if n != "t" else n: v for n, v in columns.items()}
+    _, rig = drafted(arm, write(zero))
+    assert columns_of(rig)["turn.position"] == "q0"
+    assert columns_of(rig)["m3.effort"] == "tau2"
+
+
+def test_rows_with_empty_cells_at_the_end_are_left_out_by_a_window(arm, columns, write):
+    log = write(columns)
+    log.write_text(log.read_text() + "8.0,,,,,,,,,\n")
+    found, rig = drafted(arm, log)
+    assert tomllib.loads(found.text)["window"]["stop"] == pytest.approx(7.9975)
+    assert len(read_recording(log, rig)) == 1600
+
+
+def test_a_log_in_milliseconds_and_semicolons_needs_no_hand(arm, columns, write):
+    log = write({**columns, "t": 1000.0 * columns["t"]})
+    log.write_text(log.read_text().replace(",", ";").replace("t;", "Time (ms);", 1))
+    _, rig = drafted(arm, log)
+    assert rig.description.clock.scale == 0.001
+    assert read_recording(log, rig).time[-1] == pytest.approx(7.995)
+
+
+def test_where_no_name_tells_the_effort_is_the_one_that_the_other_s_motion_needs(tmp_path):
+    model = tmp_path / "mass.xml"
+    model.write_text(
+        '<mujoco model="mass"><option gravity="0 0 0"/><worldbody><body name="b"><joint name="y"'
+        ' type="slide" damping="0.5" stiffness="40"/><geom size="0.1" mass="1"/></body></worldbody>'
+        '<actuator><motor name="u" joint="y"/></actuator></mujoco>'
+    )
+    time = 0.01 * np.arange(2000)
+    y = 0.02 * np.sin(5.0 * time) + 0.01 * np.sin(1.7 * time) + 0.01 * np.sin(9.1 * time + 1.0)
+    speed = np.gradient(y, 0.01)
+    effort = np.gradient(speed, 0.01) + 0.5 * speed + 40.0 * y
+    for columns, wanted in (((effort, y), ("V2", "V1")), ((y, effort), ("V1", "V2"))):
+        rows = np.column_stack(columns)
+        np.savetxt(tmp_path / "log.csv", rows, "%.8g", ",", header="V1,V2", comments="")
+        found = draft(model, [tmp_path / "log.csv"], tmp_path / "m.toml", 100.0)
+        signals = tomllib.loads(found.text)["signals"]
+        assert (*signals["y.position"]["columns"], *signals["u.effort"]["columns"]) == wanted

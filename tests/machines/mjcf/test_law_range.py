@@ -1,0 +1,38 @@
+"""Beyond the range in which a law was seen it is held, and a comparison says so."""
+
+from dataclasses import replace
+
+import numpy as np
+from pendulum import FED, MACHINE
+
+from ves_twin.core.recording.recording import Recording, RecordingInfo
+from ves_twin.effects.law import LawKind
+from ves_twin.machines.machine import Named
+from ves_twin.machines.mjcf.forward import MjcfForward
+from ves_twin.machines.mjcf.law_table import LawTable
+from ves_twin.machines.mjcf.mjcf_machine import MjcfMachine
+
+
+def notes(reach: float) -> str:
+    law = LawTable(
+        place="joint",
+        kind=LawKind.EFFORT,
+        of=("speed@joint",),
+        knots=((-reach, reach),),
+        values=(0.1, -0.1),
+    )
+    rig = replace(MACHINE, description=MACHINE.description.model_copy(update={"laws": (law,)}))
+    rows = MjcfForward.of(rig).simulate(FED, {})
+    signals = {"joint.angle": rows[:, :1], "joint.rate": rows[:, 1:], **FED.drive}
+    recording = Recording(FED.time, signals, RecordingInfo("measured", scenario="run"))
+    (case,) = MjcfMachine(rig).cases(Named("run", recording))
+    assert np.all(np.isfinite(case.simulated()["joint.rate"]))
+    return " ".join(case.notes)
+
+
+def test_a_motion_beyond_the_range_of_a_law_is_told_with_its_share():
+    assert "joint(speed@joint) is held in" in notes(1.0)
+
+
+def test_a_motion_within_the_range_of_a_law_is_not_mentioned():
+    assert "held" not in notes(50.0)

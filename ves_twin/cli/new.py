@@ -1,0 +1,46 @@
+"""new: draft the file of a machine from its model and a log."""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+
+from ves_twin.core.json_text import json_text
+
+SUMMARY = "draft the file of a machine of your own from its MuJoCo model or URDF and a log"
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Options of the command."""
+    parser.add_argument("model", metavar="MODEL", help="MuJoCo model (.xml) or URDF")
+    parser.add_argument("logs", metavar="LOG", nargs="+", help="logs; the first is matched")
+    parser.add_argument("--out", metavar="FILE", help="the draft (default: MODEL's name, .toml)")
+    parser.add_argument("--rate", metavar="HZ", help="rows a second, where no column is a time")
+    parser.add_argument("--json", action="store_true", help="what was guessed as JSON on stdout")
+
+
+def execute(arguments: argparse.Namespace) -> int:
+    """Draft, write, print what was guessed and why."""
+    from ves_twin.core.errors import FileAccessError
+
+    model, logs = Path(arguments.model), [Path(name) for name in arguments.logs]
+    for path in (model, *logs):
+        if not path.is_file():  # before what reads it is imported
+            raise FileAccessError(f"file '{path}' does not exist")
+    from ves_twin.cli.new_text import new_text
+    from ves_twin.core.units import to_si
+    from ves_twin.machines.new_machine import new_machine
+
+    out = Path(arguments.out or f"{model.stem}.toml")
+    rate = None if arguments.rate is None else _positive(to_si(arguments.rate, "Hz", "--rate"))
+    found = new_machine(model, logs, out, rate)
+    print(json_text(found.to_dict()) if arguments.json else new_text(found, model, logs))
+    return 0
+
+
+def _positive(rate: float) -> float:
+    from ves_twin.core.errors import InvalidInputError
+
+    if rate <= 0.0:
+        raise InvalidInputError("--rate", rate, "rows a second, above zero")
+    return rate

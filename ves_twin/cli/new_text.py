@@ -1,0 +1,30 @@
+"""new_text: a draft as a person reads it in a terminal: each guess with its reason."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from ves_twin.machines.new_machine import NewMachine
+
+
+def new_text(found: NewMachine, model: Path, logs: Sequence[Path]) -> str:
+    """What was written, each column, what to look at, how near the model is, what to do next."""
+    draft = found.draft
+    beside = f" and {found.model}" if found.model else ""
+    lines = [f"drafted {found.path}{beside} from {model.name} and {logs[0].name}", ""]
+    width = max(len(guess.column) for guess in draft.guesses)
+    for guess in draft.guesses:
+        lines.append(f"  {guess.column:<{width}}  {guess.taken_for}")
+        lines.append(f"  {'':<{width}}    {guess.why}")
+        lines += [f"  {'':<{width}}    {guess.others}"] if guess.others else []
+    lines += [f"  {column:<{width}}  not used: {why}" for column, why in draft.left.items()]
+    lines += ["", f"  mode      {draft.mode}"]
+    lines += [f"  look      {words}" for words in draft.look]
+    shares = ", ".join(f"{share:.0%} of {name}" for name, share in draft.explained.items())
+    lines += [f"  as it is  the model explains {shares}"] if shares else []
+    held = f"--held-out {logs[1]}" if len(logs) > 1 else "--alternate 2"
+    lines += [f"  next      ves-twin diagnose {logs[0]} {held} --plant {found.path}"]
+    return "\n".join(lines)

@@ -1,0 +1,85 @@
+"""LawPlace: where a law may act, and on what it may depend; LawForward, a plant that has some."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Protocol, runtime_checkable
+
+from ves_twin.core.types import FloatArray
+from ves_twin.diagnosis.forward import Channel, Excitation, Hypothesis, Parameter
+from ves_twin.effects.law import Law, LawKind
+
+
+@dataclass(frozen=True)
+class Variable:
+    """What a law may depend on: its name, as "speed@joint", and its unit."""
+
+    name: str
+    unit: str
+
+    @property
+    def what(self) -> str:
+        """position, speed, time or command."""
+        return self.name.partition("@")[0]
+
+
+@dataclass(frozen=True)
+class LawPlace:
+    """A joint or a column.
+
+    Attributes:
+        name: joint, or channel.
+        kind: effort or reading.
+        unit: of the law.
+        scale: size that a law is expected to have there [unit].
+        variables: on which it may depend, the nearest first.
+    """
+
+    name: str
+    kind: LawKind
+    unit: str
+    scale: float
+    variables: tuple[Variable, ...]
+
+
+@runtime_checkable
+class LawForward(Protocol):
+    """A `Forward` in which laws can act: what `Forward` has, and three verbs."""
+
+    @property
+    def identity(self) -> str:
+        """See `Forward`."""
+
+    @property
+    def drive(self) -> tuple[str, ...]:
+        """See `Forward`."""
+
+    @property
+    def channels(self) -> tuple[Channel, ...]:
+        """See `Forward`."""
+
+    @property
+    def parameters(self) -> tuple[Parameter, ...]:
+        """See `Forward`."""
+
+    @property
+    def hypotheses(self) -> tuple[Hypothesis, ...]:
+        """See `Forward`."""
+
+    def simulate(
+        self,
+        programme: Excitation,
+        values: Mapping[str, float],
+        refined: bool = False,
+        laws: Sequence[Law] = (),
+    ) -> FloatArray:
+        """See `Forward`; with laws at work beside those that the plant has."""
+
+    def law_places(self) -> tuple[LawPlace, ...]:
+        """Where a law may act."""
+
+    def visited(
+        self, programme: Excitation, values: Mapping[str, float], laws: Sequence[Law] = ()
+    ) -> Mapping[str, FloatArray]:
+        """Every variable of the places (n,), by name."""

@@ -1,0 +1,107 @@
+"""LawFinding: what a search for a law found, as it stands in verdict.json."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from ves_twin.diagnosis.gain import Gain
+
+
+@dataclass(frozen=True)
+class LawNumber:
+    """One number of a closed form, with its 90 % interval."""
+
+    name: str
+    value: float
+    low: float
+    high: float
+
+
+@dataclass(frozen=True)
+class LawRival:
+    """Another law that was fitted.
+
+    Attributes:
+        label: place, variables, family.
+        form: formula; empty of a table.
+        behind: log odds by which it is less probable than the best [nats].
+        adequate: whether it leaves noise.
+    """
+
+    label: str
+    form: str
+    behind: float
+    adequate: bool
+
+
+@dataclass(frozen=True)
+class LawFinding:
+    """A law, or the place and the variable where one is missing.
+
+    Attributes:
+        claimed: whether it is a law; else only the best place and variables.
+        reason: why it is not claimed, one sentence; empty where it is.
+        place: joint or channel.
+        kind: "effort" or "reading".
+        of: variables, by name.
+        units: of the variables, then of the law.
+        shape: table, mesh, stop, play or hold.
+        form: formula; empty of a table.
+        numbers: of the closed form.
+        knots, values: as it is simulated.
+        band: places, and low and high ends of the 90 % band there, which holds that of a table of
+            the same variable too; () without one.
+        seen: ends of each variable in the recordings.
+        points: variable and effort or reading that the recordings ask for, and its sd.
+        transient: whether it depends on time, and says nothing of other times.
+        nats: log odds over no law.
+        misfit, misfit_limit: largest cell score that it leaves, and that noise may.
+        further: log odds of a further law beside it, over what the simulation's error allows.
+        also: what else it could be, and what was tried, the nearest first.
+        gain: on held-out recordings; None if there were none.
+    """
+
+    claimed: bool
+    reason: str
+    place: str
+    kind: str
+    of: tuple[str, ...]
+    units: tuple[str, ...]
+    shape: str
+    form: str
+    numbers: tuple[LawNumber, ...]
+    knots: tuple[tuple[float, ...], ...]
+    values: tuple[float, ...]
+    band: tuple[tuple[float, ...], ...]
+    seen: tuple[tuple[float, float], ...]
+    points: tuple[tuple[float, ...], ...]
+    transient: bool
+    nats: float
+    misfit: float
+    misfit_limit: float
+    further: float
+    also: tuple[LawRival, ...]
+    gain: Gain | None
+
+    @property
+    def words(self) -> str:
+        """The law in words: "effort at joint against its speed, -0.02 |x| x"."""
+        told = {"play": "play", "hold": "rows that repeat", "stop": "a stop"}
+        what = told.get(self.shape, f"an {self.kind}" if self.kind == "effort" else "a reading")
+        along = " and ".join(_spoken(name, self.place) for name in self.of)
+        where = f"{what} {'at' if self.kind == 'effort' else 'of'} {self.place}"
+        said = f"{where} that depends on {along}" if self.shape in ("table", "mesh") else where
+        return f"{said}: {self.form}" if self.form else said
+
+    @property
+    def refusal(self) -> str:
+        """Why a machine with it is only a candidate; empty where it passed on held-out data."""
+        return "" if self.gain is not None else "there were no held-out recordings to prove it on"
+
+
+def _spoken(variable: str, place: str) -> str:
+    """A variable as a person says it."""
+    what, _, name = variable.partition("@")
+    if what == "time":
+        return "time"
+    return f"its {what}" if name == place or place.startswith(name) else f"{what} of {name}"

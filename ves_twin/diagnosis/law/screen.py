@@ -1,0 +1,167 @@
+"""law_screen: every place and variable by the evidence of one linearisation."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from ves_twin.core.types import FloatArray
+from ves_twin.diagnosis.evidence import Evidence
+from ves_twin.diagnosis.law.candidate import Candidate, Mesh, Table
+from ves_twin.diagnosis.law.fit_law import LawFit
+from ves_twin.diagnosis.law.place import LawForward, LawPlace, Variable
+from ves_twin.diagnosis.law.smoothness import Smoothness, smoothest
+from ves_twin.diagnosis.law.with_law import WithLaw
+from ves_twin.diagnosis.runs import Progress, Runs, silent
+from ves_twin.effects.law import LawKind
+
+KNOTS = {"position": 19, "speed": 21, "time": 25, "command": 13}
+"""Of a table, by what it depends on: those of speed are closer about zero."""
+
+FITTED = 1500
+"""Predictions that the fits of a search take, on the pendulum."""
+
+MESHED = 8
+"""Knots of each variable of a mesh."""
+
+LEAST = 1e-3
+"""Distance of a knot from the ends, as a share of the largest speed."""
+
+CROWDED = 3.0
+"""Knots of speed are m sinh(CROWDED z) / sinh(CROWDED), z even."""
+
+
+@dataclass(frozen=True)
+class Suspect:
+    """A candidate and its evidence over no law, by one linearisation."""
+
+    candidate: Candidate
+    smoothness: Smoothness
+
+    @property
+    def gain(self) -> float:
+        """Log evidence over no law [nats]."""
+        return self.smoothness.gain
+
+
+def ranges(forward: LawForward, found: LawFit) -> Mapping[str, tuple[float, float]]:
+    """Ends of every variable in the recordings, as a fit simulates them."""
+    runs = found.fit.local.runs
+    laws = [found.candidate.law(found.numbers)] if found.candidate else []
+    ends: dict[str, tuple[float, float]] = {}
+    for programme, values in zip(runs.programmes, values_of(runs, found.fit.shift), strict=True):
+        for name, rows in forward.visited(programme, values, laws).items():
+            low, high = ends.get(name, (np.inf, -np.inf))
+            ends[name] = min(low, float(np.min(rows))), max(high, float(np.max(rows)))
+    return ends
+
+
+def both(
+    one: Mapping[str, tuple[float, float]], other: Mapping[str, tuple[float, float]]
+) -> Mapping[str, tuple[float, float]]:
+    """Ends that hold both ranges."""
+    return {
+        name: (min(low, other[name][0]), max(high, other[name][1]))
+        for name, (low, high) in one.items()
+    }
+
+
+def values_of(runs: Runs, shift: FloatArray) -> list[dict[str, float]]:
+    """Parameter -> value, of each recording."""
+    return [
+        {
+            axis.parameter.name: axis.parameter.nominal + float(shift[i])
+            for i, axis in enumerate(runs.coordinates)
+            if axis.recording in (-1, k)
+        }
+        for k in range(len(runs.programmes))
+    ]
+
+
+def runs_of(places: Sequence[LawPlace]) -> int:
+    """Predictions that a search takes, about: two screens, and fits of the leaders."""
+    joints = [place for place in places if place.kind is LawKind.EFFORT]
+    tables = sum(KNOTS[v.what] for place in joints for v in place.variables)
+    return FITTED + 2 * (tables + MESHED**2 * len(joints))
+
+
+def smooth_candidates(
+    places: Sequence[LawPlace], ends: Mapping[str, tuple[float, float]]
+) -> list[Candidate]:
+    """A table of every variable at every place, and a mesh of a joint's own position and speed."""
+    found: list[Candidate] = []
+    for place in places:
+        moving = [v for v in place.variables if v.name in ends and _wide(ends[v.name])]
+        found += [Table(place, (v,), knots(v, ends[v.name])) for v in moving]
+        own = {v.what: v for v in reversed(moving)}
+        if place.kind is LawKind.EFFORT and {"position", "speed"} <= own.keys():
+            pair = own["position"], own["speed"]
+            first, second = (tuple(np.linspace(*ends[v.name], MESHED).tolist()) for v in pair)
+            found.append(Mesh(place, pair, (first, second)))
+    return found
+
+
+def law_screen(
+    evidence: Evidence,
+    candidates: Sequence[Candidate],
+    about: LawFit,
+    progress: Progress = silent,
+) -> list[Suspect]:
+    """Candidates by falling evidence beside a fit.
+
+    Args:
+        evidence: what was measured.
+        candidates: with smooth priors.
+        about: where the linearisation is: commissioning errors alone, or with a law.
+        progress: told how far it is.
+    """
+    z = about.fit.residual + about.jacobian @ about.point
+    found = []
+    for n, candidate in enumerate(candidates):
+        progress(n / len(candidates), "screening laws")
+        columns = columns_about(evidence, candidate, about)
+        found.append(
+            Suspect(candidate, smoothest(columns, about.jacobian, z, about.temper, candidate))
+        )
+    return sorted(found, key=lambda s: -s.gain)
+
+
+def columns_about(evidence: Evidence, candidate: Candidate, about: LawFit) -> FloatArray:
+    """Whitened change (samples, k) for a unit of each number of a further law beside a fit."""
+    whole = tuple(one for one in (about.candidate, candidate) if one is not None)
+    runs = replace(evidence.runs, forward=WithLaw(_plant(evidence), whole))
+    shift = runs.origin
+    shift[: len(about.fit.shift)] = about.fit.shift
+    law = np.arange(len(shift) - len(candidate.sd), len(shift))
+    moved = [
+        runs.depart(shift, law[[n]], shift[law[n]] + step) for n, step in enumerate(candidate.steps)
+    ]
+    share = (1.0 / candidate.steps).astype(np.float32)[:, None, None]
+    change = (runs.many(moved) - about.fit.prediction) * share
+    change[~np.isfinite(change).all(axis=(1, 2))] = 0.0
+    return evidence.whitening.apply(change).T
+
+
+def _plant(evidence: Evidence) -> LawForward:
+    forward = evidence.runs.forward
+    if not isinstance(forward, LawForward):
+        raise TypeError(f"{type(forward).__name__} has no places for laws")
+    return forward
+
+
+def _wide(ends: tuple[float, float]) -> bool:
+    return bool(np.isfinite(ends).all()) and ends[1] > ends[0]
+
+
+def knots(variable: Variable, ends: tuple[float, float]) -> tuple[float, ...]:
+    """Of a table: even, those of speed closer about zero."""
+    low, high = ends
+    count = KNOTS[variable.what]
+    if variable.what != "speed":
+        return tuple(np.linspace(low, high, count).tolist())
+    most = max(-low, high)
+    every = most * np.sinh(CROWDED * np.linspace(-1.0, 1.0, count)) / np.sinh(CROWDED)
+    inside = every[(every > low + LEAST * most) & (every < high - LEAST * most)]
+    return tuple([low, *inside.tolist(), high])

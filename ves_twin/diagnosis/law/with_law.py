@@ -1,0 +1,69 @@
+"""WithLaw: a plant in which a candidate law is at work, its numbers among the parameters."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from ves_twin.core.errors import InvalidInputError
+from ves_twin.core.types import FloatArray
+from ves_twin.diagnosis.forward import Channel, Excitation, Hypothesis, Parameter
+from ves_twin.diagnosis.law.candidate import Candidate
+from ves_twin.diagnosis.law.place import LawForward
+
+
+@dataclass(frozen=True)
+class WithLaw:
+    """A `Forward`: the numbers of laws are parameters of the plant, and each law is a cause.
+
+    Attributes:
+        plant: the plant.
+        candidates: laws with open numbers; none is the plant itself.
+    """
+
+    plant: LawForward
+    candidates: tuple[Candidate, ...] = ()
+
+    @property
+    def identity(self) -> str:
+        """See `Forward`."""
+        return " with ".join([self.plant.identity, *(one.label for one in self.candidates)])
+
+    @property
+    def drive(self) -> tuple[str, ...]:
+        """See `Forward`."""
+        return self.plant.drive
+
+    @property
+    def channels(self) -> tuple[Channel, ...]:
+        """See `Forward`."""
+        return self.plant.channels
+
+    @cached_property
+    def parameters(self) -> tuple[Parameter, ...]:
+        """Of the plant, and the numbers of the laws."""
+        own = (p for one in self.candidates for p in one.parameters)
+        return (*self.plant.parameters, *own)
+
+    def __post_init__(self) -> None:
+        names = [p.name for p in self.parameters]
+        if len(set(names)) < len(names):
+            raise InvalidInputError("laws", [c.label for c in self.candidates], "other labels each")
+
+    @property
+    def hypotheses(self) -> tuple[Hypothesis, ...]:
+        """The laws."""
+        return tuple(one.hypothesis for one in self.candidates)
+
+    def simulate(
+        self, programme: Excitation, values: Mapping[str, float], refined: bool = False
+    ) -> FloatArray:
+        """See `Forward`."""
+        laws = [
+            one.law(np.array([values.get(p.name, p.nominal) for p in one.parameters]))
+            for one in self.candidates
+        ]
+        return self.plant.simulate(programme, values, refined, laws)

@@ -1,0 +1,320 @@
+"""checked: columns held against the model by inverse dynamics: signs, units, swaps, by name."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, replace
+from itertools import combinations
+
+import mujoco
+import numpy as np
+
+from ves_twin.core.types import FloatArray
+from ves_twin.machines.mjcf.draft.log_columns import LogColumns
+from ves_twin.machines.mjcf.draft.match import Match, Matches
+from ves_twin.machines.mjcf.draft.motion import Motion, band_of, motion_of
+from ves_twin.machines.mjcf.draft.spots import Quantity
+from ves_twin.machines.mjcf.inverse import smoothed
+
+GAINED = 0.15
+"""Share of one joint's power that a change must explain more to be proposed: well above what
+signs and units that are right gain by chance on rough models."""
+
+TELLS = 0.03
+"""Share of an effort's power that the model must explain for the sign of its slope to count."""
+
+STRONG = 0.3
+"""The same for the size of that slope to count."""
+
+OFF = 0.1
+"""Weight of a decade between an effort and what the model needs: a factor of 57 is no friction."""
+
+TURN = 0.02
+"""Weight against turning an effort's sign, so that where all else is equal none is turned."""
+
+WORKS = 0.1
+"""Share of the most work from which on its sign counts: what springs and masses give back is less
+over some periods of a motion."""
+
+FAR = 3.0
+"""Factor between an effort and the model's from which on it is told."""
+
+DEGREE = np.pi / 180.0
+
+
+@dataclass(frozen=True)
+class Checked:
+    """Matches as the model confirms or corrects them.
+
+    Attributes:
+        found: with signs, constants and units as the model needs them.
+        findings: what was changed or looks wrong, a sentence each.
+        explained: column of an effort -> share of its power that the model as it is explains.
+        motion: efforts along the recorded motion; None where not every joint was recorded.
+        corner: of the low-pass that was used [Hz].
+        dofs: joint -> its degree of freedom.
+    """
+
+    found: tuple[Match, ...]
+    findings: tuple[str, ...]
+    explained: Mapping[str, float]
+    motion: Motion | None
+    corner: float
+    dofs: Mapping[str, int]
+
+
+def checked(log: LogColumns, matches: Matches, model: mujoco.MjModel) -> Checked:
+    """Hold matched columns against the model.
+
+    Where all joints were recorded, efforts of the model along the motion are fitted to the
+    recorded ones beside friction: y = s tau + c v + k sign v + o. A negative s is a wrong sign, an
+    s of 57 degrees. Columns are turned, swapped or rescaled only where that explains GAINED more,
+    the change that explains most first.
+    """
+    positions = matches.of(Quantity.POSITION)
+    moved = {m.spot.name for m in positions}
+    absent = [model.joint(i).name for i in range(model.njnt) if model.joint(i).name not in moved]
+    band = max((band_of(log.values[m.column], log.period, 0.99) for m in positions), default=1.0)
+    corner = min(4.0 * max(band, 1.0 / (log.period * log.rows)), 0.2 / log.period)
+    found, findings = list(matches.found), []
+    motion, explained = None, {}
+    if absent or not positions:
+        words = ", ".join(name or "one without a name" for name in absent)
+        findings.append(f"signs are not checked: no column tells the position of {words}")
+    else:
+        judge = _Judge(log, model, corner)
+        found, said = judge.corrected(found)
+        findings += said
+        motion = judge.motion(found)
+        found, said = judge.efforts(found, motion)
+        findings += said
+        explained = judge.explained(found, motion)
+    found, said = _speeds(log, found, corner)
+    dofs = {model.joint(i).name: int(model.jnt_dofadr[i]) for i in range(model.njnt)}
+    return Checked(tuple(found), (*findings, *said), explained, motion, corner, dofs)
+
+
+@dataclass(frozen=True)
+class _Fit:
+    """Of one effort on what the model needs.
+
+    Attributes:
+        slope: s.
+        share: of its power that the fit explains.
+        gain: what of that the model's effort adds to friction alone.
+        work: of the effort along the motion, as a share of the most that it could do.
+        free: whether any constant may stand between effort and column.
+    """
+
+    slope: float
+    share: float
+    gain: float
+    work: float
+    free: bool
+
+    @property
+    def usable(self) -> bool:
+        """Whether the slope says something: the model explains a part, and by a likely factor."""
+        return self.gain > TELLS and (self.free or 1.0 / FAR < abs(self.slope) < FAR)
+
+    @property
+    def sign(self) -> int:
+        """Of the slope, else of the work: a machine that only takes energy never gives any."""
+        if self.usable:
+            return int(np.sign(self.slope)) or 1
+        return -1 if self.work < -WORKS else 1
+
+
+@dataclass(frozen=True)
+class _Judge:
+    """Efforts of a log against those of a model."""
+
+    log: LogColumns
+    model: mujoco.MjModel
+    corner: float
+
+    def motion(self, found: list[Match]) -> Motion:
+        """Along the positions as they are matched."""
+        positions = {
+            m.spot.name: m.factor * self.log.values[m.column]
+            for m in found
+            if m.spot.quantity is Quantity.POSITION
+        }
+        return motion_of(self.model, positions, self.log.period, self.corner)
+
+    def corrected(self, found: list[Match]) -> tuple[list[Match], list[str]]:
+        """With the changes of positions that explain more, the best first, and words for them."""
+        said: list[str] = []
+        best = self.score(found)
+        for _ in range(2 * len(found)):
+            tried = [(self.score(new), new, words) for new, words in _changes(found)]
+            if not tried:
+                break
+            score, new, words = max(tried, key=lambda one: one[0])
+            if score < best + GAINED:
+                break
+            best, found = score, new
+            said.append(words)
+        return found, said
+
+    def score(self, found: list[Match]) -> float:
+        """Shares explained at all joints, less what factors and turned signs speak against it."""
+        motion, total = self.motion(found), 0.0
+        driven = set()
+        for match in self.driving(found):
+            fit, dof = self.fit(match, motion), self.dof(match)
+            driven.add(dof)
+            total += fit.share - TURN * (fit.sign < 0)
+            if not match.electrical and fit.gain > STRONG and fit.slope:
+                total -= OFF * min(abs(float(np.log10(abs(fit.slope)))), 3.0)
+        for dof in set(range(self.model.nv)) - driven - self.pushed(found):
+            inertia = motion.effort[:, dof] - motion.steady[:, dof]
+            if np.std(inertia) > 0.0 and np.std(motion.steady[:, dof]) > 0.0:
+                alike = float(np.corrcoef(-inertia, motion.steady[:, dof])[0, 1])
+                total += max(alike, 0.0) ** 2
+        return total
+
+    def driving(self, found: list[Match]) -> list[Match]:
+        """Efforts that act on one joint."""
+        return [m for m in found if m.spot.quantity is Quantity.EFFORT and m.spot.joint]
+
+    def pushed(self, found: list[Match]) -> set[int]:
+        """Degrees of freedom of joints whose motors no column tells."""
+        told = {m.spot.name for m in found}
+        motors = [self.model.actuator(i) for i in range(self.model.nu)]
+        joints = [self.model.joint(int(m.trnid[0])) for m in motors if m.name not in told]
+        return {int(j.dofadr[0]) for j in joints}
+
+    def dof(self, match: Match) -> int:
+        """That an effort acts on."""
+        return int(self.model.joint(match.spot.joint).dofadr[0])
+
+    def needed(self, match: Match, motion: Motion) -> FloatArray:
+        """Command (m,) that the model needs of a motor along a motion."""
+        actuator = self.model.actuator(match.spot.name)
+        gain = float(actuator.gear[0] * actuator.gainprm[0]) or 1.0
+        return np.asarray(motion.effort[:, self.dof(match)] / gain)
+
+    def fit(self, match: Match, motion: Motion) -> _Fit:
+        """Of a recorded effort, in its unit's SI, beside friction."""
+        column = smoothed(self.log.values[match.column], self.log.period, self.corner)
+        y, need = match.factor * column[motion.rows], self.needed(match, motion)
+        v = motion.speed[:, self.dof(match)]
+        slow = 0.05 * float(np.std(v)) or 1.0
+        friction = np.stack([v, np.tanh(v / slow), np.ones_like(v)], axis=1)
+        whole = np.column_stack([need, friction])
+        power = float(np.sum((y - y.mean()) ** 2)) or 1.0
+        slopes = np.linalg.lstsq(whole, y, rcond=None)[0]
+        shares = []
+        for basis in (whole, friction):
+            rest = y - basis @ np.linalg.lstsq(basis, y, rcond=None)[0]
+            shares.append(max(1.0 - float(rest @ rest) / power, 0.0))
+        most = float(np.linalg.norm(v) * np.linalg.norm(y)) or 1.0
+        gain, work = shares[0] - shares[1], float(v @ y) / most
+        return _Fit(float(slopes[0]), shares[0], gain, work, match.electrical)
+
+    def efforts(self, found: list[Match], motion: Motion) -> tuple[list[Match], list[str]]:
+        """With signs and constants of efforts as the motion needs them."""
+        found, said = list(found), []
+        for i, match in enumerate(found):
+            if match not in self.driving(found):
+                continue
+            fit = self.fit(match, motion)
+            if match.electrical and fit.gain > TELLS:
+                scale = 1.0 / fit.slope
+                found[i] = replace(match, scale=float(f"{scale:.3g}"))
+                unit = f"{match.spot.unit} per {match.unit}"
+                said.append(
+                    f"{match.column} is electrical: {abs(scale):.3g} {unit} makes it fit this"
+                    " model; put the motor's constant there"
+                )
+            elif fit.sign < 0:
+                found[i] = replace(match, scale=-match.scale)
+                why = f"slope {fit.slope:.2f}" if fit.usable else f"work {fit.work:.0%}"
+                said.append(
+                    f"{match.column} has the wrong sign for this model ({why}): it is turned; or"
+                    " the position of its joint counts the other way"
+                )
+            if not fit.free and fit.gain > STRONG and fit.slope > 0.0 and not fit.usable:
+                said.append(
+                    f"{match.column} is {fit.slope:.3g} times what the model needs: another unit, a"
+                    " gear or a wrong mass?"
+                )
+        return found, said
+
+    def explained(self, found: list[Match], motion: Motion) -> dict[str, float]:
+        """Share of the power of each effort that the model as it is explains."""
+        shares = {}
+        for match in self.driving(found):
+            column = smoothed(self.log.values[match.column], self.log.period, self.corner)
+            y = match.factor * column[motion.rows]
+            rest = y - self.needed(match, motion)
+            power = float(np.sum((y - y.mean()) ** 2)) or 1.0
+            shares[match.column] = max(1.0 - float(np.sum((rest - rest.mean()) ** 2)) / power, 0.0)
+        return shares
+
+
+def _changes(found: list[Match]) -> Iterator[tuple[list[Match], str]]:
+    """Ways in which columns may be meant otherwise, each with words for it."""
+    positions = [m for m in found if m.spot.quantity is Quantity.POSITION]
+
+    def other(old: Match, new: Match) -> list[Match]:
+        return [new if m is old else m for m in found]
+
+    for match in positions:
+        words = f"{match.column} counts against {match.spot.label} of the model: it is turned"
+        yield other(match, replace(match, scale=-match.scale)), words
+    for factor, unit in ((DEGREE, "deg"), (0.001, "mm")):
+        kind = "rad" if unit == "deg" else "m"
+        open_ = [m for m in positions if m.spot.unit == kind and not m.told and m.unit == kind]
+        for group in ([[m] for m in open_] + [open_]) if len(open_) > 1 else [[m] for m in open_]:
+            new = [replace(m, unit=unit) if m in group else m for m in found]
+            names = ", ".join(m.column for m in group)
+            yield (
+                new,
+                f"{names}: numbers fit the model as {unit}, not as {kind} (factor {factor:.4g})",
+            )
+    for match in positions:
+        if match.told and match.unit == "deg":
+            words = f"{match.column}: named in deg, the numbers fit the model as rad"
+            yield other(match, replace(match, unit="rad")), words
+    efforts = [m for m in found if m.spot.quantity is Quantity.EFFORT]
+    for one, two in (*combinations(positions, 2), *combinations(efforts, 2)):
+        if (one.spot.unit, one.unit) == (two.spot.unit, two.unit):
+            a, b = _exchanged(one, two)
+            both = [a if m is one else b if m is two else m for m in found]
+            yield both, f"{one.column} and {two.column} look swapped: taken the other way round"
+
+
+def _exchanged(one: Match, two: Match) -> tuple[Match, Match]:
+    """Both spots with the other's column."""
+    first = replace(two, spot=one.spot, reasons=("fits the model better there",))
+    return first, replace(one, spot=two.spot, reasons=("fits the model better there",))
+
+
+def _speeds(log: LogColumns, found: list[Match], corner: float) -> tuple[list[Match], list[str]]:
+    """Speeds against the derivative of the position of their joint."""
+    said, result = [], []
+    positions = {m.spot.name: m for m in found if m.spot.quantity is Quantity.POSITION}
+    for match in found:
+        own = positions.get(match.spot.name)
+        if match.spot.quantity is not Quantity.SPEED or own is None:
+            result.append(match)
+            continue
+        v = match.factor * smoothed(log.values[match.column], log.period, corner)
+        q = own.factor * smoothed(log.values[own.column], log.period, corner)
+        rate = np.gradient(q, log.period)
+        alike, slope = float(np.corrcoef(v, rate)[0, 1]), float(v @ rate / (rate @ rate))
+        if abs(alike) < 0.5:
+            said.append(f"{match.column} does not follow {own.column} ({alike:+.2f}): left out")
+            continue
+        if slope < 0.0:
+            match = replace(match, scale=-match.scale)
+            said.append(f"{match.column} counts against {own.column}: it is turned")
+        if not match.told and abs(abs(slope) * DEGREE - 1.0) < 0.2:
+            match = replace(match, unit="deg/s")
+            said.append(f"{match.column}: numbers fit {own.column} as deg/s, not as rad/s")
+        elif not 0.5 < abs(slope) < 2.0:
+            said.append(f"{match.column} is {abs(slope):.3g} times the rate of {own.column}")
+        result.append(match)
+    return result, said

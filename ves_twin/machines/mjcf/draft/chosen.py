@@ -1,0 +1,148 @@
+"""Chosen: what is fed in and what is compared, by what the columns can bear."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import mujoco
+import numpy as np
+
+from ves_twin.core.errors import InvalidInputError
+from ves_twin.machines.mjcf.description import Mode
+from ves_twin.machines.mjcf.draft.check import Checked
+from ves_twin.machines.mjcf.draft.estimates import noise_of, rest_of
+from ves_twin.machines.mjcf.draft.log_columns import LogColumns
+from ves_twin.machines.mjcf.draft.match import Match, Matches
+from ves_twin.machines.mjcf.draft.motion import band_of
+from ves_twin.machines.mjcf.draft.spots import Quantity, is_motor, single_joints
+
+BAND = 2.0
+"""Band that is analysed where motion is given, as a multiple of that which has 99 % of the power
+of the efforts: reversals of friction are above it."""
+
+RATES = (20.0, 100.0)
+"""Least and largest analysis rate [Hz]; the second is that of files that say none."""
+
+CORNER = 1.25
+"""Corner of the positions' low-pass over the band: what is compared is not rounded off."""
+
+DROWNED = 0.05
+"""Share of an effort that noise of positions may make once they are differentiated twice."""
+
+
+@dataclass(frozen=True)
+class Chosen:
+    """What a drafted file says of its mode.
+
+    Attributes:
+        mode: MOTION where every joint is recorded, has a motor with a column, and its position is
+            good enough to be differentiated twice; else CONTROL.
+        why: in words.
+        rate: of the analysis [Hz].
+        smoothing: corner of the low-pass of positions [Hz].
+        noise: column -> sd of one row in SI, and how it was told.
+        either: the motion could be given as well.
+    """
+
+    mode: Mode
+    why: str
+    rate: float
+    smoothing: float
+    noise: Mapping[str, tuple[float, str]]
+    either: bool = False
+
+
+def chosen(
+    log: LogColumns,
+    matches: Matches,
+    check: Checked,
+    model: mujoco.MjModel,
+    closed: str | None = None,
+) -> Chosen:
+    """Choose the mode.
+
+    Where motion is given, the band is that of the efforts, or the lower one in which the noise of
+    differentiated positions stays below DROWNED: it grows with the band's power of 2.5.
+
+    Args:
+        log: the columns.
+        matches: as they were found.
+        check: as the model corrected them.
+        model: of the machine.
+        closed: why nothing can be predicted open loop; None: as far as is known, it can.
+
+    Raises:
+        InvalidInputError: no effort or command, or nothing that could be compared with it.
+    """
+    efforts = [m for m in check.found if m.spot.quantity is Quantity.EFFORT]
+    positions = [m for m in check.found if m.spot.quantity is Quantity.POSITION]
+    if not efforts or len(efforts) == len(check.found):
+        _refuse(log, matches, check, model)
+    moved = [m.factor * log.values[m.column] for m in positions]
+    rest = rest_of(moved, log.period)
+    noise = {}
+    for m in check.found:
+        sd, how = noise_of(log.values[m.column], log.period, rest)
+        noise[m.column] = (abs(m.factor) * sd, how)
+    driven = {m.spot.joint for m in efforts if _is_plain(m, model)}
+    single = {model.joint(i).name for i in single_joints(model)}
+    if check.motion is None or driven != single or model.nv != len(single):
+        free = sorted(single - driven)
+        why = f"no effort is told at {', '.join(free)}" if free else "not every position is told"
+        return Chosen(Mode.CONTROL, why, RATES[1], check.corner, noise)
+    band = BAND * max(band_of(log.values[m.column], log.period, 0.99) for m in efforts)
+    band = float(np.clip(band, 0.5 * RATES[0], min(0.5 * RATES[1], 0.25 / log.period)))
+    share = max(_induced(m, noise, efforts, model, log, band)[1] for m in positions)
+    band = max(min(band, band * (DROWNED / max(share, 1e-9)) ** 0.4), 0.5 * RATES[0])
+    sharp = {m.column: _induced(m, noise, efforts, model, log, band) for m in positions}
+    worst = max(sharp, key=lambda column: sharp[column][1])
+    why = "every joint has a position and an effort"
+    if sharp[worst][1] > DROWNED and closed is None:
+        share = sharp[worst][1]
+        why = f"{worst} is too noisy to be differentiated twice ({share:.0%} of the effort)"
+        return Chosen(Mode.CONTROL, why, RATES[1], check.corner, noise, True)
+    of_joint = {m.spot.name: sharp[m.column][0] for m in positions}
+    for m in efforts:
+        sd, how = noise[m.column]
+        noise[m.column] = (float(np.hypot(sd, of_joint[m.spot.joint])), how)
+    return Chosen(Mode.MOTION, closed or why, 2.0 * band, CORNER * band, noise)
+
+
+def _is_plain(match: Match, model: mujoco.MjModel) -> bool:
+    return bool(match.spot.joint) and is_motor(model, model.actuator(match.spot.name).id)
+
+
+def _induced(
+    position: Match,
+    noise: Mapping[str, tuple[float, str]],
+    efforts: list[Match],
+    model: mujoco.MjModel,
+    log: LogColumns,
+    band: float,
+) -> tuple[float, float]:
+    """Noise that a position makes in its joint's effort: of one row [SI], and as a share of it.
+
+    White noise s of rows T apart, differentiated twice within a band f: s (2 pi)^2
+    sqrt(2 T f^5 / 5).
+    """
+    (effort,) = (m for m in efforts if m.spot.joint == position.spot.name)
+    sd, _ = noise[position.column]
+    pull = sd * (2.0 * np.pi) ** 2 * np.sqrt(2.0 * log.period * band**5 / 5.0)
+    actuator, joint = model.actuator(effort.spot.name), model.joint(position.spot.name)
+    gain = abs(float(actuator.gear[0] * actuator.gainprm[0])) or 1.0
+    within = float(model.dof_M0[int(joint.dofadr[0])]) * pull / gain
+    size = float(np.std(effort.factor * log.values[effort.column]))
+    return within * np.sqrt(0.5 / (log.period * band)), within / size
+
+
+def _refuse(log: LogColumns, matches: Matches, check: Checked, model: mujoco.MjModel) -> None:
+    """Say what is missing."""
+    there = ", ".join(m.column for m in check.found) or "none"
+    left = ", ".join([*matches.left, *matches.setpoints]) or "none"
+    motors = ", ".join(model.actuator(i).name for i in range(model.nu))
+    joints = ", ".join(model.joint(i).name for i in single_joints(model))
+    lacks_effort = all(m.spot.quantity is not Quantity.EFFORT for m in check.found)
+    expected = f"an effort of {motors}" if lacks_effort else f"a position or speed of {joints}"
+    came = f"columns matched: {there}; not matched: {left}"
+    raise InvalidInputError(f"{log.file} does not fit the model", came, expected)

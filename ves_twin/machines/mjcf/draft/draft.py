@@ -1,0 +1,157 @@
+"""draft: a model and its logs to the text of a machine's file, with what was guessed and why."""
+
+from __future__ import annotations
+
+import os
+import tomllib
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from tempfile import TemporaryDirectory
+
+import numpy as np
+
+from ves_twin.core.errors import InvalidInputError
+from ves_twin.core.recording.recording import Recording
+from ves_twin.diagnosis.forward import Excitation
+from ves_twin.machines.mjcf.columns import read_rig_recording
+from ves_twin.machines.mjcf.description import KIND, Mode, RigDescription
+from ves_twin.machines.mjcf.draft.check import Checked, checked
+from ves_twin.machines.mjcf.draft.chosen import Chosen, chosen
+from ves_twin.machines.mjcf.draft.draft_text import compared, draft_text, signal_name, used
+from ves_twin.machines.mjcf.draft.given_model import GivenModel
+from ves_twin.machines.mjcf.draft.log_columns import LogColumns
+from ves_twin.machines.mjcf.draft.match import matched
+from ves_twin.machines.mjcf.draft.shape import by_shape
+from ves_twin.machines.mjcf.draft.spots import spots_of
+from ves_twin.machines.mjcf.forward import MjcfForward
+from ves_twin.machines.mjcf.machine import Rig
+
+HALF = 0.5
+"""Share of a signal that a model must explain open loop for commands to be fed in: an arm that
+drifts off its path tells nothing."""
+
+LONGEST = 10.0
+"""Stretch of a log that is predicted to say how near the model is [s]."""
+
+
+@dataclass(frozen=True)
+class Guess:
+    """One column: what it is taken for, why, and what else it could be."""
+
+    column: str
+    taken_for: str
+    why: str
+    others: str
+
+
+@dataclass(frozen=True)
+class Draft:
+    """A machine's file that nobody wrote yet.
+
+    Attributes:
+        text: of the file.
+        model_text: MJCF to write beside it, where the model is a URDF; else empty.
+        guesses: one for each column that was matched.
+        left: column -> why it is not used.
+        look: what a person should look at, a sentence each.
+        mode: what is fed in, and why.
+        explained: column or signal -> share of its power that the model as it is explains.
+    """
+
+    text: str
+    model_text: str
+    guesses: tuple[Guess, ...]
+    left: dict[str, str]
+    look: tuple[str, ...]
+    mode: str
+    explained: dict[str, float]
+
+
+def draft(model: Path, logs: Sequence[Path], out: Path, rate: float | None = None) -> Draft:
+    """Draft the file that makes a model and logs of it a machine.
+
+    Args:
+        model: MJCF or URDF.
+        logs: the first is matched; the others must have the columns that it needs.
+        out: where the file will lie: paths in it start from there.
+        rate: rows a second, where no column tells the time.
+
+    Raises:
+        FileAccessError: a file that is missing.
+        InvalidInputError: files that cannot be read, or do not fit each other.
+    """
+    if not logs:
+        raise InvalidInputError("logs", "none", "at least one")
+    given, log = GivenModel.read(model), LogColumns.read(logs[0], rate)
+    spots = spots_of(given.model)
+    matches = by_shape(log, matched(log, spots), spots)
+    check = checked(log, matches, given.model)
+    mode = chosen(log, matches, check, given.model)
+    file = out.with_suffix(".xml").name if given.text else os.path.relpath(model, out.parent)
+
+    def written(mode: Chosen) -> tuple[str, Rig]:
+        text = draft_text(out.stem, model, file, log, matches, check, mode, given.model)
+        return text, _rig(text, given, out)
+
+    text, rig = written(mode)
+    explained = dict(check.explained) if mode.mode is Mode.MOTION else _predicted(rig, logs[0])
+    if mode.either and min(explained.values()) < HALF:
+        least = min(explained, key=lambda name: explained[name])
+        why = f"open loop the model explains {explained[least]:.0%} of {least}"
+        mode, explained = chosen(log, matches, check, given.model, why), dict(check.explained)
+        text, rig = written(mode)
+    for other in logs[1:]:
+        read_rig_recording(other, rig)
+    left = dict(matches.left)
+    left |= {c: "says what was asked for" for c in matches.setpoints}
+    left |= {m.column: "is a speed" for m in check.found if not used(m, mode)}
+    look = (*given.notes, *log.notes, *check.findings)
+    words = f"{mode.mode}: {mode.why}"
+    return Draft(text, given.text, _guesses(check, mode), left, look, words, explained)
+
+
+def _rig(text: str, given: GivenModel, out: Path) -> Rig:
+    """The machine of a text, before anything is written; its model is compiled already."""
+    content = tomllib.loads(text)
+    if content.pop("schema", None) is None or content.pop("kind", None) != KIND:
+        raise InvalidInputError(str(out), "a draft without schema and kind", "both")
+    with TemporaryDirectory() as folder:
+        path = given.path.resolve()
+        if given.text:
+            path = Path(folder) / "model.xml"
+            path.write_text(given.text)
+        rig = Rig.of(RigDescription.model_validate({**content, "model": str(path)}), Path(folder))
+        _ = rig.model
+    return rig
+
+
+def _predicted(rig: Rig, log: Path) -> dict[str, float]:
+    """Signal -> share of its power that the model, fed with the log's commands, explains."""
+    recording = read_rig_recording(log, rig)
+    rows = recording.time - recording.time[0] <= LONGEST
+    signals = {name: values[rows] for name, values in recording.signals.items()}
+    forward, short = MjcfForward.of(rig), Recording(recording.time[rows], signals, recording.info)
+    found = forward.simulate(Excitation.of(short, forward.drive), {})
+    shares: dict[str, list[float]] = {}
+    for column, channel in zip(found.T, forward.channels, strict=True):
+        y = short[channel.signal][:, channel.column]
+        rest, power = y - column, float(np.sum((y - y.mean()) ** 2)) or 1.0
+        share = 1.0 - float(rest @ rest) / power if np.all(np.isfinite(rest)) else 0.0
+        shares.setdefault(channel.signal, []).append(share)
+    return {name: max(min(found), 0.0) for name, found in shares.items()}
+
+
+def _guesses(check: Checked, mode: Chosen) -> tuple[Guess, ...]:
+    found = []
+    for match in check.found:
+        way = "compared" if compared(match, mode) else "fed in"
+        if not used(match, mode):
+            continue
+        unit = match.unit if match.told else f"{match.unit}?"
+        if match.electrical:
+            unit = f"{abs(match.scale):.3g} {match.spot.unit}/{match.unit}?"
+        sign = "-" if match.scale < 0.0 else ""
+        taken = f"{sign}{match.spot.label} [{unit}], {way} as {signal_name(match)}"
+        found.append(Guess(match.column, taken, ", ".join(match.reasons), "; ".join(match.others)))
+    return tuple(found)

@@ -1,0 +1,213 @@
+"""draft_text: a machine's file as text, a line for each column, with the reason behind it."""
+
+from __future__ import annotations
+
+import json
+import re
+from collections.abc import Iterator
+from pathlib import Path
+
+import mujoco
+import numpy as np
+
+from ves_twin.core.units import SI_UNITS
+from ves_twin.machines.mjcf.description import LAB_UNITS, Mode
+from ves_twin.machines.mjcf.draft.check import Checked
+from ves_twin.machines.mjcf.draft.chosen import RATES, Chosen
+from ves_twin.machines.mjcf.draft.estimates import travel, two_digits, typical
+from ves_twin.machines.mjcf.draft.log_columns import LogColumns
+from ves_twin.machines.mjcf.draft.match import Match, Matches
+from ves_twin.machines.mjcf.draft.spots import Quantity
+from ves_twin.machines.mjcf.inverse import smoothed
+
+SHARES = {
+    "mass": ("5 %", "body_mass"),
+    "damping": ("20 %", "dof_damping"),
+    "frictionloss": ("20 %", "dof_frictionloss"),
+    "armature": ("10 %", "dof_armature"),
+    "stiffness": ("10 %", "jnt_stiffness"),
+    "gain": ("1 %", "actuator_gainprm"),
+}
+"""Attribute -> share to which drawings and datasheets tell it, and where MuJoCo keeps it. Assumed:
+scales and density tell masses to some per cent, motors their constant; friction varies most."""
+
+
+FITTED = "20 %"
+"""Share to which a constant is known that was fitted beside friction: put the datasheet's there."""
+
+
+def draft_text(
+    name: str,
+    given: Path,
+    model_file: str,
+    log: LogColumns,
+    matches: Matches,
+    check: Checked,
+    mode: Chosen,
+    model: mujoco.MjModel,
+) -> str:
+    """The file; `ves-twin` reads it as it stands."""
+    head = [
+        f"# Drafted by ves-twin new from {given.name} and {log.file}; # tells why",
+        *(f"# look: {words}" for words in check.findings),
+        *(f"# not used: {column}: {why}" for column, why in _unused(matches, check, mode)),
+        "schema = 1",
+        'kind = "rig"',
+        f"name = {_quoted(name)}",
+        f"model = {_quoted(model_file)}",
+    ]
+    if mode.mode is Mode.MOTION and mode.rate < RATES[1]:
+        head.append(f"rate = {two_digits(mode.rate):g}   # Hz: the efforts have no more in them")
+    head += [
+        f"clock = {_clock(log)}",
+        *([f"window = {_window(log)}"] if log.window else []),
+        f'drive = {{ mode = "{mode.mode}", smoothing = {two_digits(mode.smoothing):g} }}'
+        f"   # {mode.why}",
+        f"tolerances = {_tolerances(model, check)}   # shares of the model's values: yours?",
+        'effects = [{ kind = "*", on = ["*"] }]   # every one that the model has a place for',
+        "",
+        "[signals]",
+    ]
+    lines = [*head, *_signals(check, mode)]
+    lines += ["", "[typical.joint]", *_joints(log, check)]
+    spans = list(_spans(log, check))
+    lines += ["", "[typical.signal]", *spans] if spans else []
+    if mode.mode is Mode.CONTROL:
+        lines += ["", "[start]", *_starts(check, mode)]
+    return "\n".join(lines) + "\n"
+
+
+def signal_name(match: Match) -> str:
+    """What the signal of a column is called."""
+    bare = re.sub(r"\W+", "_", match.spot.name)
+    return bare if match.spot.quantity is Quantity.SENSOR else f"{bare}.{match.spot.quantity.value}"
+
+
+def compared(match: Match, mode: Chosen) -> bool:
+    """Whether the mode predicts it."""
+    if match.spot.quantity is Quantity.SENSOR:
+        return True
+    return (match.spot.quantity is Quantity.EFFORT) == (mode.mode is Mode.MOTION)
+
+
+def used(match: Match, mode: Chosen) -> bool:
+    """Whether the mode feeds it in or predicts it."""
+    return mode.mode is Mode.CONTROL or match.spot.quantity is not Quantity.SPEED
+
+
+def _unused(matches: Matches, check: Checked, mode: Chosen) -> Iterator[tuple[str, str]]:
+    yield from matches.left.items()
+    for column in matches.setpoints:
+        if all(m.column != column for m in check.found):
+            yield column, "what was asked for; [controllers] would feed it in"
+    for match in check.found:
+        if not used(match, mode):
+            yield match.column, "a speed, where positions are fed in"
+
+
+def _signals(check: Checked, mode: Chosen) -> Iterator[str]:
+    """A line for each signal: where the model has it, unit, constant, noise."""
+    sensors: dict[str, list[Match]] = {}
+    for match in check.found:
+        if match.spot.quantity is Quantity.SENSOR:
+            sensors.setdefault(match.spot.name, []).append(match)
+        elif used(match, mode):
+            yield _signal([match], mode)
+    for group in sensors.values():
+        yield _signal(sorted(group, key=lambda m: m.spot.axis), mode)
+
+
+def _signal(group: list[Match], mode: Chosen) -> str:
+    first = group[0]
+    keys = {"columns": json.dumps([m.column for m in group], ensure_ascii=False)}
+    known = first.unit in SI_UNITS or first.unit in LAB_UNITS
+    keys["unit"] = _quoted(first.unit if known and not first.electrical else first.spot.unit)
+    if first.scale != 1.0:
+        keys["scale"] = f"{first.scale:g}"
+    if first.spot.quantity in (Quantity.POSITION, Quantity.SPEED):
+        keys["joint"] = _quoted(first.spot.name)
+        if first.spot.quantity is Quantity.SPEED:
+            keys["of"] = _quoted("speed")
+    else:
+        kind = "actuator" if first.spot.quantity is Quantity.EFFORT else "sensor"
+        keys[kind] = _quoted(first.spot.name)
+    reasons = list(first.reasons) + ([] if first.told else [f"unit {first.unit} is a guess"])
+    if compared(first, mode):
+        keys["noise"] = f"{max(mode.noise[m.column][0] for m in group):.2g}"
+        reasons.append(f"noise: {mode.noise[first.column][1]}")
+    text = ", ".join(f"{key} = {value}" for key, value in keys.items())
+    why = "; ".join([", ".join(reasons), *first.others])
+    return f"{_quoted(signal_name(first))} = {{ {text} }}   # {why}"
+
+
+def _joints(log: LogColumns, check: Checked) -> Iterator[str]:
+    """Typical effort, speed and travel of each joint that was recorded."""
+    efforts = {m.spot.joint: m for m in check.found if m.spot.quantity is Quantity.EFFORT}
+    for match in check.found:
+        if match.spot.quantity is not Quantity.POSITION:
+            continue
+        position = match.factor * log.values[match.column]
+        speed = np.gradient(smoothed(position, log.period, check.corner), log.period)
+        sizes = {"speed": typical(speed), "travel": travel(position)}
+        own = efforts.get(match.spot.name)
+        if own is not None:
+            sizes = {"effort": typical(own.factor * log.values[own.column]), **sizes}
+        elif check.motion is not None:
+            steady = check.motion.steady[:, check.dofs[match.spot.name]]
+            sizes = {"effort": typical(steady), **sizes}
+        text = ", ".join(f"{k} = {v:g}" for k, v in sizes.items() if v > 0.0)
+        yield f"{_key(match.spot.name)} = {{ {text} }}"
+
+
+def _spans(log: LogColumns, check: Checked) -> Iterator[str]:
+    """Typical range of sensors; that of a joint's signals follows from the joint."""
+    groups: dict[str, float] = {}
+    for match in check.found:
+        if match.spot.quantity is Quantity.SENSOR:
+            size = travel(match.factor * log.values[match.column])
+            name = signal_name(match)
+            groups[name] = max(groups.get(name, 0.0), size)
+    for name, size in groups.items():
+        yield f"{_quoted(name)} = {{ span = {size:g} }}"
+
+
+def _starts(check: Checked, mode: Chosen) -> Iterator[str]:
+    """Read off the first rows: position to its noise, speed to that behind the low-pass."""
+    for match in check.found:
+        if match.spot.quantity is Quantity.POSITION:
+            sd = mode.noise[match.column][0]
+            speed = 2.0 * np.pi * mode.smoothing * sd
+            text = f'position = "measured", sd = {sd:.2g}, speed_sd = {speed:.2g}'
+            yield f"{_key(match.spot.name)} = {{ {text} }}"
+
+
+def _clock(log: LogColumns) -> str:
+    if not log.clock:
+        return f"{{ rate = {1.0 / log.period:.8g} }}"
+    scale = f", scale = {log.scale:g}" if log.scale != 1.0 else ""
+    return f"{{ column = {_quoted(log.clock)}{scale} }}"
+
+
+def _window(log: LogColumns) -> str:
+    start, stop = log.window or (0.0, 0.0)
+    return f"{{ start = {start:.9g}, stop = {stop + 0.5 * log.period:.9g} }}   # elsewhere empty"
+
+
+def _tolerances(model: mujoco.MjModel, check: Checked) -> str:
+    """Of the attributes that the model has; a constant that was fitted is known badly."""
+    there = {
+        attribute: share
+        for attribute, (share, field) in SHARES.items()
+        if np.any(np.asarray(getattr(model, field)) != 0.0)
+    }
+    if any(match.electrical for match in check.found):
+        there["gain"] = FITTED
+    return "{ " + ", ".join(f'{name} = "{share}"' for name, share in there.items()) + " }"
+
+
+def _quoted(text: str) -> str:
+    return json.dumps(text, ensure_ascii=False)
+
+
+def _key(name: str) -> str:
+    return name if re.fullmatch(r"[A-Za-z0-9_-]+", name) else _quoted(name)

@@ -1,0 +1,63 @@
+"""noise_of, rest_of, typical_sizes: what a log tells of noise and of sizes."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from scipy.signal import detrend
+
+from ves_twin.core.types import FloatArray
+from ves_twin.machines.mjcf.draft.motion import spectrum
+
+REST, FEWEST = 0.2, 50
+"""Least length of a stretch at rest [s] and its rows."""
+
+STILL = 6.0
+"""Noises within which positions stay in a stretch at rest: peak to peak of white noise."""
+
+TYPICAL = 95.0
+"""Percentile of a size that is typical: peaks are left to single rows."""
+
+
+def noise_of(values: FloatArray, period: float, rest: slice | None) -> tuple[float, str]:
+    """Sd of one row, as of white noise, and how it was told.
+
+    At rest the scatter about a straight line; else the power in the highest octave as if it were
+    that of all, no less than rounding to the smallest step makes, step / sqrt(12).
+    """
+    steps = np.abs(np.diff(np.unique(values)))
+    rounding = float(np.min(steps)) / np.sqrt(12.0) if len(steps) else 0.0
+    if rest is not None and float(np.ptp(values[rest])) > 0.0:
+        return max(float(np.std(detrend(values[rest]))), rounding), "scatter at rest"
+    frequency, power = spectrum(values, period)
+    level = float(np.median(power[frequency >= 0.25 / period]))
+    return max(np.sqrt(level * 0.5 / period), rounding), "highest octave"
+
+
+def rest_of(positions: Sequence[FloatArray], period: float) -> slice | None:
+    """The longest stretch at the begin of a log in which nothing moves; None where it moves."""
+    last = len(positions[0]) if positions else 0
+    for values in positions:
+        noise, _ = noise_of(values, period, None)
+        low, high = np.minimum.accumulate(values), np.maximum.accumulate(values)
+        moved = np.flatnonzero(high - low > STILL * noise)
+        last = min(last, int(moved[0]) if len(moved) else len(values))
+    last -= last // 5  # where it begins to move it is within the noise still
+    return slice(0, last) if last >= max(FEWEST, REST / period) else None
+
+
+def typical(values: FloatArray) -> float:
+    """Size that a column has, to two digits."""
+    return two_digits(float(np.percentile(np.abs(values), TYPICAL)))
+
+
+def travel(values: FloatArray) -> float:
+    """Distance that a column goes to and fro, without the outermost rows, to two digits."""
+    low, high = np.percentile(values, (100.0 - TYPICAL, TYPICAL))
+    return two_digits(float(high - low))
+
+
+def two_digits(value: float) -> float:
+    """A number as a person would write it."""
+    return float(f"{value:.2g}")

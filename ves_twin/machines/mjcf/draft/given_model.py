@@ -1,0 +1,123 @@
+"""GivenModel: a user's MJCF or URDF file, compiled, with motors where a URDF has none."""
+
+from __future__ import annotations
+
+import xml.etree.ElementTree as ElementTree
+from dataclasses import dataclass
+from pathlib import Path
+
+import mujoco
+
+from ves_twin.core.engine_log import log_engine
+from ves_twin.core.errors import FileAccessError, InvalidInputError, one_line
+from ves_twin.machines.mjcf.draft.spots import single_joints
+
+SMALLEST_INERTIA = 1e-4
+"""Least inertia [kg m^2] of a URDF's link: files of arms round those of a wrist to zero."""
+
+DRIVEN = frozenset({"revolute", "prismatic", "continuous"})
+
+
+@dataclass(frozen=True)
+class GivenModel:
+    """A model, and the text of the file that must be written for it.
+
+    Attributes:
+        path: of the user's file.
+        model: compiled.
+        text: MJCF to write beside the machine's file; empty where the user's file will do.
+        notes: what was done to it, a sentence each.
+    """
+
+    path: Path
+    model: mujoco.MjModel
+    text: str
+    notes: tuple[str, ...]
+
+    @staticmethod
+    def read(path: Path) -> GivenModel:
+        """A model of either kind.
+
+        Raises:
+            FileAccessError: missing file.
+            InvalidInputError: neither MJCF nor URDF, links without inertia whose shapes are
+                missing, no joint with a name that turns or slides, or no actuators.
+        """
+        try:
+            root = ElementTree.fromstring(path.read_bytes())
+        except OSError as error:
+            raise FileAccessError(f"model file '{path}': {error.strerror}") from None
+        except ElementTree.ParseError as error:
+            raise InvalidInputError(str(path), one_line(error), "an MJCF or URDF file") from None
+        log_engine()
+        if root.tag == "robot":
+            found = _of_urdf(path, root)
+        else:
+            try:
+                model = mujoco.MjModel.from_xml_path(str(path))
+            except (ValueError, mujoco.FatalError) as error:
+                raise InvalidInputError(str(path), one_line(error), "a MuJoCo model") from None
+            found = GivenModel(path, model, "", ())
+        if not single_joints(found.model):
+            came = "no named joint that turns or slides"
+            raise InvalidInputError(str(path), came, "one; name= in <joint> names it")
+        if found.model.nu == 0:
+            expected = 'one that drives a joint, as <motor name="drive" joint="..."/>'
+            raise InvalidInputError(str(path), "a model without actuators", expected)
+        return found
+
+
+def _of_urdf(path: Path, root: ElementTree.Element) -> GivenModel:
+    """As MJCF without shapes, contacts and stops, with a motor at each joint that is driven."""
+    notes, missing = [], _without_shapes(root, path)
+    if missing:
+        few = ", ".join(missing[:2])
+        notes.append(f"{len(missing)} mesh files are missing ({few}): shapes are left out")
+    thin = [name for link in root.iter("link") if (name := _thickened(link))]
+    if thin:
+        words = f"inertia of {', '.join(thin)} is zero: {SMALLEST_INERTIA:g} kg m^2 is taken"
+        notes.append(words)
+    bare = [link.get("name", "?") for link in root.iter("link") if link.find("inertial") is None]
+    driven = [j.get("name", "") for j in root.iter("joint") if j.get("type") in DRIVEN]
+    try:
+        spec = mujoco.MjSpec.from_string(ElementTree.tostring(root, encoding="unicode"))
+        for name in driven:
+            joint = spec.joint(name)
+            joint.limited, joint.actfrclimited = 0, 0
+            actuator = spec.add_actuator(name=f"motor_{name}", target=name)
+            actuator.trntype = mujoco.mjtTrn.mjTRN_JOINT
+        spec.option.disableflags |= int(mujoco.mjtDisableBit.mjDSBL_CONTACT)
+        model = spec.compile()
+        text = str(spec.to_xml())
+    except (ValueError, mujoco.FatalError) as error:
+        hint = f"; without <inertial>: {', '.join(bare)}" if bare else ""
+        expected = "a URDF whose moving links have <inertial>"
+        raise InvalidInputError(str(path), one_line(error) + hint, expected) from None
+    notes.append(
+        f"a motor was added at each of {len(driven)} joints; stops and contacts are left out"
+    )
+    return GivenModel(path, model, text, tuple(notes))
+
+
+def _without_shapes(root: ElementTree.Element, path: Path) -> list[str]:
+    """Takes shapes off; the mesh files among them that are not there."""
+    missing = []
+    for link in root.iter("link"):
+        for part in (*link.findall("visual"), *link.findall("collision")):
+            for mesh in part.iter("mesh"):
+                name = mesh.get("filename", "")
+                if not (path.parent / name.removeprefix("file://")).is_file():
+                    missing.append(name.rpartition("/")[2])
+            link.remove(part)
+    return sorted(set(missing))
+
+
+def _thickened(link: ElementTree.Element) -> str:
+    """Gives a link whose inertia is rounded to zero the smallest one; its name if so."""
+    mass, inertia = link.find("inertial/mass"), link.find("inertial/inertia")
+    if mass is None or inertia is None or float(mass.get("value", "0")) <= 0.0:
+        return ""
+    axes = [axis for axis in ("ixx", "iyy", "izz") if float(inertia.get(axis, "0")) <= 0.0]
+    for axis in axes:
+        inertia.set(axis, f"{SMALLEST_INERTIA:g}")
+    return link.get("name", "") if axes else ""

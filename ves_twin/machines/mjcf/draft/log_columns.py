@@ -1,0 +1,149 @@
+"""LogColumns: the one table of a log that a draft is made of, on an even clock."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from ves_twin.core.errors import InvalidInputError
+from ves_twin.core.types import BoolArray, FloatArray
+from ves_twin.data.clock_fields import clock_fields
+from ves_twin.data.clock_report import GAP, usual_step
+from ves_twin.data.log import Column, Kind
+from ves_twin.data.open_log import open_log
+
+FEWEST = 64
+"""Rows below which neither noise nor motion can be told."""
+
+FILLED = 0.9
+"""Share of its rows that a column must fill to be used; of the others the stretch is."""
+
+JITTER = 0.01
+"""Departure of a step from the usual one from which on a draft says so."""
+
+
+@dataclass(frozen=True)
+class LogColumns:
+    """Columns of numbers of a log.
+
+    Attributes:
+        file: its name.
+        clock: column of the time; empty where the rate was given.
+        scale: of its unit [s].
+        period: usual step [s].
+        values: column -> rows (n,) at even steps.
+        units: column -> unit as the file or the name says it; empty if neither does.
+        constant: columns that never change.
+        empty: columns that hold no number in many rows.
+        notes: what a reader of the draft should know, a sentence each.
+        window: first and last time of the rows that are used [s]; None: all.
+    """
+
+    file: str
+    clock: str
+    scale: float
+    period: float
+    values: Mapping[str, FloatArray]
+    units: Mapping[str, str]
+    constant: tuple[str, ...]
+    empty: tuple[str, ...]
+    notes: tuple[str, ...]
+    window: tuple[float, float] | None = None
+
+    @property
+    def rows(self) -> int:
+        """Of every column."""
+        return len(next(iter(self.values.values())))
+
+    @staticmethod
+    def read(path: Path, rate: float | None = None) -> LogColumns:
+        """The largest table of a log.
+
+        Args:
+            path: of any format that `ves-twin inspect` reads.
+            rate: rows a second, where no column tells the time.
+
+        Raises:
+            FileAccessError: missing file.
+            InvalidInputError: too few rows or columns, or no clock.
+        """
+        log = open_log(path)
+        table = max(log.tables, key=lambda t: (t.rows or 0) * len(t.columns) or len(t.columns))
+        names = [c.name for c in table.columns if c.kind is not Kind.TEXT]
+        read = log.read(table.name, names) if names else {}
+        if len(names) < 2 or min(map(len, read.values())) < FEWEST:
+            rows = min(map(len, read.values()), default=0)
+            came = f"{len(names)} columns of numbers, {rows} rows"
+            raise InvalidInputError(path.name, came, f"2 columns and {FEWEST} rows at least")
+        fields = [f for f in clock_fields(table.columns, read) if not f.counter]
+        if not fields and rate is None:
+            came = f"no column that rises like a time among {', '.join(names[:8])}"
+            raise InvalidInputError(path.name, came, "one, or --rate with the rows a second")
+        notes: list[str] = []
+        clock, scale, period = "", 1.0, 1.0 / (rate or 1.0)
+        if rate is None:
+            clock, scale = fields[0].column, fields[0].scale
+            if fields[0].guessed:
+                notes.append(f"clock {clock}: no unit is given, {fields[0].unit} is a guess")
+            period = _period(scale * read[clock], clock, notes)
+        return _sorted(table.columns, read, clock, scale, period, path, notes)
+
+
+def _period(time: FloatArray, clock: str, notes: list[str]) -> float:
+    period = usual_step(time[np.isfinite(time)])
+    steps = np.diff(time)
+    wide = steps[steps > GAP * period]
+    if len(wide):
+        notes.append(f"clock {clock}: {len(wide)} gaps, the longest of {np.max(wide):.4g} s")
+    if np.any(steps <= 0.0):
+        notes.append(f"clock {clock}: {np.count_nonzero(steps <= 0.0)} steps do not rise")
+    even = steps[(steps > 0.0) & (steps <= GAP * period)]
+    if len(even) and np.max(np.abs(even - period)) > JITTER * period:
+        share = np.max(np.abs(even - period)) / period
+        notes.append(f"clock {clock}: steps jitter by {share:.0%}, rows are read at even steps")
+    return period
+
+
+def _sorted(
+    columns: Sequence[Column],
+    read: Mapping[str, FloatArray],
+    clock: str,
+    scale: float,
+    period: float,
+    path: Path,
+    notes: list[str],
+) -> LogColumns:
+    """Columns by what can be done with them: the longest stretch that all fill, at even steps."""
+    rows = len(next(iter(read.values())))
+    time = scale * read[clock] if clock else period * np.arange(rows)
+    good = np.isfinite(time) & np.concatenate([[True], np.diff(time) > 0.0])
+    full = {n: np.isfinite(v) for n, v in read.items() if n != clock}
+    empty = [n for n, finite in full.items() if np.mean(finite) < FILLED]
+    stretch = _longest(np.all([f for n, f in full.items() if n not in empty] or [good], axis=0))
+    window = None
+    if stretch != slice(0, rows):
+        window = (float(time[stretch][0] - time[0]), float(time[stretch][-1] - time[0]))
+        notes.append(f"rows with empty cells are left out: window {window[0]:g} to {window[1]:g} s")
+    own = time[stretch][good[stretch]]
+    even = own[0] + period * np.arange(int((own[-1] - own[0]) / period + 1.0 + 1e-6))
+    used = {n: read[n][stretch][good[stretch]] for n in full if n not in empty}
+    constant = [n for n, v in used.items() if np.ptp(v) == 0.0]
+    values = {n: np.asarray(np.interp(even, own, v)) for n, v in used.items() if n not in constant}
+    if not values or len(even) < FEWEST:
+        came = f"constant: {', '.join(constant) or 'none'}; with gaps: {', '.join(empty) or 'none'}"
+        raise InvalidInputError(f"columns of {path.name}", came, "columns of numbers that change")
+    units = {c.name: c.unit for c in columns}
+    told = tuple(constant), tuple(empty), tuple(notes)
+    return LogColumns(path.name, clock, scale, period, values, units, *told, window)
+
+
+def _longest(good: BoolArray) -> slice:
+    """The longest stretch of good rows."""
+    edges = np.flatnonzero(np.diff(np.concatenate([[0], good.astype(int), [0]])))
+    if not len(edges):
+        return slice(0, 0)
+    at = int(np.argmax(edges[1::2] - edges[::2]))
+    return slice(int(edges[2 * at]), int(edges[2 * at + 1]))

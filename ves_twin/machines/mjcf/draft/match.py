@@ -1,0 +1,161 @@
+"""Match: a column of a log and the spot of a model that it is taken for."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.optimize import linear_sum_assignment
+
+from ves_twin.core.units import to_unit
+from ves_twin.data.unit_names import bare_name, spelled
+from ves_twin.machines.mjcf.description import LAB_UNITS
+from ves_twin.machines.mjcf.draft.log_columns import LogColumns
+from ves_twin.machines.mjcf.draft.names import (
+    ELECTRICAL,
+    ENOUGH,
+    Likeness,
+    is_setpoint,
+    likeness,
+)
+from ves_twin.machines.mjcf.draft.spots import Quantity, Spot
+
+RIVAL = 2.0
+"""A rival is worth telling where its likeness is less than this below: one piece of evidence."""
+
+
+@dataclass(frozen=True)
+class Match:
+    """A column taken for a spot.
+
+    Attributes:
+        column: of the log.
+        spot: of the model.
+        unit: of the column's numbers; the spot's where nobody says one.
+        told: whether file or name give the unit.
+        scale: the spot's number is scale times the column in its unit.
+        reasons: why.
+        others: what else the column could be, or which column would do as well.
+    """
+
+    column: str
+    spot: Spot
+    unit: str
+    told: bool
+    scale: float
+    reasons: tuple[str, ...]
+    others: tuple[str, ...] = ()
+
+    @property
+    def electrical(self) -> bool:
+        """Whether a constant that no unit tells stands between the column and the spot."""
+        effort = self.spot.quantity is Quantity.EFFORT
+        return effort and self.told and self.unit in ELECTRICAL and self.spot.unit != self.unit
+
+    @property
+    def factor(self) -> float:
+        """What the column is multiplied with to give the spot's number in SI."""
+        if self.electrical or LAB_UNITS.get(self.unit, self.unit) != self.spot.unit:
+            return self.scale
+        return self.scale * to_unit(self.unit, self.spot.unit, self.column)[0]
+
+
+@dataclass(frozen=True)
+class Matches:
+    """All of a log.
+
+    Attributes:
+        found: columns with their spots, in the order of the model.
+        setpoints: columns that say what was asked for.
+        left: columns that fit no spot, each with the reason.
+    """
+
+    found: tuple[Match, ...]
+    setpoints: tuple[str, ...]
+    left: Mapping[str, str]
+
+    def of(self, quantity: Quantity) -> list[Match]:
+        """Of one quantity."""
+        return [m for m in self.found if m.spot.quantity is quantity]
+
+
+def matched(log: LogColumns, spots: Sequence[Spot]) -> Matches:
+    """The assignment of columns to spots with the greatest sum of evidence.
+
+    A column is matched where two pieces of evidence speak for it; what is not stays in `left`.
+    """
+    columns = list(log.values)
+    alike = {
+        (c, s): found for c in columns for s in spots if (found := _likeness(log, c, s, spots))
+    }
+    score = np.zeros((len(columns), len(spots)))
+    for i, column in enumerate(columns):
+        for k, spot in enumerate(spots):
+            found = alike.get((column, spot))
+            score[i, k] = max(found.score, 0.0) if found else 0.0
+    rows, places = linear_sum_assignment(score, maximize=True)
+    chosen = {
+        columns[i]: spots[k] for i, k in zip(rows, places, strict=True) if score[i, k] >= ENOUGH
+    }
+    chosen = _whole_sensors(chosen)
+    found_ = [_match(log, c, s, alike, chosen) for c, s in chosen.items()]
+    order = {spot: i for i, spot in enumerate(spots)}
+    found_.sort(key=lambda m: order[m.spot])
+    rest = [c for c in columns if c not in chosen]
+    setpoints = tuple(c for c in rest if is_setpoint(c))
+    left = {c: _reason(c, spots, alike) for c in rest if c not in setpoints}
+    left |= dict.fromkeys(log.constant, "never changes")
+    left |= dict.fromkeys(log.empty, "has rows without a number")
+    return Matches(tuple(found_), setpoints, left)
+
+
+def _likeness(log: LogColumns, column: str, spot: Spot, spots: Sequence[Spot]) -> Likeness | None:
+    rivals = [s for s in spots if (s.quantity, s.unit) == (spot.quantity, spot.unit)]
+    stem = re.sub(r"\d+", "#", bare_name(column))
+    family = [c for c in log.values if re.sub(r"\d+", "#", bare_name(c)) == stem]
+    zero = any(re.findall(r"\d+", bare_name(c))[-1:] == ["0"] for c in family)
+    return likeness(column, log.units.get(column, ""), spot, len(rivals) == 1, zero)
+
+
+def _whole_sensors(chosen: dict[str, Spot]) -> dict[str, Spot]:
+    """Without sensors of which not every number has a column."""
+    there = [(s.name, s.axis) for s in chosen.values() if s.quantity is Quantity.SENSOR]
+    counts = {name: sum(n == name for n, _ in there) for name, _ in there}
+    return {
+        c: s
+        for c, s in chosen.items()
+        if s.quantity is not Quantity.SENSOR or counts[s.name] == s.width
+    }
+
+
+def _match(
+    log: LogColumns,
+    column: str,
+    spot: Spot,
+    alike: Mapping[tuple[str, Spot], Likeness],
+    chosen: Mapping[str, Spot],
+) -> Match:
+    own, unit = alike[column, spot], spelled(log.units.get(column, ""))
+    near = own.score - RIVAL
+    others = [
+        f"it could be {s.label}"
+        for (c, s), found in alike.items()
+        if c == column and s != spot and found.score > near and s not in chosen.values()
+    ]
+    others += [
+        f"{c} would do as well"
+        for (c, s), found in alike.items()
+        if s == spot and c != column and found.score > near and c not in chosen
+    ]
+    return Match(column, spot, unit or spot.unit, bool(unit), 1.0, own.reasons, tuple(others))
+
+
+def _reason(column: str, spots: Sequence[Spot], alike: Mapping[tuple[str, Spot], Likeness]) -> str:
+    """Why a column is left over."""
+    near = [(f.score, s) for (c, s), f in alike.items() if c == column and f.score > 0.0]
+    if not near:
+        return "nothing in the model has this name or unit"
+    best = max(near, key=lambda pair: pair[0])[1]
+    return f"nearest is {best.label}"

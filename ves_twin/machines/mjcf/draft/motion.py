@@ -1,0 +1,84 @@
+"""Motion: efforts that a model needs for a recorded motion, in the band that a log resolves."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import mujoco
+import numpy as np
+from scipy.signal import welch
+
+from ves_twin.core.types import FloatArray
+from ves_twin.machines.mjcf.inverse import smoothed
+
+MOST = 1500
+"""Rows at which the efforts are computed: enough to tell a sign, and a tenth of a second."""
+
+
+@dataclass(frozen=True)
+class Motion:
+    """Efforts of the joints along a motion, at some of its rows.
+
+    Attributes:
+        rows: numbers of these rows (m,).
+        speed: of the degrees of freedom (m, nv).
+        effort: needed at each, of the model as it is (m, nv).
+        steady: of them what gravity, springs and speeds need (m, nv); the rest is inertia.
+    """
+
+    rows: np.ndarray
+    speed: FloatArray
+    effort: FloatArray
+    steady: FloatArray
+
+
+def motion_of(
+    model: mujoco.MjModel, positions: Mapping[str, FloatArray], period: float, corner: float
+) -> Motion:
+    """MuJoCo's inverse dynamics along recorded positions, low-passed without phase.
+
+    Args:
+        model: without contacts of interest.
+        positions: joint -> position [m or rad] (n,) at even rows; others stay where they are.
+        period: of the rows [s].
+        corner: of the low-pass [Hz].
+    """
+    count = len(next(iter(positions.values())))
+    trim = min(int(1.0 / (corner * period)), count // 8)
+    rows = np.unique(np.linspace(trim, count - 1 - trim, MOST).astype(int))
+    q = np.tile(model.qpos0, (len(rows), 1))
+    v, a = np.zeros((2, len(rows), model.nv))
+    for joint, values in positions.items():
+        at, dof = int(model.joint(joint).qposadr[0]), int(model.joint(joint).dofadr[0])
+        smooth = smoothed(values, period, corner)
+        speed = np.gradient(smooth, period)
+        q[:, at], v[:, dof] = smooth[rows], speed[rows]
+        a[:, dof] = np.gradient(speed, period)[rows]
+    quiet = model.opt.disableflags
+    model.opt.disableflags |= int(mujoco.mjtDisableBit.mjDSBL_CONSTRAINT)
+    try:
+        data = mujoco.MjData(model)
+        effort, steady = np.zeros((2, len(rows), model.nv))
+        for k in range(len(rows)):
+            for pull, into in ((a[k], effort), (np.zeros(model.nv), steady)):
+                data.qpos[:], data.qvel[:], data.qacc[:] = q[k], v[k], pull
+                mujoco.mj_inverse(model, data)
+                into[k] = data.qfrc_inverse
+    finally:
+        model.opt.disableflags = quiet
+    return Motion(rows, v, effort, steady)
+
+
+def spectrum(values: FloatArray, period: float) -> tuple[FloatArray, FloatArray]:
+    """Frequencies [Hz] and power per Hz of a column."""
+    rows = min(len(values) // 4, 1024)
+    found = welch(values - values.mean(), 1.0 / period, nperseg=rows, detrend="linear")
+    return np.asarray(found[0]), np.asarray(found[1])
+
+
+def band_of(values: FloatArray, period: float, share: float) -> float:
+    """Frequency [Hz] below which a share of a column's power lies."""
+    frequency, power = spectrum(values, period)
+    sums = np.cumsum(power)
+    return float(frequency[min(int(np.searchsorted(sums, share * sums[-1])), len(sums) - 1)])

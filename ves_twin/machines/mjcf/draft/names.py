@@ -1,0 +1,137 @@
+"""likeness: how well a column's name and unit fit a spot of a model, and why."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+
+from ves_twin.data.unit_names import bare_name, spelled
+from ves_twin.machines.mjcf.description import LAB_UNITS
+from ves_twin.machines.mjcf.draft.spots import Quantity, Spot, words_of
+
+POSITION = (
+    "q qm qg pos position angle angles ang theta th phi psi alpha x y z s stroke disp displacement"
+    " travel encoder enc length rot rotation"
+)
+SPEED = "dq qd qdot dqdt vel velocity speed rate omega w v dx dy xd xdot thetadot gyro qv"
+EFFORT = (
+    "tau torque trq tq force f fx u effort load moment current i cur amp volt voltage pwm drive"
+    " motor control ctrl command input"
+)
+KIND_WORDS = {
+    Quantity.POSITION: frozenset(POSITION.split()),
+    Quantity.SPEED: frozenset(SPEED.split()),
+    Quantity.EFFORT: frozenset(EFFORT.split()),
+}
+"""Words that laboratories use for a quantity; a column's name is cut at digits and bars."""
+
+ASKED = "ref reference set setpoint des desired target goal demand nominal cmd command commanded"
+SETPOINT = frozenset(ASKED.split())
+MEASURED = frozenset({"meas", "measured", "act", "actual", "fb", "feedback"})
+
+ELECTRICAL = frozenset({"V", "mV", "A", "mA", "%", "counts", "W", "1"})
+"""Units of what drives an actuator when it is no effort: a constant stands between."""
+
+EFFORTS = frozenset({"N", "N*m", "kN", "mN*m", "rad", "m", "rad/s", "m/s"})
+"""Units that the command of an actuator with a gain or a servo may have."""
+
+VOLTS = re.compile(r"V[_.]?\d*")
+"""Names that mean volts of whatever, not a speed."""
+
+OTHER = frozenset({"ddq", "qdd", "acc", "accel", "acceleration", "temp", "temperature"})
+"""Words of what neither joints nor motors have."""
+
+ARTICLE = {q: f"{'an' if q.value[0] == 'e' else 'a'} {q.value}" for q in Quantity}
+
+UNIT, KIND, WORD, NUMBER, ONLY = 2.0, 2.0, 2.0, 2.0, 1.0
+"""Weight of each piece of evidence: any two of them are worth a match."""
+
+WRONG_NUMBER, WRONG_KIND, WISH = -3.0, -2.0, -0.5
+"""Weight against: another number, a word of another quantity, what was asked for, not measured."""
+
+ENOUGH = 2.5
+"""Likeness from which a column is matched: two pieces of evidence, or one and no rival spot."""
+
+
+@dataclass(frozen=True)
+class Likeness:
+    """How well a column fits a spot.
+
+    Attributes:
+        score: sum of the weights of the evidence.
+        reasons: what speaks for it.
+    """
+
+    score: float
+    reasons: tuple[str, ...]
+
+
+def likeness(column: str, unit: str, spot: Spot, only: bool, zero: bool) -> Likeness | None:
+    """The evidence of a column's name and unit for a spot; None where they rule it out.
+
+    Args:
+        column: its name.
+        unit: as the log says it; empty if it does not.
+        spot: of the model.
+        only: no other spot of the model has this quantity and unit.
+        zero: columns of this kind are numbered from 0.
+    """
+    words = _words(column)
+    wish = is_setpoint(column) and not MEASURED & words
+    if _ruled_out(words, wish, spot) or not _unit_fits(spelled(unit), spot):
+        return None
+    evidence = [(UNIT, f"unit {unit}")] if unit else []
+    evidence += _of_kind(words, bool(unit), wish, spot) + _of_words(words, spot)
+    numbers = [int(w) for w in words_of(bare_name(column)) if w.isdigit()]
+    if numbers and not only:
+        same = numbers[-1] + int(zero) == spot.number
+        evidence.append((NUMBER, f"number {numbers[-1]}") if same else (WRONG_NUMBER, ""))
+    if only:
+        evidence.append((ONLY, f"the only {spot.quantity.value} of the model in {spot.unit}"))
+    score = sum(weight for weight, _ in evidence) + (WISH if wish else 0.0)
+    return Likeness(score, tuple(words for _, words in evidence if words))
+
+
+def _words(column: str) -> frozenset[str]:
+    words = frozenset(words_of(bare_name(column)))
+    return words - {"v"} if VOLTS.fullmatch(bare_name(column)) else words
+
+
+def _ruled_out(words: frozenset[str], wish: bool, spot: Spot) -> bool:
+    """What a joint or motor has nothing of, and what was asked for where it is measured."""
+    if spot.quantity is Quantity.SENSOR:
+        return False
+    return bool(OTHER & words) or (wish and spot.quantity is not Quantity.EFFORT)
+
+
+def _of_kind(words: frozenset[str], told: bool, wish: bool, spot: Spot) -> list[tuple[float, str]]:
+    """Words of a quantity; where a unit decides, a word of another one does not count against."""
+    named = {quantity for quantity, known in KIND_WORDS.items() if known & words}
+    if spot.quantity is Quantity.EFFORT and spot.unit == "1" and wish:
+        return [(KIND, "asked for, as the command of a servo")]
+    if spot.quantity in named and not (told and len(named) > 1):
+        return [(KIND, f"name of {ARTICLE[spot.quantity]}")]
+    return [] if not named or told or spot.quantity in named else [(WRONG_KIND, "")]
+
+
+def _of_words(words: frozenset[str], spot: Spot) -> list[tuple[float, str]]:
+    """Words that the column shares with the spot; single letters are axes of sensors."""
+    short = 1 if spot.quantity is Quantity.SENSOR else 2
+    shared = {w for w in spot.words & words if len(w) >= short and not w.isdigit()}
+    return [(WORD, f"shares '{max(sorted(shared), key=len)}' with {spot.label}")] if shared else []
+
+
+def is_setpoint(column: str) -> bool:
+    """Whether a column's name says that it was asked for rather than measured."""
+    return bool(SETPOINT & set(words_of(bare_name(column))))
+
+
+def _unit_fits(unit: str, spot: Spot) -> bool:
+    """Whether a unit can be a spot's; what drives a motor may be electrical."""
+    if not unit:
+        return True
+    if spot.quantity is Quantity.EFFORT and unit in ELECTRICAL:
+        return True
+    if spot.quantity is Quantity.EFFORT and spot.unit == "1":
+        return unit in EFFORTS
+    return LAB_UNITS.get(unit, unit) == spot.unit

@@ -1,0 +1,171 @@
+"""Spot: a number of a model that a column of a log may hold."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+from dataclasses import dataclass
+from enum import StrEnum
+
+import mujoco
+
+HINGE, SLIDE = int(mujoco.mjtJoint.mjJNT_HINGE), int(mujoco.mjtJoint.mjJNT_SLIDE)
+ON_JOINT = int(mujoco.mjtTrn.mjTRN_JOINT)
+
+SENSOR_UNITS = {
+    "ACCELEROMETER": "m/s^2",
+    "VELOCIMETER": "m/s",
+    "GYRO": "rad/s",
+    "FORCE": "N",
+    "TORQUE": "N*m",
+    "FRAMEPOS": "m",
+    "FRAMELINVEL": "m/s",
+    "FRAMEANGVEL": "rad/s",
+    "FRAMELINACC": "m/s^2",
+}
+"""Kinds of MuJoCo sensors that no joint or actuator stands for -> unit."""
+
+STANDS_FOR = {"JOINTPOS", "JOINTVEL", "ACTUATORFRC", "JOINTACTFRC"}
+"""Sensors whose number a joint or an actuator has, too; their names count as names of that."""
+
+
+class Quantity(StrEnum):
+    """What a column may measure."""
+
+    POSITION = "position"
+    SPEED = "speed"
+    EFFORT = "effort"
+    SENSOR = "sensor"
+
+
+@dataclass(frozen=True)
+class Spot:
+    """A place of a model with a number.
+
+    Attributes:
+        quantity: what it is.
+        name: of the joint, actuator or sensor.
+        unit: SI; "1" where an actuator's command is no effort.
+        words: that a column's name may share with it, lower case.
+        number: its place among those of its quantity from 1, or that of its name.
+        joint: that an actuator drives; empty where it drives none.
+        axis: of a sensor with several numbers, from 0.
+        width: numbers of that sensor.
+    """
+
+    quantity: Quantity
+    name: str
+    unit: str
+    words: frozenset[str]
+    number: int
+    joint: str = ""
+    axis: int = 0
+    width: int = 1
+
+    @property
+    def label(self) -> str:
+        """For people: "joint rail", "sensor imu, 2 of 3"."""
+        if self.quantity is Quantity.EFFORT:
+            return f"actuator {self.name}"
+        if self.quantity is Quantity.SENSOR:
+            return f"sensor {self.name}" + (
+                f", {self.axis + 1} of {self.width}" if self.width > 1 else ""
+            )
+        return f"{self.quantity.value} of joint {self.name}"
+
+
+def spots_of(model: mujoco.MjModel) -> tuple[Spot, ...]:
+    """Every spot of the named joints, actuators and sensors of a model."""
+    extra = _stand_ins(model)
+    found = _joints(model, extra) + _actuators(model, extra)
+    for i in range(model.nsensor):
+        sensor = model.sensor(i)
+        kind = mujoco.mjtSensor(int(model.sensor_type[i])).name.removeprefix("mjSENS_")
+        if kind in STANDS_FOR or not sensor.name:
+            continue
+        width = int(model.sensor_dim[i])
+        found += [
+            Spot(
+                Quantity.SENSOR,
+                sensor.name,
+                SENSOR_UNITS.get(kind, "1"),
+                frozenset({*words_of(sensor.name), *(("xyz"[axis],) if width == 3 else ())}),
+                axis + 1,
+                axis=axis,
+                width=width,
+            )
+            for axis in range(width)
+        ]
+    return tuple(found)
+
+
+def single_joints(model: mujoco.MjModel) -> list[int]:
+    """Numbers of the named joints that turn or slide."""
+    kinds = (HINGE, SLIDE)
+    return [i for i in range(model.njnt) if int(model.jnt_type[i]) in kinds and model.joint(i).name]
+
+
+def is_motor(model: mujoco.MjModel, actuator: int) -> bool:
+    """Whether a command times a constant is the effort at one joint."""
+    plain = int(mujoco.mjtBias.mjBIAS_NONE), int(mujoco.mjtDyn.mjDYN_NONE)
+    kinds = int(model.actuator_biastype[actuator]), int(model.actuator_dyntype[actuator])
+    return kinds == plain and int(model.actuator_trntype[actuator]) == ON_JOINT
+
+
+def words_of(name: str) -> tuple[str, ...]:
+    """Words and numbers of a name: "rightElbow_2" has right, elbow, 2."""
+    parts = re.findall(r"[A-Z]+(?![a-z])|[A-Z]?[a-z]+|\d+", name)
+    return tuple(part.lower() for part in parts)
+
+
+def _joints(model: mujoco.MjModel, extra: dict[tuple[str, int], set[str]]) -> list[Spot]:
+    joints = single_joints(model)
+    numbers = _numbers([model.joint(i).name for i in joints])
+    found = []
+    for quantity in (Quantity.POSITION, Quantity.SPEED):
+        for i, number in zip(joints, numbers, strict=True):
+            unit = "rad" if int(model.jnt_type[i]) == HINGE else "m"
+            unit += "/s" if quantity is Quantity.SPEED else ""
+            body = model.body(int(model.jnt_bodyid[i])).name
+            words = {*words_of(model.joint(i).name), *words_of(body)}
+            words |= extra.get((quantity, i), set())
+            found.append(Spot(quantity, model.joint(i).name, unit, frozenset(words), number))
+    return found
+
+
+def _actuators(model: mujoco.MjModel, extra: dict[tuple[str, int], set[str]]) -> list[Spot]:
+    named = [i for i in range(model.nu) if model.actuator(i).name]
+    numbers = _numbers([model.actuator(i).name for i in named])
+    found = []
+    for i, number in zip(named, numbers, strict=True):
+        joint, unit = "", "1"
+        if int(model.actuator_trntype[i]) == ON_JOINT:
+            at = int(model.actuator_trnid[i, 0])
+            joint = model.joint(at).name
+            gain = model.actuator_gear[i, 0] * model.actuator_gainprm[i, 0]
+            if is_motor(model, i) and gain == 1.0:
+                unit = "N*m" if int(model.jnt_type[at]) == HINGE else "N"
+        words = {*words_of(model.actuator(i).name), *words_of(joint)}
+        words |= extra.get((Quantity.EFFORT, i), set())
+        name = model.actuator(i).name
+        found.append(Spot(Quantity.EFFORT, name, unit, frozenset(words), number, joint))
+    return found
+
+
+def _stand_ins(model: mujoco.MjModel) -> dict[tuple[str, int], set[str]]:
+    """Words of the sensors that read a joint or an actuator: (quantity, number) -> words."""
+    of = {"JOINTPOS": Quantity.POSITION, "JOINTVEL": Quantity.SPEED, "ACTUATORFRC": Quantity.EFFORT}
+    found: dict[tuple[str, int], set[str]] = {}
+    for i in range(model.nsensor):
+        kind = mujoco.mjtSensor(int(model.sensor_type[i])).name.removeprefix("mjSENS_")
+        if kind in of:
+            at = of[kind], int(model.sensor_objid[i])
+            found.setdefault(at, set()).update(words_of(model.sensor(i).name))
+    return found
+
+
+def _numbers(names: Sequence[str]) -> list[int]:
+    """The number at the end of each name where all have one of their own, else their places."""
+    ends = [re.search(r"(\d+)\D*$", name) for name in names]
+    told = [int(end[1]) for end in ends if end]
+    return told if len(set(told)) == len(names) else list(range(1, len(names) + 1))

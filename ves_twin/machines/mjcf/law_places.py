@@ -1,0 +1,72 @@
+"""law_places: where a law may act on an MJCF machine, and on what it may depend."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from ves_twin.core.units import to_si
+from ves_twin.diagnosis.forward import Channel
+from ves_twin.diagnosis.law.place import LawPlace, Variable
+from ves_twin.effects.law import LawKind
+from ves_twin.machines.mjcf.description import Mode, Span
+from ves_twin.machines.mjcf.joint_units import joint_units
+from ves_twin.machines.mjcf.machine import Rig
+from ves_twin.machines.mjcf.places import SINGLE
+
+EFFORT_SHARE = 0.3
+"""Size that a law of efforts is expected to have, as a share of the typical effort: the amplitude
+that a machine is driven with."""
+
+READING_SHARE = 0.03
+"""The same of a column, as a share of its typical span: what a sensor that works may be off."""
+
+
+def law_places(rig: Rig, channels: Sequence[Channel], mode: Mode) -> tuple[LawPlace, ...]:
+    """Hinges and slides with a typical effort, and compared columns with a typical span.
+
+    Where motion is fed in, a law of what an actuator reads is one of the effort at its joint.
+    """
+    told, model, found = rig.description, rig.model, []
+    clock = Variable("time", "s")
+    for number in range(model.njnt):
+        joint = model.joint(number)
+        span = told.typical.joint.get(joint.name, Span())
+        if int(joint.type[0]) not in SINGLE or not span.effort:
+            continue
+        unit = "N*m" if joint_units(model, joint.name)[0] == "rad" else "N"
+        size = EFFORT_SHARE * to_si(span.effort, unit, f"typical.joint.{joint.name}.effort")
+        of = (*_motion(rig, joint.name), clock, *_commands(rig, joint.name, mode))
+        found.append(LawPlace(joint.name, LawKind.EFFORT, unit, size, of))
+    for channel in channels:
+        compared = told.compare[channel.signal]
+        span = told.typical.signal.get(channel.signal, Span())
+        if not span.span or (mode is Mode.MOTION and compared.actuator):
+            continue
+        size = READING_SHARE * to_si(span.span, channel.unit, f"typical.signal.{channel.signal}")
+        own = _motion(rig, compared.joint) if compared.joint else ()
+        of = (*own, clock, *(_commands(rig, compared.joint, mode) if own else ()))
+        found.append(LawPlace(channel.name, LawKind.READING, channel.unit, size, of))
+    return tuple(found)
+
+
+def _motion(rig: Rig, joint: str) -> tuple[Variable, ...]:
+    """A joint's own position and speed, then those of the others."""
+    model = rig.model
+    names = [model.joint(n).name for n in range(model.njnt) if int(model.jnt_type[n]) in SINGLE]
+    found = []
+    for name in [joint, *(other for other in names if other != joint)]:
+        position, speed = joint_units(model, name)
+        found += [Variable(f"position@{name}", position), Variable(f"speed@{name}", speed)]
+    return tuple(found)
+
+
+def _commands(rig: Rig, joint: str, mode: Mode) -> tuple[Variable, ...]:
+    """What is commanded of the actuators of a joint, where motion follows from it."""
+    if mode is Mode.MOTION:
+        return ()
+    told, model = rig.description, rig.model
+    names = [*told.drive.actuators, *told.controllers]
+    own = [
+        n for n in dict.fromkeys(names) if int(model.actuator(n).trnid[0]) == model.joint(joint).id
+    ]
+    return tuple(Variable(f"command@{name}", "") for name in own)

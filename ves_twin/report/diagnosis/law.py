@@ -1,0 +1,147 @@
+"""law_parts, law_sentences: a law in words, and as a picture with its band and what it rests on."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from ves_twin.core.quantity import digits, quantity, shares
+from ves_twin.core.types import FloatArray
+from ves_twin.diagnosis.law.result import LawFinding, LawRival
+from ves_twin.report.colours import AFTER, MEASURED
+from ves_twin.report.figure import new_figure, svg
+from ves_twin.report.html import Html, bullets, folded, paragraph, table
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+EQUAL = 3.0
+"""Nats within which another law is as good: odds below 20."""
+
+
+def law_sentences(law: LawFinding) -> list[str]:
+    """What was found, what it is worth, where it was seen, what else it could be."""
+    said = [capital(f"{law.words}.") if law.claimed else _missing(law)]
+    said.append(worth_sentence(law))
+    if law.seen:
+        spans = [
+            f"{name} from {quantity(low, unit)} to {quantity(high, unit)}"
+            for name, (low, high), unit in zip(law.of, law.seen, law.units, strict=False)
+        ]
+        said.append(f"Seen: {'; '.join(spans)}. Beyond that it is held, and was never measured.")
+    if law.form and law.of:
+        unit = law.units[0].replace("*", " ") or "units of the command"
+        said.append(
+            f"In the formula x is {law.of[0]} in {unit}, the {law.kind} is in {_unit(law)}."
+        )
+    if law.transient:
+        said.append("It depends on time: it holds for these recordings, and foretells nothing.")
+    said.append(_else(law))
+    return said
+
+
+def capital(text: str) -> str:
+    """With a capital first letter."""
+    return text[:1].upper() + text[1:]
+
+
+def _unit(law: LawFinding) -> str:
+    return law.units[-1].replace("*", " ")
+
+
+def _missing(law: LawFinding) -> str:
+    return (
+        f"No law is claimed: {law.reason}. What comes nearest is {law.words or law.place}: look"
+        " there first."
+    )
+
+
+def worth_sentence(law: LawFinding) -> str:
+    """What a law is worth, on held-out recordings and by odds."""
+    odds = f"{law.nats:.0f} nats more probable than no law"
+    gain = law.gain
+    if gain is None:
+        return f"It is {odds}. No held-out recording has tried it."
+    if gain.share is None:
+        return f"It is {odds}. The held-out recordings show nothing that it could improve."
+    share, low, high = shares(gain.share, gain.low, gain.high)
+    taken = f"{share} of the error beyond noise on held-out recordings ({low} to {high})"
+    return f"It takes away {taken}, and is {odds}."
+
+
+def equals(law: LawFinding) -> list[LawRival]:
+    """Other laws that leave noise and are as good."""
+    return [one for one in law.also if one.adequate and one.behind < EQUAL]
+
+
+def _else(law: LawFinding) -> str:
+    other = [one.form or one.label for one in equals(law)]
+    if other:
+        return f"As good, within {EQUAL:.0f} nats: {'; '.join(other)}."
+    return f"No other law that was tried comes within {EQUAL:.0f} nats."
+
+
+def law_parts(law: LawFinding) -> list[Html]:
+    """The section of a report."""
+    lines = law_sentences(law)
+    parts = [paragraph(lines[0], "lead open" if law.claimed else ""), bullets(lines[1:])]
+    if law.shape == "table":
+        parts.append(law_figure(law))
+    if law.numbers:
+        rows = [
+            (one.name, digits(one.value), f"{digits(one.low)} to {digits(one.high)}")
+            for one in law.numbers
+        ]
+        parts.append(table(("number", "value", "90 % interval"), rows))
+    if law.also:
+        others = [
+            (one.label, one.form, digits(one.behind), "yes" if one.adequate else "no")
+            for one in law.also
+        ]
+        head = ("law", "formula", "less probable, nats", "leaves noise")
+        parts.append(folded("What else was fitted", table(head, others)))
+    return parts
+
+
+def law_figure(law: LawFinding) -> Html:
+    """The picture of a law in a page."""
+    caption = (
+        f"{capital(law.kind)} at {law.place} against {law.of[0]}. Points: what the recordings ask"
+        " for along time, without any law. Line and band: the law."
+    )
+    return svg(draw_law(law), "law", caption)
+
+
+def draw_law(law: LawFinding, truth: Callable[[FloatArray], FloatArray] | None = None) -> Figure:
+    """A law against its variable, its band, and what the recordings ask for.
+
+    Args:
+        law: a table.
+        truth: the law itself, where somebody knows it.
+    """
+    figure = new_figure(3.6)
+    axes = figure.subplots()
+    low, high = law.seen[0]
+    x = np.array(law.knots[0])
+    inside = (x >= low) & (x <= high)
+    if law.points:
+        at, value, sd = (np.array(rows) for rows in law.points)
+        axes.errorbar(
+            at, value, 1.645 * sd, fmt="o", ms=3, lw=0.7, color=MEASURED, label="recordings"
+        )
+    if law.band:
+        along, least, most = law.band
+        axes.fill_between(
+            along, least, most, color=AFTER, alpha=0.25, linewidth=0, label="90 % band"
+        )
+    axes.plot(x[inside], np.array(law.values)[inside], color=AFTER, lw=1.4, label="law")
+    if truth is not None:
+        axes.plot(x[inside], truth(x[inside]), "--", color="black", lw=1.0, label="truth")
+    axes.set_xlabel(f"{law.of[0]}, {law.units[0].replace('*', ' ')}".rstrip(", "), fontsize=8)
+    axes.set_ylabel(f"{law.kind} at {law.place}, {law.units[-1].replace('*', ' ')}", fontsize=8)
+    axes.tick_params(labelsize=8)
+    axes.grid(color="#e8ebee", linewidth=0.6)
+    axes.legend(fontsize=7, frameon=False)
+    return figure
