@@ -158,8 +158,8 @@ class Ves2Machine(Machine):
         )
 
     def settings(self, settings: Settings, excitation: Excitation) -> Settings:
-        """Null rigs from the linearisation: fitting one of this many parameters takes 300 runs."""
-        return replace(settings, simulated_nulls=False)
+        """Null rigs from the linearisation, and a sparse bank: it has 200 parameters."""
+        return replace(settings, simulated_nulls=False, sparse=True)
 
     def extended(self, verdict: Verdict) -> Ves2Machine | None:
         """With the effects that are named; a filter's place is no part of a plant."""
