@@ -71,10 +71,11 @@ def control_environment(
 ) -> control.Environment:
     """The same for an environment of this room that is made already, with any wrappers.
 
+    Further options are `control.Environment`'s; the time limit is the environment's own.
+
     Args:
         env: the environment, not scaled.
         random: seed of the first episode; later ones go on from it.
-        environment_kwargs: of `control.Environment`; the time limit is the environment's own.
 
     Raises:
         InvalidInputError: a scaled environment, or one of another kind.
