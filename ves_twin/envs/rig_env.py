@@ -10,7 +10,6 @@ from typing import TYPE_CHECKING, Any, ClassVar, Generic
 import gymnasium as gym
 import numpy as np
 
-from ves_twin.core.compiled import say_that_it_compiles
 from ves_twin.core.errors import InvalidInputError, UnknownNameError
 from ves_twin.core.types import FloatArray, SingleArray
 from ves_twin.envs.channels import Channels
@@ -228,7 +227,6 @@ class RigEnv(gym.Env[Any, FloatArray], abc.ABC, Generic[Hand]):
         plant = self.plant_of(given)
         plant = plant if plant.effects else self.hidden(plant)
         scenario, goal = self.draw(scenario, given.get("goal"))
-        say_that_it_compiles()
         self._rig = self._rigs.find(plant, scenario) or self._rigs.keep(
             plant, *self.build(plant, scenario)
         )
