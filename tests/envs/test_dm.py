@@ -97,6 +97,8 @@ def test_steps_and_resets_that_the_rig_does_not_have_are_refused(damping):
         dm.load("ves2", "vibration_damping", visualize_reward=True)
     with pytest.raises(UnknownNameError, match="did you mean 'vibration_damping'"):
         dm.load("ves2", "vibration_dampin")
+    with pytest.raises(UnknownNameError, match="did you mean 'flat_observation'"):
+        dm.load("ves2", "vibration_damping", environment_kwargs={"flat_observations": True})
     with pytest.raises(UnknownNameError, match="domain"):
         dm.load("ves3", "vibration_damping")
     with pytest.raises(InvalidInputError, match="physical units"):

@@ -18,6 +18,9 @@ from ves_twin.envs.rig_env import rig_env
 
 DOMAIN = "ves2"
 
+OPTIONS = ("flat_observation",)
+"""What `environment_kwargs` may hold; time and step are the task's own."""
+
 
 def _task(identity: str) -> str:
     """An id as a task: VesTwin/VibrationDamping-v0 is vibration_damping; a -v1 stays as _v1."""
@@ -47,17 +50,20 @@ def load(
         task_name: of ALL_TASKS, for instance "vibration_damping".
         task_kwargs: `random`, the seed of the first episode, and what `gym.make` takes: `plant`,
             `scenario`.
-        environment_kwargs: of `control.Environment`: `flat_observation`.
+        environment_kwargs: `flat_observation`, as `control.Environment` takes it.
         visualize_reward: False.
 
     Raises:
-        UnknownNameError: no such domain or task.
+        UnknownNameError: no such domain, task or option.
         VesTwinError: a plant or scenario that cannot be used.
     """
     if domain_name != DOMAIN:
         raise UnknownNameError("domain", domain_name, [DOMAIN])
     if task_name not in _IDS:
         raise UnknownNameError(f"task of {DOMAIN}", task_name, _IDS)
+    for option in environment_kwargs or {}:
+        if option not in OPTIONS:
+            raise UnknownNameError("option of the environment", option, OPTIONS)
     given = dict(task_kwargs or {})
     seed = given.pop("random", None)
     env = gym.make(_IDS[task_name], disable_env_checker=True, **given)
@@ -67,14 +73,16 @@ def load(
 
 
 def control_environment(
-    env: gym.Env[Any, Any], random: int | None = None, **environment_kwargs: Any
+    env: gym.Env[Any, Any], random: int | None = None, flat_observation: bool = False
 ) -> control.Environment:
     """The same for an environment of this room that is made already, with any wrappers.
+
+    The time limit is the environment's own.
 
     Args:
         env: the environment, not scaled.
         random: seed of the first episode; later ones go on from it.
-        environment_kwargs: of `control.Environment`; the time limit is the environment's own.
+        flat_observation: whether observations are one vector, "observations".
 
     Raises:
         InvalidInputError: a scaled environment, or one of another kind.
@@ -85,6 +93,7 @@ def control_environment(
     ):
         raise InvalidInputError("environment", "other observations", "one in physical units")
     physics = RigPhysics(env, random)
-    flat = bool(environment_kwargs.get("flat_observation"))
-    task = RigTask(inner.observations, inner.actions, flat)
-    return control.Environment(physics, task, n_sub_steps=physics.steps, **environment_kwargs)
+    task = RigTask(inner.observations, inner.actions, flat_observation)
+    return control.Environment(
+        physics, task, n_sub_steps=physics.steps, flat_observation=flat_observation
+    )
