@@ -168,6 +168,13 @@ def test_a_diagnosis_drafts_in_passing_and_names_the_friction(bench, capsys):
     assert "a draft is never written over it" in capsys.readouterr().err
 
 
+def test_a_diagnosis_of_a_log_that_does_not_fit_drafts_nothing(bench, capsys):
+    (bench / "log.csv").write_text(log_of().replace("F [N]", "G [T]"))
+    assert main(["diagnose", "log.csv", "--model", "cart.xml", "--out", "out"]) == 2
+    assert "does not fit the model" in capsys.readouterr().err
+    assert not (bench / "out").exists()
+
+
 def test_a_model_and_a_plant_are_not_both_asked_for(bench, capsys):
     assert main(["diagnose", "log.csv", "--model", "cart.xml", "--plant", "pendulum"]) == 2
     assert "--model" in capsys.readouterr().err

@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
+    from ves_twin.core.held_folder import HeldFolder
     from ves_twin.machines.diagnose import Diagnosis
 
 from ves_twin.cli.given import Given, add_machine_options, bank_settings
@@ -69,7 +70,7 @@ def execute(arguments: argparse.Namespace) -> int:
 
     with output_folder(arguments.out, "diagnosis") as held:
         if arguments.model:
-            arguments.plant = _drafted(arguments, held.path)
+            arguments.plant = _drafted(arguments, held)
         found = _diagnose(arguments)
         _write(found, held.path, ", ".join(map(recording_name, arguments.measured)))
         text = found.verdict.to_json() if arguments.json else _text(found, held.path)
@@ -77,7 +78,7 @@ def execute(arguments: argparse.Namespace) -> int:
     return 0
 
 
-def _drafted(arguments: argparse.Namespace, folder: Path) -> str:
+def _drafted(arguments: argparse.Namespace, held: HeldFolder) -> str:
     """The machine's file, drafted beside what the diagnosis writes; what it rests on to stderr."""
     from ves_twin.cli.new_text import new_text
     from ves_twin.core.errors import InvalidInputError
@@ -86,7 +87,7 @@ def _drafted(arguments: argparse.Namespace, folder: Path) -> str:
     if arguments.plant or arguments.map:
         raise InvalidInputError("--model", arguments.model, "no --plant and no --map beside it")
     model, logs = Path(arguments.model), [Path(name) for name in arguments.measured]
-    drafted = new_machine(model, logs, folder / f"{model.stem}.toml")
+    drafted = new_machine(model, logs, held.path / f"{model.stem}.toml", held=held)
     print(new_text(drafted, model, logs), file=sys.stderr)
     return str(drafted.path)
 

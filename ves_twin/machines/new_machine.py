@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from contextlib import nullcontext
 from dataclasses import asdict, dataclass
 from pathlib import Path
 
 from ves_twin.core.errors import FileAccessError
-from ves_twin.core.held_folder import hold_file
+from ves_twin.core.held_folder import HeldFolder, hold_file
 from ves_twin.core.whole_file import write_whole
 from ves_twin.machines.mjcf.draft.draft import Draft, draft
 
@@ -33,7 +34,11 @@ class NewMachine:
 
 
 def new_machine(
-    model: Path, logs: Sequence[Path], out: Path, rate: float | None = None
+    model: Path,
+    logs: Sequence[Path],
+    out: Path,
+    rate: float | None = None,
+    held: HeldFolder | None = None,
 ) -> NewMachine:
     """Draft a machine's file and write it; of a URDF the model as MJCF beside it.
 
@@ -42,13 +47,14 @@ def new_machine(
         logs: recordings of the machine; the first is matched, the others must fit.
         out: the file to write.
         rate: rows a second [Hz], where no column tells the time.
+        held: the folder of `out`, where the caller holds it already.
 
     Raises:
         FileAccessError: a file that is missing, or one that a draft would be written over.
         InvalidInputError: files that cannot be read, or do not fit each other.
     """
     _refuse_existing(out)
-    with hold_file(out):
+    with hold_file(out) if held is None else nullcontext():
         found = draft(model, logs, out, rate)
         beside = out.with_suffix(".xml") if found.model_text else None
         if beside is not None:

@@ -75,17 +75,6 @@ def test_the_page_shows_the_draft_that_its_first_command_writes(tmp_path, monkey
     assert shown == tomllib.loads(Path("crane.toml").read_text())
 
 
-@pytest.mark.nightly
-@pytest.mark.timeout(1800)
-def test_the_page_goes_from_model_and_log_to_the_hidden_friction(tmp_path, monkeypatch):
-    monkeypatch.chdir(tmp_path)
-    write_logs()
-    for block in blocks("")[:2]:
-        for command in block.splitlines():
-            assert main(shlex.split(command)[1:]) == 0
-    assert holds(the_friction("diagnosed"))
-
-
 @pytest.mark.slow
 def test_the_file_of_the_appendix_names_the_hidden_friction(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)

@@ -87,6 +87,7 @@ def test_a_setting_of_its_own_comes_before_a_tolerance(tmp_path):
 def test_every_effect_sits_where_typical_sizes_are_known_and_commands_are_fed_in(tmp_path):
     rig = written(tmp_path)
     assert targets(rig, "coulomb_friction") == {"rail", "swing"}
+    assert not targets(rig, "friction_behind_gap")  # a law of four numbers is asked for by name
     assert targets(rig, "actuator_gain") == {"drive"}  # nothing is fed to the hinge's motor
     assert targets(rig, "body_mass") == {"cart", "arm", "hook"}
     assert targets(rig, "body_place") == {"hook.x", "hook.y", "hook.z"}  # on what turns

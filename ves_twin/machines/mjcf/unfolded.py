@@ -20,6 +20,9 @@ ALL = "*"
 OF_TURNING = (MassCentre.kind, BodyInertia.kind)
 """Kinds that a body which only slides does not show."""
 
+FEW = 2
+"""Numbers of a kind that a "*" means."""
+
 SLIDE = int(mujoco.mjtJoint.mjJNT_SLIDE)
 
 Key = tuple[str, str]
@@ -94,7 +97,7 @@ def _effects(told: RigDescription, model: mujoco.MjModel) -> Iterator[Allowed]:
     for one in told.effects:
         if ALL not in (one.kind, *one.on):
             continue
-        kinds = [one.kind] if one.kind != ALL else _every(told)
+        kinds = [one.kind] if one.kind != ALL else _every()
         found: list[Key] = []
         for kind in kinds:
             targets = _targets(kind, told, model) if ALL in one.on else one.on
@@ -109,16 +112,13 @@ def _effects(told: RigDescription, model: mujoco.MjModel) -> Iterator[Allowed]:
                 yield one.model_copy(update={"kind": kind, "on": (target,)})
 
 
-def _every(told: RigDescription) -> list[str]:
-    """Kinds that a "*" means: in forward simulation without what holds on to places.
+def _every() -> list[str]:
+    """Kinds that a "*" means: those of at most two numbers.
 
-    A step through a gap takes Python, and a prediction fifteen times as long; a file that asks for
-    such a kind by its name gets it.
+    A law of more has others as its limits and takes their place: friction behind a gap that of a
+    plain axis, which is then not found (EMPS). A file that asks for it by its name gets it.
     """
-    found = [name for name, kind in EFFECTS.items() if kind.anywhere]
-    if told.drive.mode is Mode.MOTION:
-        return found
-    return [name for name in found if EFFECTS[name].holder is Effect.holder]
+    return [name for name, kind in EFFECTS.items() if kind.anywhere and len(kind.sizes) <= FEW]
 
 
 def _fits(kind: str, target: str, told: RigDescription, model: mujoco.MjModel) -> bool:
