@@ -48,7 +48,7 @@ def test_unit_scale_offset_and_sign_act_in_that_order(lab):
     # a few roundings of doubles
     assert np.allclose(found.recording["arm.q"][:, 1], wanted, rtol=1e-15, atol=1e-15)
     assert np.isnan(found.recording["arm.q"][:, 0]).all()
-    assert "-(0.5 x +10) [deg] -> [rad]" in found.account.to_text()
+    assert "times 0.5, +10, deg converted to rad, sign turned" in found.account.to_text()
 
 
 def test_a_signal_of_ones_own_keeps_its_unit_through_a_file(lab, tmp_path):

@@ -8,12 +8,23 @@ from pathlib import Path
 import gymnasium as gym
 import pytest
 
+from ves_twin.envs.challenges import CHALLENGES
 from ves_twin.envs.evaluation import Trial, evaluate
 
-PAGE = (Path(__file__).parents[2] / "docs" / "environments.md").read_text(encoding="utf-8")
+PAGES = Path(__file__).parents[2] / "docs"
+PAGE = (PAGES / "environments.md").read_text(encoding="utf-8")
 
 
-@pytest.mark.parametrize("name", ["VibrationFreeReach", "PlatformTracking"])
+WITH_TABLES = [
+    "VibrationFreeReach",
+    "PlatformTracking",
+    "AdmittanceTuning",
+    "GravityCompensation",
+    "MicrogravityCapture",
+]
+
+
+@pytest.mark.parametrize("name", WITH_TABLES)
 def test_the_page_has_the_tables_of_the_environments(name):
     u = gym.make(f"VesTwin/{name}-v0").unwrapped
     assert u.observations.table() in PAGE
@@ -46,6 +57,21 @@ def test_the_policy_of_the_page_runs_and_damps(tmp_path):
         for name in (f"{path}:Brake", "still")
     ]
     assert scores[0] > scores[1]
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(("title", "said"), [("first.py", "'return': -"), ("pushed.py", "[")])
+def test_the_short_scripts_of_the_page_run(tmp_path, title, said):
+    path = tmp_path / title
+    path.write_text(block(title))
+    done = subprocess.run([sys.executable, str(path)], capture_output=True, text=True, check=True)
+    assert said in done.stdout
+
+
+def test_the_matrix_on_its_page_is_the_one_of_the_code():
+    page = (PAGES / "challenges.md").read_text(encoding="utf-8")
+    for challenge, rigs in CHALLENGES.items():
+        assert f"| {challenge} | {'' if rigs == 'none' else f'`{rigs}` '}|" in page
 
 
 @pytest.mark.slow

@@ -30,6 +30,12 @@ RIGS = {
     "train-v0": "28cd4ddf4daa762d",
     "test-v0": "02a013b7f5cd750f",
     "valves-v0": "e53683f54c7306ab",
+    "delay-v0": "079da759a28a7bbe",
+    "noise-v0": "9e8e79303259aa1a",
+    "unseen-v0": "c95234855c5adf04",
+    "two-v0": "9eb5cbb40b762a2d",
+    "drift-v0": "9973d282645319ca",
+    "limits-v0": "fff7c2e8e6981109",
     "payloads-v0": "5750f31322e71415",
 }
 """The same for the sets of rigs."""
@@ -83,7 +89,7 @@ def test_the_set_of_rigs_is_what_its_version_says(name):
         for kind, target, effect in sorted(drawn):
             sizes = ",".join(f"{value:.5e}" for value in effect.values.values())
             digest.update(f"{kind} {target} {sizes}".encode())
-        for key in sorted(RigSet.load(name).commissioning):
+        for key in sorted({*RigSet.load(name).commissioning, *RigSet.load(name).times}):
             digest.update(
                 " ".join(f"{v:.5e}" for v in plant.parameters.array(key).ravel()).encode()
             )

@@ -62,6 +62,11 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--against", metavar="FILE:Class", help="another policy; differences are seed by seed"
     )
+    parser.add_argument(
+        "--challenges",
+        action="store_true",
+        help="score on every set of the challenge matrix in turn, in place of --rigs",
+    )
     parser.add_argument("--plant", metavar="FILE", help="another plant: a name or a TOML file")
     parser.add_argument("--workers", type=int, default=1, metavar="N", help="processes (1)")
     parser.add_argument("--json", action="store_true", help="one JSON object on stdout")
@@ -77,6 +82,8 @@ def execute(arguments: argparse.Namespace) -> int:
         raise InvalidInputError("--seeds", arguments.seeds, f"1 to {MOST_SEEDS}")
     if not 1 <= arguments.workers <= 256:
         raise InvalidInputError("--workers", arguments.workers, "1 to 256")
+    if arguments.challenges:
+        return _challenges(arguments)
     names = [arguments.policy, *([arguments.against] if arguments.against else [])]
     trials = [Trial(arguments.environment, name, arguments.rigs, arguments.plant) for name in names]
     found: list[Evaluation] = []
@@ -100,6 +107,31 @@ def execute(arguments: argparse.Namespace) -> int:
         if differences:
             print(f"\n  less {arguments.against}, seed by seed")
             print("\n".join(_rows(differences, len(found[0].episodes))))
+    return 0
+
+
+def _challenges(arguments: argparse.Namespace) -> int:
+    """A row for each challenge: the score, its interval, how many episodes stopped early."""
+    from ves_twin.cli.progress import RunProgress
+    from ves_twin.envs.challenges import score_challenges
+    from ves_twin.envs.evaluation import NO_RIGS, Trial
+
+    trial = Trial(arguments.environment, arguments.policy, NO_RIGS, arguments.plant)
+    with RunProgress(arguments.environment, 1.0, unit="share") as progress:
+        rows = score_challenges(
+            trial, range(arguments.seeds), arguments.workers, lambda share, what: progress(share)
+        )
+    if arguments.json:
+        print(json_text({row.challenge: row.evaluation.to_dict() for row in rows}))
+        return 0
+    seeds = "1 seed" if arguments.seeds == 1 else f"{arguments.seeds} seeds"
+    print(f"{trial.environment}: {trial.policy}, {seeds} a challenge\n")
+    print(f"  {'':<14}{'return':>12}{'95 % interval':>24}{'stopped':>10}")
+    for row in rows:
+        found, outcomes = row.evaluation.figures["return"], row.evaluation.outcomes
+        interval = f"{found.low:.4g} to {found.high:.4g}" if arguments.seeds > 1 else "-"
+        stopped = len(row.evaluation.episodes) - outcomes.get("completed", 0)
+        print(f"  {row.challenge:<14}{found.iqm:>12.4g}{interval:>24}{stopped:>10}")
     return 0
 
 

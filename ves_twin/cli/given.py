@@ -86,6 +86,39 @@ def bank_settings() -> Settings:
     return Settings(workers=os.cpu_count() or 1, cache=cache_folder("diagnosis"))
 
 
+RECORDINGS = ("measured", "recordings", "held_out", "baseline", "commissioning", "against")
+"""Arguments of commands that name recordings."""
+
+
+def refuse_missing(arguments: argparse.Namespace) -> None:
+    """Say that a file is not there before what reads it is imported, which takes seconds.
+
+    Names of shipped machines, and files that may lie in a folder of public data, are left to
+    whoever knows them.
+
+    Args:
+        arguments: of any command; recordings are those of commands with `add_machine_options`.
+
+    Raises:
+        FileAccessError: a machine's file or a recording that is not there.
+    """
+    from ves_twin.core.errors import FileAccessError
+    from ves_twin.core.resources import find_resource
+
+    plant = getattr(arguments, "plant", None) or ""
+    if Path(plant).suffix:
+        find_resource("plant", "models", plant)
+    if not hasattr(arguments, "data") or not hasattr(arguments, "experiment"):
+        return
+    if arguments.data or os.environ.get("VES_TWIN_DATA") or (plant and not Path(plant).suffix):
+        return
+    for option in RECORDINGS:
+        given = getattr(arguments, option, None) or ()
+        for name in (given,) if isinstance(given, str) else given:
+            if not os.path.lexists(name):
+                raise FileAccessError(f"recording file '{name}' does not exist")
+
+
 def _machine_name(arguments: argparse.Namespace) -> str:
     """What --plant says, or else the experiment file; a path there starts from that file."""
     if arguments.plant or not arguments.experiment:

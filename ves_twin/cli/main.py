@@ -34,6 +34,7 @@ from ves_twin.cli import (
     view,
 )
 from ves_twin.cli.exit_codes import BAD_INPUT, DONE, INTERRUPTED
+from ves_twin.cli.given import refuse_missing
 from ves_twin.core.cache_folder import cache_folder
 from ves_twin.core.errors import (
     InvalidInputError,
@@ -176,6 +177,7 @@ def _answered(words: list[str]) -> int:
         found, rest = parser.parse_known_args(words)
         if rest:
             raise parser.unknown(rest[0])
+        refuse_missing(found)
         return int(COMMANDS[found.command].execute(found))
     except VesTwinError as error:
         print(f"ves-twin: {one_line(error)}", file=sys.stderr)

@@ -21,11 +21,16 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def execute(arguments: argparse.Namespace) -> int:
     """Draft, write, print what was guessed and why."""
+    from ves_twin.core.errors import FileAccessError
+
+    model, logs = Path(arguments.model), [Path(name) for name in arguments.logs]
+    for path in (model, *logs):
+        if not path.is_file():  # before what reads it is imported
+            raise FileAccessError(f"file '{path}' does not exist")
     from ves_twin.cli.new_text import new_text
     from ves_twin.core.units import to_si
     from ves_twin.machines.new_machine import new_machine
 
-    model, logs = Path(arguments.model), [Path(name) for name in arguments.logs]
     out = Path(arguments.out or f"{model.stem}.toml")
     rate = None if arguments.rate is None else _positive(to_si(arguments.rate, "Hz", "--rate"))
     found = new_machine(model, logs, out, rate)

@@ -22,23 +22,27 @@ def plan_text(plan: Plan) -> str:
     lines = [
         f"plan      {plan.programme}, {plan.seconds:.1f} s, {len(plan.channels)} columns"
         f" of {', '.join(signals)}",
-        f"basis     noise and tolerances as declared; threshold {plan.threshold:.1f} of chi^2,"
-        f" {_null(plan)}",
+        "rests on  the declared noise and the declared tolerances",
+        f"detected  means a score above {plan.threshold:.1f}, {_null(plan)}",
         "",
         f"{len(found)} of {len(plan.prospects)} causes would be found, seven times of ten, from"
-        " this size on",
+        " this size on; below the last column's size it may be a tolerance",
         *_table(found),
     ]
     if lost:
-        lines += ["", "nothing could be said about", *(f"  {line}" for line in _grouped(lost))]
+        lines += [
+            "",
+            "such a recording could say nothing about",
+            *(f"  {line}" for line in _grouped(lost)),
+        ]
     lines += ["", *_confused(plan.lookalikes)]
     return "\n".join(lines)
 
 
 def _null(plan: Plan) -> str:
     if plan.null == "simulated":
-        return "from simulated rigs in order"
-    return "that of white noise: rigs in order may raise it, and the sizes with it"
+        return "which simulated machines in order hardly ever reach"
+    return "which white noise hardly ever reaches; machines in order may ask for more"
 
 
 def _table(found: Sequence[Prospect]) -> list[str]:
@@ -86,9 +90,7 @@ def _confused(pairs: Sequence[Lookalike]) -> list[str]:
     if not pairs:
         return ["no two causes would be taken for one another"]
     ranked = sorted(pairs, key=lambda pair: pair.beyond is not None)
-    lines = [
-        f"{len(pairs)} times one cause would be taken for another, unless it is larger than given"
-    ]
+    lines = [f"{len(pairs)} pairs of a cause and what it would be taken for, and up to which size"]
     for pair in ranked[:MOST]:
         size = "at any size" if pair.beyond is None else f"up to {quantity(pair.beyond, pair.unit)}"
         lines.append(f"  {spoken(pair.cause)} for {spoken(pair.other)}, {size}")

@@ -55,10 +55,13 @@ class Target:
     def conversion(self) -> str:
         """What is done to the numbers, in words."""
         c = self.channel
-        inner = f"{c.scale:g} x" if c.scale != 1.0 else "x"
-        inner += f" {c.offset:+g}" if c.offset else ""
-        inner = f"-({inner})" if c.sign < 0 else inner
-        return f"{inner} [{self.unit}] -> [{self.si}]"
+        said = [f"times {c.scale:g}"] if c.scale != 1.0 else []
+        said += [f"{c.offset:+g}"] if c.offset else []
+        said += (
+            [f"{self.unit} converted to {self.si}"] if self.unit != self.si else [f"in {self.si}"]
+        )
+        said += ["sign turned"] if c.sign < 0 else []
+        return ", ".join(said)
 
 
 def resolve(log: Log, told: ImportMap, given: Sequence[Signal] = ()) -> tuple[Target, ...]:

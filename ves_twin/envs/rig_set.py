@@ -89,6 +89,7 @@ class _File(Part):
     source: str
     effects: tuple[DrawnEffect, ...] = ()
     commissioning: dict[str, Annotated[float, Field(gt=0)]] = Field(default_factory=dict)
+    times: dict[str, Annotated[float, Field(gt=0)]] = Field(default_factory=dict)
 
 
 @dataclass(frozen=True)
@@ -99,12 +100,14 @@ class RigSet:
         name: of the file.
         effects: what may be wrong.
         commissioning: parameter -> how many of its declared sd it is off, one sigma.
+        times: parameter -> factor of all of its values in every rig of the set.
         source: where the sizes come from.
     """
 
     name: str
     effects: tuple[DrawnEffect, ...]
     commissioning: dict[str, float]
+    times: dict[str, float]
     source: str
 
     @staticmethod
@@ -125,10 +128,10 @@ class RigSet:
         except ValidationError as error:
             raise refusal(error, path.name, _File) from None
         known = Plant.load(NOMINAL).parameters
-        for name in file.commissioning:
+        for name in (*file.commissioning, *file.times):
             if name not in known:
                 raise UnknownNameError(f"parameter in {path.name}", name, known)
-        return RigSet(path.stem, file.effects, file.commissioning, file.source)
+        return RigSet(path.stem, file.effects, file.commissioning, file.times, file.source)
 
     def draw(self, plant: Plant, rng: np.random.Generator) -> Plant:
         """One rig: a plant with drawn effects and drawn parameters.
@@ -137,6 +140,8 @@ class RigSet:
             InvalidInputError: a plant that has no room for what was drawn.
         """
         plant = commissioned(plant, self.commissioning, rng)
+        array = plant.parameters.array
+        plant = plant.with_values({k: (f * array(k)).tolist() for k, f in self.times.items()})
         return plant.extended(*(e for drawn in self.effects for e in drawn.draw(rng)))
 
 

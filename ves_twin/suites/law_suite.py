@@ -16,7 +16,6 @@ from ves_twin.core.recording.recording import Recording
 from ves_twin.core.whole_file import write_whole
 from ves_twin.diagnosis.law.result import LawFinding
 from ves_twin.diagnosis.settings import Settings
-from ves_twin.diagnosis.verdict import Kind
 from ves_twin.machines.diagnose import diagnose
 from ves_twin.machines.mjcf.machine import Rig
 from ves_twin.suites.hidden_law import LAW_KINDS, HiddenLaw, draw_law
@@ -250,8 +249,3 @@ def _against(hidden: HiddenLaw, law: Mapping[str, object]) -> tuple[float, float
     shift = float(np.mean(found - true))
     there = np.asarray(hidden.function(at)) + shift
     return rms, float(np.mean((there >= least) & (there <= most)))
-
-
-def in_order(score: LawScore) -> bool:
-    """Whether a machine without a law got none."""
-    return not score.claimed or score.verdict != Kind.UNKNOWN

@@ -7,19 +7,30 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+import two_link
 from numpy.testing import assert_allclose
-from pendulum import DAMPING, FED, MACHINE
+from pendulum import DAMPING, FED, MACHINE, SDS
 
 from ves_twin.core.errors import InvalidInputError, UnknownNameError
+from ves_twin.core.recording.recording import Recording, RecordingInfo
+from ves_twin.diagnosis.forward import Excitation
+from ves_twin.diagnosis.settings import Settings
+from ves_twin.diagnosis.verdict import Kind
 from ves_twin.effects.law import Law, LawKind, LawShape
+from ves_twin.machines.diagnose import diagnose
 from ves_twin.machines.mjcf.description import Mode
 from ves_twin.machines.mjcf.extend import write_rig
 from ves_twin.machines.mjcf.forward import MjcfForward
 from ves_twin.machines.mjcf.law_table import LawTable
 from ves_twin.machines.mjcf.machine import Rig
+from ves_twin.machines.mjcf.mjcf_machine import MjcfMachine
+from ves_twin.machines.mjcf.programmes import multisine
 
 FORWARD = MjcfForward.of(MACHINE)
 SPAN = (-20.0, 20.0)
+
+EXPLICIT = 0.02
+"""Share of a damping's own change that its effort makes when it is held over a step of 1 ms."""
 
 HELD = 0.01
 """rad, rad/s: what an effort that is held over a step of 2 ms may be off, of speeds of 6 rad/s;
@@ -146,3 +157,88 @@ def _toml(value: object) -> str:
     if isinstance(value, tuple):
         return f"[{', '.join(map(_toml, value))}]"
     return f'"{value}"' if isinstance(value, str) else str(value)
+
+
+@pytest.mark.parametrize("mode", list(Mode))
+def test_a_law_is_the_same_damping_however_a_machine_is_fed(tmp_path: Path, mode: Mode) -> None:
+    forward = MjcfForward.of(two_link.rig(tmp_path), mode)
+    law = Law(
+        "rail", LawKind.EFFORT, LawShape.TABLE, ("speed@rail",), ((-9.0, 9.0),), (18.0, -18.0)
+    )
+    fed = two_link.programme()
+    plain = forward.simulate(fed, {})
+    damped = forward.simulate(fed, {"viscous_friction@rail:damping": 6.0})
+    change = np.max(np.abs(damped - plain), axis=0)
+    off = np.max(np.abs(forward.simulate(fed, {}, False, (law,)) - damped), axis=0)
+    moved = change > 1e-9
+    assert moved.any()
+    assert np.all(off[moved] < EXPLICIT * change[moved])
+
+
+def test_a_law_of_another_joints_motion_needs_the_effort_back_that_it_gave(tmp_path: Path) -> None:
+    """Forward with the law, then inverse dynamics of that motion with it: what was asked for."""
+    machine, fed = two_link.rig(tmp_path), two_link.programme()
+    of, span = ("position@swing",), (-2.0, 2.0)
+    law = Law("rail", LawKind.EFFORT, LawShape.TABLE, of, (span,), (-12.0, 12.0))
+    forward = MjcfForward.of(machine, Mode.CONTROL)
+    rows = forward.simulate(fed, {}, False, (law,))
+    names = [channel.name for channel in forward.channels]
+    moved = {n: rows[:, [names.index(n)]] for n in ("cart.position", "arm.angle")}
+    back = Excitation("back", fed.time, {**fed.drive, **moved})
+    inner, gaps = slice(200, -200), []
+    for laws in ((law,), ()):
+        needed = MjcfForward.of(machine, Mode.MOTION).simulate(back, {}, False, laws)[:, 0]
+        asked = np.interp(fed.time - 0.001, fed.time, fed.drive["drive.force"][:, 0])
+        speed = np.gradient(moved["cart.position"][:, 0], fed.time)
+        sliding = np.abs(speed[inner]) > 0.05
+        gaps.append(float(np.sqrt(np.mean((needed - asked)[inner][sliding] ** 2))))
+    assert gaps[0] < 0.3  # friction's solver is soft: 2 % of the 15 N that act
+    assert gaps[1] > 5.0 * gaps[0]
+
+
+def promoted() -> Rig:
+    """The pendulum whose library has drag in the square of speed, by a file and no code."""
+    x = np.linspace(-12.0, 12.0, 201)
+    drag = LawTable(
+        place="joint",
+        kind=LawKind.EFFORT,
+        of=("speed@joint",),
+        knots=(tuple(x.tolist()),),
+        values=tuple((-0.01 * np.abs(x) * x).tolist()),
+        cause=True,
+    )
+    told = MACHINE.description.model_copy(update={"laws": (drag,)})
+    return replace(MACHINE, description=told)
+
+
+def test_a_law_that_is_a_cause_is_not_at_work_until_its_factor_is() -> None:
+    forward = MjcfForward.of(promoted())
+    (name,) = (p.name for p in forward.parameters if p.name.startswith("law@"))
+    assert np.array_equal(forward.simulate(FED, {}), FORWARD.simulate(FED, {}))
+    law = promoted().promoted[0].scaled(0.5).law
+    half = forward.simulate(FED, {name: 0.5})
+    assert np.array_equal(half, FORWARD.simulate(FED, {}, False, (law,)))
+    assert [h.label for h in forward.hypotheses if h.effect == "law"] == ["law@joint(speed@joint)"]
+
+
+@pytest.mark.slow
+def test_a_law_that_was_promoted_is_named_by_the_next_diagnosis(tmp_path: Path) -> None:
+    machine = MjcfMachine(promoted())
+    name = promoted().promoted[0].name
+    records = []
+    for seed in (1, 2):
+        fed = multisine(MACHINE, np.random.default_rng(seed), 4.0)
+        rows = machine.forward.simulate(fed, {name: 0.6})
+        rows = rows + np.random.default_rng(seed).standard_normal(rows.shape) * SDS
+        signals = {"joint.angle": rows[:, :1], "joint.rate": rows[:, 1:], **fed.drive}
+        records.append(Recording(fed.time, signals, RecordingInfo("measured", scenario="run")))
+    settings = Settings(nulls=30, cache=tmp_path)
+    found = diagnose(records[:1], machine, held_out=records[1:], settings=settings)
+    assert found.verdict.verdict is Kind.NAMED
+    (cause,) = found.verdict.causes
+    assert (cause.effect, cause.target) == ("law", "joint(speed@joint)")
+    (factor,) = cause.parameters.values()
+    assert factor.value == pytest.approx(0.6, abs=2.0 * (factor.high - factor.low))
+    assert isinstance(found.extended, MjcfMachine)
+    (law,) = found.extended.rig.laws
+    assert law.at(np.array([5.0]))[0] == pytest.approx(-0.01 * factor.value * 25.0, rel=1e-3)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from itertools import product
 
 import numpy as np
@@ -15,7 +16,7 @@ from ves_twin.diagnosis.law.fit_law import LawFit, fit_law
 from ves_twin.diagnosis.law.place import LawPlace
 from ves_twin.diagnosis.law.with_law import WithLaw
 from ves_twin.diagnosis.metric import Metric
-from ves_twin.diagnosis.runs import Progress, Runs, silent
+from ves_twin.diagnosis.runs import Progress, silent
 from ves_twin.effects.law import LawKind
 
 HELD = range(2, 15)
@@ -74,14 +75,8 @@ def _left(evidence: Evidence, candidates: Sequence[Candidate], about: LawFit) ->
     metric, point = Metric(about.jacobian), about.point
     found = []
     for candidate in candidates:
-        runs = evidence.runs
-        runs = Runs(
-            WithLaw(runs.forward, (candidate,)),  # type: ignore[arg-type]  # a LawForward
-            runs.programmes,
-            runs.columns,
-            runs.workers,
-            runs.holes,
-        )
+        forward = WithLaw(evidence.runs.forward, (candidate,))  # type: ignore[arg-type]
+        runs = replace(evidence.runs, forward=forward)
         shift = runs.origin
         shift[: len(about.fit.shift)] = about.fit.shift
         z = evidence.whitening.apply(evidence.measured - runs.one(shift))

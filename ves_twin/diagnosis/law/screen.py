@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -131,13 +131,7 @@ def law_screen(
 def columns_about(evidence: Evidence, candidate: Candidate, about: LawFit) -> FloatArray:
     """Whitened change (samples, k) for a unit of each number of a further law beside a fit."""
     whole = tuple(one for one in (about.candidate, candidate) if one is not None)
-    runs = Runs(
-        WithLaw(_plant(evidence), whole),
-        evidence.runs.programmes,
-        evidence.runs.columns,
-        evidence.runs.workers,
-        evidence.runs.holes,
-    )
+    runs = replace(evidence.runs, forward=WithLaw(_plant(evidence), whole))
     shift = runs.origin
     shift[: len(about.fit.shift)] = about.fit.shift
     law = np.arange(len(shift) - len(candidate.sd), len(shift))

@@ -5,8 +5,10 @@ from __future__ import annotations
 from ves_twin.envs.baselines.chase import Chase
 from ves_twin.envs.baselines.fixed_tuning import FixedTuning
 from ves_twin.envs.baselines.hot_spot_path import HotSpotPath
+from ves_twin.envs.baselines.inertial_damper import InertialDamper
 from ves_twin.envs.baselines.lag_feedforward import LagFeedforward
 from ves_twin.envs.baselines.lqg import Lqg
+from ves_twin.envs.baselines.mpc import Mpc
 from ves_twin.envs.baselines.planned_path import PlannedPath
 from ves_twin.envs.baselines.pped import Pped
 from ves_twin.envs.baselines.residual_filter import ResidualFilter
@@ -21,7 +23,9 @@ BASELINES: dict[str, type[Policy]] = {
     "hot_spot_path": HotSpotPath,
     "planned_path": PlannedPath,
     "pped": Pped,
+    "inertial_damper": InertialDamper,
     "lqg": Lqg,
+    "mpc": Mpc,
     "trained": TrainedDamping,
     "lag_feedforward": LagFeedforward,
     "fixed_tuning": FixedTuning,

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from typing import final
-
 import numpy as np
 from scipy.linalg import solve_discrete_are
 
@@ -24,7 +22,6 @@ READING = np.array([1e-5] * 6 + [2e-4] * 6)
 """Noise that the filter expects: pose [m, rad], joints and set-points [rad]; counts included."""
 
 
-@final
 class Lqg(Policy):
     """Minimises strain energy plus effort; sees pose, joints and set-points.
 
@@ -50,6 +47,7 @@ class Lqg(Policy):
         weight[30:33, 30:33] = RETURN * np.eye(3)
         effort = EFFORT * np.eye(m)
         value = solve_discrete_are(a, b, weight, effort)
+        self._weights = weight, effort, value
         self._gain = np.linalg.solve(effort + b.T @ value @ b, b.T @ value @ a)
         pushes = np.zeros((n + m, 6))
         pushes[6:12] = np.linalg.inv(briefing.emulated.mass) * briefing.step * PUSH
@@ -77,6 +75,10 @@ class Lqg(Policy):
         reading = np.concatenate([seen["platform.pose"], seen["arm.q"], seen["arm.command"]])
         off = reading - self._start - self._c @ self._state
         self._state = self._state + self._correction @ off
-        action = np.clip(-self._gain @ self._state, -1.0, 1.0)
+        action = self.decide(self._state)
         self._state = self._a @ self._state + self._b @ action
-        return np.asarray(action)
+        return action
+
+    def decide(self, state: FloatArray) -> FloatArray:
+        """The action for an estimated state: the optimal one without bounds, cut off at them."""
+        return np.asarray(np.clip(-self._gain @ state, -1.0, 1.0))

@@ -38,6 +38,9 @@ def extended(rig: Rig, verdict: Verdict) -> Rig:
         else:
             present.setdefault(entry.effect.kind, {})[entry.effect.target] = moved
     laws = {(law.place, law.of): law for law in rig.description.laws}
+    for one in rig.promoted:
+        if one.name in values:
+            laws[one.place, one.of] = one.scaled(values[one.name])
     if verdict.law is not None and verdict.law.claimed:
         new_law = _law_table(verdict.law)
         laws[new_law.place, new_law.of] = new_law

@@ -10,6 +10,12 @@ from pydantic import Field, model_validator
 from ves_twin.effects.law import Law, LawKind, LawShape
 from ves_twin.scenario.fields import Part
 
+CAUSE = "law"
+"""Effect that a law is as a cause."""
+
+FACTORS = (0.02, 2.0)
+"""Smallest and largest factor of a law that is a cause: its file has it as it was once found."""
+
 VALUES = {LawShape.STOP: 5, LawShape.PLAY: 1, LawShape.HOLD: 1}
 """Numbers of the shapes that have no knots."""
 
@@ -18,6 +24,7 @@ class LawTable(Part):
     """A law as a file has it, in SI; see docs/laws.md.
 
     `seen` are the ends of each variable between which it was found; beyond its knots it is held.
+    With `cause` it is not at work: it is a cause that a diagnosis may name, by a factor on it.
     """
 
     place: str
@@ -29,6 +36,7 @@ class LawTable(Part):
     form: str = ""
     seen: tuple[tuple[float, float], ...] = ()
     source: str = ""
+    cause: bool = False
 
     @model_validator(mode="after")
     def _fits(self) -> Self:
@@ -46,9 +54,21 @@ class LawTable(Part):
             raise ValueError(f"laws: a {self.shape} is of a reading")
         if len(self.knots) != counts or (counts and len(self.of) != counts):
             raise ValueError(f"laws: a {self.shape} has {counts} variables with knots each")
+        if self.cause and not self.knots:
+            raise ValueError("laws.cause: expected a table or a mesh, which a factor can scale")
         if len(self.values) != wanted:
             raise ValueError(f"laws.values: got {len(self.values)}, expected {wanted}")
         return self
+
+    @property
+    def name(self) -> str:
+        """Of the factor, where it is a cause."""
+        return f"{CAUSE}@{self.law.label}:factor"
+
+    def scaled(self, factor: float) -> LawTable:
+        """At work, so many times as strong."""
+        values = tuple(factor * value for value in self.values)
+        return self.model_copy(update={"values": values, "form": "", "cause": False})
 
     @property
     def law(self) -> Law:

@@ -21,6 +21,9 @@ from ves_twin.effects.place import Place
 from ves_twin.effects.registry import EFFECTS, attributes, build_anywhere, kind_anywhere
 from ves_twin.machines.mjcf.check_description import check_description
 from ves_twin.machines.mjcf.description import Allowed, RigDescription, Setting
+from ves_twin.machines.mjcf.law_table import CAUSE as LAW
+from ves_twin.machines.mjcf.law_table import FACTORS as LAW_FACTORS
+from ves_twin.machines.mjcf.law_table import LawTable
 from ves_twin.machines.mjcf.load_description import load_description
 from ves_twin.machines.mjcf.places import anywhere, place_of
 from ves_twin.machines.mjcf.stiff_friction import stiff_friction
@@ -138,8 +141,13 @@ class Rig:
 
     @property
     def laws(self) -> tuple[Law, ...]:
-        """Those of the description."""
-        return tuple(told.law for told in self.description.laws)
+        """Those of the description that are at work."""
+        return tuple(told.law for told in self.description.laws if not told.cause)
+
+    @property
+    def promoted(self) -> tuple[LawTable, ...]:
+        """Those of the description that are causes."""
+        return tuple(told for told in self.description.laws if told.cause)
 
     @cached_property
     def entries(self) -> tuple[Entry, ...]:
@@ -174,7 +182,8 @@ class Rig:
                 name = entry.name(m)
                 one = entry.per_recording
                 found.append(Parameter(name, m.unit, nominal, low, high, m.sd, one))
-        return tuple(found)
+        most = LAW_FACTORS[1]
+        return (*found, *(Parameter(law.name, "1", 0.0, -most, most) for law in self.promoted))
 
     @cached_property
     def hypotheses(self) -> tuple[Hypothesis, ...]:
@@ -199,7 +208,15 @@ class Rig:
                     starts=entry.effect.starts(entry.place),
                 )
             )
-        return tuple(found)
+        least, most = LAW_FACTORS
+        laws = (
+            Hypothesis(
+                LAW, law.law.label, (law.name,), (least,), (most,), source=law.source,
+                transient="time" in law.of,
+            )
+            for law in self.promoted
+        )  # fmt: skip
+        return (*found, *laws)
 
     @cached_property
     def identity(self) -> str:

@@ -59,7 +59,9 @@ class Work:
             effect.edit_model(model)
         if effects:
             mujoco.mj_setConst(model, mujoco.MjData(model))
-        return Work(rig, programme, model, effects, values, (*rig.laws, *laws))
+        factors = [(told, values.get(told.name, 0.0)) for told in rig.promoted]
+        named = (told.scaled(factor).law for told, factor in factors if factor != 0.0)
+        return Work(rig, programme, model, effects, values, (*rig.laws, *named, *laws))
 
     def at(self, element: Element, name: str) -> list[tuple[Effect, Place]]:
         """Effects on one target."""

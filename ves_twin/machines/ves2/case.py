@@ -78,7 +78,7 @@ class Ves2Case(Case):
 
     @property
     def same(self) -> Mapping[str, FloatArray]:
-        """Set-points within COUNTS; the gravity estimate answers to the run."""
+        """Set-points within COUNTS; the gravity estimate, which follows the run, is left out."""
         return {
             name: np.array([COUNTS[unit] for unit in SIGNALS[name].units])
             for name in self.inputs

@@ -47,7 +47,11 @@ def trust_sentence(recording: RecordingComparison) -> str:
             " recording and not from the rig."
         )
     if doubts:
-        return f"Data: no quality check failed; {len(doubts)} of {asked} cannot tell."
+        names = ", ".join(dict.fromkeys(c.name for c in doubts))
+        return (
+            f"Data: {asked - len(doubts)} of {asked} checks passed; {len(doubts)} could not be"
+            f" evaluated: {names}."
+        )
     return f"Data: all {asked} quality checks passed."
 
 

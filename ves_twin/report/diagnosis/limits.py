@@ -18,8 +18,8 @@ def rival_words(rival: Rival, best: bool) -> str:
     """Why an explanation was kept or lost."""
     if rival.standing is Standing.SCREENED:
         return (
-            f"not fitted: alone it was predicted to take {digits(rival.score)} of chi^2 away, less"
-            " than each of those that were fitted first"
+            "not fitted: its predicted improvement is smaller than that of the causes above"
+            f" ({digits(rival.score)} of chi^2)"
         )
     if best:
         return "the best"

@@ -183,7 +183,7 @@ def _pictures(verdict: Verdict, exhibit: ReportTraces) -> list[Html]:
         if exhibit.causes
         else "No cause is in the model: its tolerances alone are fitted."
     )
-    if verdict.verdict is Kind.UNKNOWN and exhibit.causes:
+    if verdict.verdict is Kind.UNKNOWN and exhibit.causes and not verdict.lawful:
         what += " That cause is the nearest that the library has, and was not accepted."
     left = [
         residuals_figure(exhibit.channels, traces, f"r{k}") for k, traces in enumerate(shown, 1)

@@ -79,3 +79,32 @@ def write(tmp_path):
         return path
 
     return written
+
+
+SWING = """
+<mujoco model="swing">
+  <option timestep="0.002" integrator="implicitfast"><flag contact="disable"/></option>
+  <worldbody><body name="link">
+    <joint name="joint" axis="0 1 0" damping="0.05"/>
+    <geom type="capsule" fromto="0 0 0 0 0 -0.4" size="0.03" mass="1"/>
+  </body></worldbody>
+  <actuator><motor name="drive" joint="joint"/></actuator>
+</mujoco>
+"""
+
+
+@pytest.fixture
+def swing(tmp_path) -> tuple[Path, dict[str, np.ndarray]]:
+    """A pendulum's file, and columns of it behind noisy sensors: t, tau, q, dq."""
+    path = tmp_path / "swing.xml"
+    path.write_text(SWING)
+    model, rng = mujoco.MjModel.from_xml_string(SWING), np.random.default_rng(8)
+    data, rows = mujoco.MjData(model), np.zeros((1500, 4))
+    for k in range(len(rows)):
+        tau = 0.3 * np.sin(0.04 * k) + 0.3 * np.sin(0.071 * k + 1.0)
+        noise = np.array([0.003, 0.02]) * rng.standard_normal(2)
+        rows[k] = 0.01 * k, tau, data.qpos[0] + noise[0], data.qvel[0] + noise[1]
+        data.ctrl[0] = tau
+        for _ in range(5):
+            mujoco.mj_step(model, data)
+    return path, dict(zip(("t", "tau", "q", "dq"), rows.T, strict=True))

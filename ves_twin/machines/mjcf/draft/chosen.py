@@ -42,6 +42,7 @@ class Chosen:
         rate: of the analysis [Hz].
         smoothing: corner of the low-pass of positions [Hz].
         noise: column -> sd of one row in SI, and how it was told.
+        either: the motion could be given as well.
     """
 
     mode: Mode
@@ -49,10 +50,27 @@ class Chosen:
     rate: float
     smoothing: float
     noise: Mapping[str, tuple[float, str]]
+    either: bool = False
 
 
-def chosen(log: LogColumns, matches: Matches, check: Checked, model: mujoco.MjModel) -> Chosen:
+def chosen(
+    log: LogColumns,
+    matches: Matches,
+    check: Checked,
+    model: mujoco.MjModel,
+    closed: str | None = None,
+) -> Chosen:
     """Choose the mode.
+
+    Where motion is given, the band is that of the efforts, or the lower one in which the noise of
+    differentiated positions stays below DROWNED: it grows with the band's power of 2.5.
+
+    Args:
+        log: the columns.
+        matches: as they were found.
+        check: as the model corrected them.
+        model: of the machine.
+        closed: why nothing can be predicted open loop; None: as far as is known, it can.
 
     Raises:
         InvalidInputError: no effort or command, or nothing that could be compared with it.
@@ -67,27 +85,28 @@ def chosen(log: LogColumns, matches: Matches, check: Checked, model: mujoco.MjMo
     for m in check.found:
         sd, how = noise_of(log.values[m.column], log.period, rest)
         noise[m.column] = (abs(m.factor) * sd, how)
-    band = BAND * max(band_of(log.values[m.column], log.period, 0.99) for m in efforts)
-    rate = float(np.clip(2.0 * band, *RATES))
     driven = {m.spot.joint for m in efforts if _is_plain(m, model)}
     single = {model.joint(i).name for i in single_joints(model)}
     if check.motion is None or driven != single or model.nv != len(single):
         free = sorted(single - driven)
         why = f"no effort is told at {', '.join(free)}" if free else "not every position is told"
         return Chosen(Mode.CONTROL, why, RATES[1], check.corner, noise)
-    sharp = {m.column: _induced(m, noise, efforts, model, log, rate / 2.0) for m in positions}
+    band = BAND * max(band_of(log.values[m.column], log.period, 0.99) for m in efforts)
+    band = float(np.clip(band, 0.5 * RATES[0], min(0.5 * RATES[1], 0.25 / log.period)))
+    share = max(_induced(m, noise, efforts, model, log, band)[1] for m in positions)
+    band = max(min(band, band * (DROWNED / max(share, 1e-9)) ** 0.4), 0.5 * RATES[0])
+    sharp = {m.column: _induced(m, noise, efforts, model, log, band) for m in positions}
     worst = max(sharp, key=lambda column: sharp[column][1])
-    if sharp[worst][1] > DROWNED:
-        why = (
-            f"{worst} is too noisy to be differentiated twice ({sharp[worst][1]:.0%} of the effort)"
-        )
-        return Chosen(Mode.CONTROL, why, RATES[1], check.corner, noise)
+    why = "every joint has a position and an effort"
+    if sharp[worst][1] > DROWNED and closed is None:
+        share = sharp[worst][1]
+        why = f"{worst} is too noisy to be differentiated twice ({share:.0%} of the effort)"
+        return Chosen(Mode.CONTROL, why, RATES[1], check.corner, noise, True)
     of_joint = {m.spot.name: sharp[m.column][0] for m in positions}
     for m in efforts:
         sd, how = noise[m.column]
         noise[m.column] = (float(np.hypot(sd, of_joint[m.spot.joint])), how)
-    why = "every joint has a position and an effort"
-    return Chosen(Mode.MOTION, why, rate, CORNER * rate / 2.0, noise)
+    return Chosen(Mode.MOTION, closed or why, 2.0 * band, CORNER * band, noise)
 
 
 def _is_plain(match: Match, model: mujoco.MjModel) -> bool:

@@ -27,6 +27,10 @@ from ves_twin.machines.mjcf.draft.spots import spots_of
 from ves_twin.machines.mjcf.forward import MjcfForward
 from ves_twin.machines.mjcf.machine import Rig
 
+HALF = 0.5
+"""Share of a signal that a model must explain open loop for commands to be fed in: an arm that
+drifts off its path tells nothing."""
+
 LONGEST = 10.0
 """Stretch of a log that is predicted to say how near the model is [s]."""
 
@@ -85,9 +89,18 @@ def draft(model: Path, logs: Sequence[Path], out: Path, rate: float | None = Non
     check = checked(log, matches, given.model)
     mode = chosen(log, matches, check, given.model)
     file = out.with_suffix(".xml").name if given.text else os.path.relpath(model, out.parent)
-    text = draft_text(out.stem, model, file, log, matches, check, mode, given.model)
-    rig = _rig(text, given, out)
+
+    def written(mode: Chosen) -> tuple[str, Rig]:
+        text = draft_text(out.stem, model, file, log, matches, check, mode, given.model)
+        return text, _rig(text, given, out)
+
+    text, rig = written(mode)
     explained = dict(check.explained) if mode.mode is Mode.MOTION else _predicted(rig, logs[0])
+    if mode.either and min(explained.values()) < HALF:
+        least = min(explained, key=lambda name: explained[name])
+        why = f"open loop the model explains {explained[least]:.0%} of {least}"
+        mode, explained = chosen(log, matches, check, given.model, why), dict(check.explained)
+        text, rig = written(mode)
     for other in logs[1:]:
         read_rig_recording(other, rig)
     left = dict(matches.left)
@@ -124,7 +137,8 @@ def _predicted(rig: Rig, log: Path) -> dict[str, float]:
     for column, channel in zip(found.T, forward.channels, strict=True):
         y = short[channel.signal][:, channel.column]
         rest, power = y - column, float(np.sum((y - y.mean()) ** 2)) or 1.0
-        shares.setdefault(channel.signal, []).append(1.0 - float(rest @ rest) / power)
+        share = 1.0 - float(rest @ rest) / power if np.all(np.isfinite(rest)) else 0.0
+        shares.setdefault(channel.signal, []).append(share)
     return {name: max(min(found), 0.0) for name, found in shares.items()}
 
 
