@@ -210,7 +210,7 @@ def prove(regression: Regression, held: Half, chosen: Sequence[int], more: int =
     null = more + _null([found[n].p for n in kept])
     while True:
         worst = max(kept, key=lambda n: (found[n].p, -found[n].total), default=None)
-        if worst is not None and found[worst].p > FALSE_SHARE * min(len(kept) / null, 1.0):
+        if worst is not None and found[worst].p > FALSE_SHARE * len(kept) / null:
             kept.remove(worst)
             dropped[worst] = found[worst].p
         else:
