@@ -71,6 +71,7 @@ bench: .venv/.dev
 	$(BIN)/python benchmarks/environments.py
 	$(BIN)/python benchmarks/many_environments.py
 	$(BIN)/python benchmarks/diagnosis_time.py
+	$(BIN)/python benchmarks/diagnosis_runs.py
 
 # into site/; warnings are errors. The variable silences an advertisement of the theme's.
 docs: .venv/.dev

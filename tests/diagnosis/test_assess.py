@@ -10,7 +10,7 @@ from scipy.stats import norm
 from toy import SD, Toy, programme
 
 from ves_twin.diagnosis.adequacy import cells, misfit
-from ves_twin.diagnosis.assess import STRANGE, assess, first_look, pull_limit
+from ves_twin.diagnosis.assess import GLANCE, STRANGE, assess, first_look, pull_limit
 from ves_twin.diagnosis.prewhitened import Prewhitened
 from ves_twin.diagnosis.runs import Runs
 from ves_twin.diagnosis.signature_library import build_bank
@@ -128,6 +128,54 @@ def test_the_second_look_is_about_the_fit_and_has_its_own_noise(bank):
     low, high = found.evidence.whitening.level.min(), found.evidence.whitening.level.max()
     # noise of three times its declared sd; a level may follow to the root of 2.5
     assert low == high == pytest.approx(np.sqrt(2.5))
+
+
+class Bent(Toy):
+    """The gain bends the slope's share, and runs are counted."""
+
+    count = 0
+
+    def simulate(self, programme, values, refined=False):
+        Bent.count += 1
+        gain = values.get("plant.gain", 1.0) - 1.0
+        slope = values.get("plant.slope", 0.0) * (1.0 + 200.0 * gain**2)
+        return super().simulate(programme, {**values, "plant.slope": slope})
+
+
+IN_ORDER = {"plant.gain": 1.06, "plant.slope": 0.15}
+LIMITS = (15.0, 5.0, 4.0)
+
+
+def assessed(values):
+    """A record of a bent plant, and how many runs it took to assess it."""
+    library = build_bank(Runs(Bent(), (FED,), (0, 1)))
+    clean = Bent().simulate(FED, values)
+    noise = np.random.default_rng(1).standard_normal(clean.shape) * SD
+    record = (clean + noise).astype(np.float32)
+    before = Bent.count
+    found = assess(record, library, whitening_declared(library.base.runs), *LIMITS)
+    return found, Bent.count - before
+
+
+def test_a_rig_in_order_that_bends_is_known_after_a_glance():
+    found, runs = assessed(IN_ORDER)
+    assert found.commissioning is not None
+    assert not found.exceeds(*LIMITS)
+    assert runs <= 1 + 2 * 2 * GLANCE  # where it begins, and two steps of two trials each
+
+
+def test_a_loud_cause_is_taken_out_of_the_commissioning_errors_that_it_was_fitted_with():
+    found, _ = assessed(IN_ORDER | {"bump.size": 0.8})
+    name = found.screen.bank.hypotheses[found.suspects[0].hypothesis].effect
+    assert name == "bump"
+    assert found.exceeds(*LIMITS)
+    fit = found.commissioning
+    assert fit.causes == ()
+    where = {a.parameter.name: i for i, a in enumerate(found.evidence.runs.coordinates)}
+    assert fit.shift[where["bump.size"]] == 0.0
+    # fitted beside the cause, to the noise of a fit: they do not mimic it
+    assert fit.shift[where["plant.gain"]] == pytest.approx(0.06, abs=2e-3)
+    assert found.suspects[0].sizes[0] == pytest.approx(0.8, rel=0.05)
 
 
 def test_a_fit_tells_while_noise_is_most_of_what_the_best_leaves(bank):

@@ -119,6 +119,33 @@ def test_what_no_cause_of_the_library_explains_is_not_adequate(looked):
     assert found.score > LEVELS.misfit
 
 
+def test_what_no_cause_comes_near_is_given_up_before_pairs_and_second_causes(looked, monkeypatch):
+    time = FED.time[:, None]
+    strange = 3.0 * np.sin(2.0 * np.pi * 9.0 * time) * np.where(time > 4.0, [1.0, -2.0], 0.0)
+    monkeypatch.setattr("ves_twin.diagnosis.explain.suspects_at", lambda *_: pytest.fail("looked"))
+    many = replace(QUICK, sparse=True)
+    found = explain(looked({}, added=strange), LEVELS, many)
+    assert found.far
+    assert not found.adequate
+    assert found.second is None
+    several = replace(many, causes=3)  # building up goes on from any of them
+    monkeypatch.undo()
+    assert not explain(looked({}, added=strange), LEVELS, several).far
+    assert not explain(looked({}, added=strange), LEVELS, QUICK).far
+    assert not explain(looked(ONE), LEVELS, many).far
+    assert not explain(looked(TWO), LEVELS, many).far
+
+
+def test_a_machine_of_many_parameters_names_the_same(looked):
+    for values in (ONE, TWO):
+        usual, sparse = (
+            explain(looked(values), LEVELS, replace(QUICK, sparse=many)) for many in (False, True)
+        )
+        assert effects(sparse.best) == effects(usual.best)
+        assert sparse.adequate == usual.adequate
+        assert sparse.best.sizes == pytest.approx(usual.best.sizes, rel=1e-3)
+
+
 def test_a_cause_that_takes_less_off_than_the_threshold_explains_nothing(looked):
     record = looked(ONE)
     fall = explain(record, LEVELS, QUICK)

@@ -11,8 +11,9 @@ from ves_twin.core.types import FloatArray, SingleArray
 from ves_twin.diagnosis.adequacy import cells, misfit
 from ves_twin.diagnosis.evidence import Evidence
 from ves_twin.diagnosis.prewhitened import Prewhitened
-from ves_twin.diagnosis.refine import Fit, bare_residual, refine, residual_about
+from ves_twin.diagnosis.refine import ROUGH, Fit, bare_residual, refine, residual_about
 from ves_twin.diagnosis.screen import Candidate, Screen
+from ves_twin.diagnosis.search import ITERATIONS, RELATIVE_CONVERGENCE
 from ves_twin.diagnosis.signature_library import SignatureLibrary
 from ves_twin.diagnosis.whitening import Whitening
 
@@ -21,6 +22,12 @@ ROUNDS = 3
 
 BEYOND = 1.5
 """Times its limit above which a score after a fit is a cause's: new columns move it by a tenth."""
+
+GLANCE = 2
+"""Steps of a first fit of commissioning errors: a rig in order is mostly known after them."""
+
+FAR = 4.0
+"""chi^2 for each sample from which new columns of commissioning errors are not worth their runs."""
 
 STRANGE = 1.5
 """chi^2 for each sample beside the best hypothesis above which it is not taken for the cause."""
@@ -37,7 +44,8 @@ class Assessment:
         left: z less what the nuisances explain.
         suspects: hypotheses by falling score.
         misfit: largest cell score.
-        commissioning: fit of commissioning errors alone; None while it was not needed.
+        commissioning: fit of commissioning errors alone, or those that were fitted beside the
+            likeliest cause, without it; None while it was not needed.
         bends: relative error of what fitted commissioning errors explain.
     """
 
@@ -94,6 +102,7 @@ def assess(
     level: float,
     pull: float,
     bends: float = 0.0,
+    sparse: bool = False,
 ) -> Assessment:
     """Screen a record; where it looks faulty, once more with the nuisances fitted in full.
 
@@ -105,6 +114,8 @@ def assess(
         level: misfit that leads to it.
         pull: commissioning error [sd] that leads to it.
         bends: relative error of what fitted commissioning errors explain.
+        sparse: whether a record that stays far from noise is fitted roughly, as a machine of many
+            parameters needs.
     """
     runs = bank.base.runs
     shaped = Prewhitened(bank, whitening)
@@ -112,16 +123,55 @@ def assess(
     if not first.exceeds(effect, level, pull):
         return first
     look = first
-    for rounds in (0, ROUNDS):
-        fit = _fitted(look, rounds)
+    for rounds, steps in ((0, GLANCE), (0, ITERATIONS), (ROUNDS, ITERATIONS)):
+        if sparse and rounds and _left(look) > FAR:
+            break
+        rough = sparse and _left(look) > STRANGE
+        fit = _fitted(look, rounds, steps, ROUGH if rough else RELATIVE_CONVERGENCE)
         own = whitening.adapted(whitening.apply(bare_residual(look.evidence, fit)))
         look = _look(Evidence(runs, measured, own), Screen(bank, own, shaped=shaped), fit)
         look = replace(look, bends=bends)
         if not look.exceeds(effect, level, pull):
             break
-        if look.score > BEYOND * look.limit(effect) and look.told:
+        if look.score <= BEYOND * look.limit(effect):
+            continue
+        if steps == GLANCE:
+            beside = _beside(first, look)
+            if beside is not None:
+                own = whitening.adapted(whitening.apply(bare_residual(look.evidence, beside)))
+                screen = Screen(bank, own, shaped=shaped)
+                fit = _without_causes(look.evidence, beside)
+                return replace(_look(Evidence(runs, measured, own), screen, fit), bends=bends)
+        elif look.told:
             break
     return look
+
+
+def _beside(first: Assessment, look: Assessment) -> Fit | None:
+    """The likeliest cause fitted with the commissioning errors; None if it leaves more than noise.
+
+    Commissioning errors alone, held against a loud fault, take hundreds of runs to mimic it, and
+    tell no more of its name.
+    """
+    base, tried = look.screen.bank.base, set[int]()
+    for seen in (look, first):
+        suspect = seen.suspects[0]
+        if suspect.hypothesis in tried:
+            break
+        tried.add(suspect.hypothesis)
+        cause = look.screen.bank.hypotheses[suspect.hypothesis]
+        shift = base.runs.depart(base.runs.origin, base.runs.indices(cause), suspect.sizes)
+        fit = refine(seen.evidence, (cause,), shift, base, enough=ROUGH)
+        if fit.chi2 < STRANGE * len(fit.residual):
+            return fit
+    return None
+
+
+def _without_causes(evidence: Evidence, fit: Fit) -> Fit:
+    """The commissioning errors of a fit, its causes taken out: one run, nothing fitted."""
+    shift = fit.shift.copy()
+    shift[fit.active[: len(fit.sizes)]] = 0.0
+    return refine(evidence, (), shift, fit.local, 0, fit.step_share, steps=0)
 
 
 def first_look(measured: SingleArray, shaped: Prewhitened) -> Assessment:
@@ -132,13 +182,20 @@ def first_look(measured: SingleArray, shaped: Prewhitened) -> Assessment:
     return _look(Evidence(bank.base.runs, measured, own), Screen(bank, own, shaped=shaped), None)
 
 
-def _fitted(look: Assessment, rounds: int) -> Fit:
+def _left(look: Assessment) -> float:
+    """What commissioning errors leave: chi^2 for each sample; 0 before they were fitted."""
+    fit = look.commissioning
+    return 0.0 if fit is None else fit.chi2 / len(fit.residual)
+
+
+def _fitted(look: Assessment, rounds: int, steps: int, enough: float) -> Fit:
     """Commissioning errors alone, from where the last look left them."""
     base = look.screen.bank.base
     if look.commissioning is None:
-        return refine(look.evidence, (), base.runs.origin, base, rounds)
+        return refine(look.evidence, (), base.runs.origin, base, rounds, steps=steps, enough=enough)
     last = look.commissioning
-    return refine(look.evidence, (), last.shift, last.local, rounds, last.step_share)
+    at = (last.shift, last.local, rounds, last.step_share)
+    return refine(look.evidence, (), *at, steps=steps, enough=enough)
 
 
 def _look(evidence: Evidence, screen: Screen, fit: Fit | None) -> Assessment:

@@ -14,12 +14,16 @@ from ves_twin.diagnosis.build_up.build_up import Built, build_up
 from ves_twin.diagnosis.build_up.halves import split
 from ves_twin.diagnosis.build_up.result import BuildUp
 from ves_twin.diagnosis.explain import Explanation, FitContext, explain
+from ves_twin.diagnosis.fit_job import FEW
 from ves_twin.diagnosis.forecast import forecast
 from ves_twin.diagnosis.forward import Forward
 from ves_twin.diagnosis.gain import Gain, held_out_gain
+from ves_twin.diagnosis.linearise import Linearisation, linearise
 from ves_twin.diagnosis.preprocess import Dataset, preprocess
-from ves_twin.diagnosis.refine import Fit, refine
+from ves_twin.diagnosis.refine import ROUGH, Fit, refine
+from ves_twin.diagnosis.runs import Runs
 from ves_twin.diagnosis.settings import Settings
+from ves_twin.diagnosis.signature_library import SignatureLibrary, build_bank, cached_bank
 from ves_twin.diagnosis.verdict import Kind
 from ves_twin.diagnosis.whitening import Whitening, whitening_of
 
@@ -29,10 +33,6 @@ takes up to nine tenths (viscous damping of a drag with the square of speed, of 
 
 MANY_FROM = 2
 """Causes beyond which more may be at work than a search of single ones and pairs can see."""
-
-ROUGH = 0.01
-"""Fall of chi^2, of all of it, that ends the search for the model before, where commissioning
-errors are held: it moves a gain by no more than that."""
 
 
 @dataclass(frozen=True)
@@ -60,11 +60,19 @@ class Conclusion:
 
 @dataclass(frozen=True)
 class HeldOut:
-    """Held-out recordings on the grid, and what a fit is worth there."""
+    """Held-out recordings on the grid, and what a fit is worth there.
+
+    Attributes:
+        seen: the recordings.
+        whitening: their noise.
+        settings: how sure.
+        base: their columns where nothing departs; None where none are kept.
+    """
 
     seen: Dataset
     whitening: Whitening
     settings: Settings
+    base: Linearisation | None = None
 
     @staticmethod
     def of(
@@ -76,7 +84,8 @@ class HeldOut:
     ) -> HeldOut:
         """Put them on the grid."""
         seen = preprocess(forward, recordings, workers, settings.rate)
-        return HeldOut(seen, whitening_of(seen.runs, standstill), settings)
+        base = _kept_columns(seen.runs, settings) if settings.sparse and settings.cache else None
+        return HeldOut(seen, whitening_of(seen.runs, standstill), settings, base)
 
     @property
     def pair(self) -> tuple[Dataset, Whitening]:
@@ -93,6 +102,7 @@ class HeldOut:
             after,
             self.settings.confidence,
             self.settings.seed,
+            self.base,
         )
 
     def gains(self, found: Explanation, before: Fit, least: float) -> list[Gain]:
@@ -110,6 +120,19 @@ class HeldOut:
         return [first, *(self.gain(before, fit) for fit in rivals)]
 
 
+def _kept_columns(runs: Runs, settings: Settings) -> Linearisation:
+    """Columns of held-out recordings where nothing departs, for all rigs that they are played on.
+
+    Raises:
+        FileAccessError: the folder of banks cannot be written.
+    """
+
+    def build() -> SignatureLibrary:
+        return build_bank(runs, hypotheses=(), base=linearise(runs, runs.origin))
+
+    return cached_bank(runs, settings.cache, build, "columns").base
+
+
 def _within(found: Explanation, limit: float) -> Fit:
     """Commissioning errors alone, none beyond a limit that a rig in order does not pass [sd].
 
@@ -121,7 +144,7 @@ def _within(found: Explanation, limit: float) -> Fit:
     best = found.best  # held within the limit it is a better start than what was strained
     start = np.where(best.local.runs.sd > 0.0, best.shift, 0.0)
     at = (start, best.local, 0, best.step_share)
-    return refine(found.evidence, (), *at, farthest=limit, enough=ROUGH)
+    return refine(found.evidence, (), *at, farthest=limit, enough=ROUGH, steps=FEW)
 
 
 def decide(
@@ -143,6 +166,8 @@ def decide(
     found = explain(desk.first, desk.thresholds, desk.settings, desk.progress)
     if found is None:
         return Conclusion(None, Kind.UNKNOWN)
+    if found.far:
+        return Conclusion(found, Kind.UNKNOWN, before=found.commissioning)
     built, cut = None, False
     if not found.adequate and desk.settings.causes > MANY_FROM:
         evidence = desk.first.evidence

@@ -148,9 +148,8 @@ class _View:
         bank = _bank(seen, chosen, progress).without(material.exclude)
         limits = cached_thresholds(bank, whitening, chosen, progress)
         pull = pull_limit(bank, chosen.alpha)
-        first = assess(
-            seen.measured, bank, whitening, limits.effect, limits.misfit, pull, limits.bends
-        )
+        levels = (limits.effect, limits.misfit, pull, limits.bends, chosen.sparse)
+        first = assess(seen.measured, bank, whitening, *levels)
         kappa, scale = naming_limit(bank, material.scale), material.scale
         findings = Findings(seen, first, limits, chosen, kappa, scale, widened, differs)
         return _View(forward, material, findings, pull, whitening)
@@ -238,9 +237,9 @@ def _changed(
 def _bank(seen: Dataset, settings: Settings, progress: Progress) -> SignatureLibrary:
     def build() -> SignatureLibrary:
         check_likeness(seen, seen.runs.one(seen.runs.origin))  # before minutes of simulation
-        return build_bank(seen.runs, progress=progress)
+        return build_bank(seen.runs, progress=progress, sparse=settings.sparse)
 
-    bank = cached_bank(seen.runs, settings.cache, build)
+    bank = cached_bank(seen.runs, settings.cache, build, settings.bank)
     check_likeness(seen, bank.base.prediction)
     return bank
 

@@ -8,8 +8,9 @@ import numpy as np
 
 from ves_twin.core.types import FloatArray
 from ves_twin.diagnosis.adequacy import Cell, cells, misfit
-from ves_twin.diagnosis.assess import Assessment, pull_limit
+from ves_twin.diagnosis.assess import STRANGE, Assessment, pull_limit
 from ves_twin.diagnosis.evidence import Evidence
+from ves_twin.diagnosis.fit_job import FitJob
 from ves_twin.diagnosis.forward import Hypothesis
 from ves_twin.diagnosis.linearise import Linearisation, renewed
 from ves_twin.diagnosis.null import Thresholds
@@ -39,6 +40,18 @@ SHORTLIST = 16
 """Further causes that are simulated anew at a fit: all of a small library, a tenth of VES II's,
 where what the nominal bank puts behind sixteen others does not come first at the fit."""
 
+TOGETHER = 2
+"""Causes that are looked for together here."""
+
+HOPE = 0.5
+"""Share of what is there that a cause, or a pair by the screen, must take to be gone on with."""
+
+SLACK = 0.1
+"""Share of chi^2 that a rough fit may still fall."""
+
+WORSE_START = 2.0
+"""Times the chi^2 of a fit from elsewhere from which one that has ended is not gone on with."""
+
 PAIRS = 6
 """Pairs of causes that are fitted with the full forward."""
 
@@ -59,6 +72,7 @@ class Explanation:
         before, after: cells without and with it.
         alone: fits of single causes, where only two together are adequate.
         hopeless: fits that were given up, under the first whitening.
+        far: whether no cause takes HOPE of what is there, nor two of them by the screen.
     """
 
     evidence: Evidence
@@ -73,6 +87,7 @@ class Explanation:
     after: tuple[Cell, ...]
     alone: tuple[Fit, ...] = ()
     hopeless: tuple[Fit, ...] = ()
+    far: bool = False
 
     @property
     def best(self) -> Fit:
@@ -111,7 +126,7 @@ def explain(
     """
     desk = FitContext(first, thresholds, settings, progress)
     single = _singles(desk)
-    if single is None or single.adequate or not pairs:
+    if single is None or single.adequate or single.far or not pairs:
         return single
     return _pairs(desk, single) or single
 
@@ -126,17 +141,23 @@ def _singles(desk: FitContext) -> Explanation | None:
         return None
     reach = suspects[0].score - max(FAR * suspects[0].score, CLOSE)
     near = [suspect for n, suspect in enumerate(suspects) if n < 2 or suspect.score >= reach]
-    found, fits = _tried(desk, near, [])
-    if not found.adequate and len(near) < len(suspects):
-        found, fits = _tried(desk, suspects[len(near) :], fits)
+    rest, fits = suspects[len(near) :], _tried(desk, near)
+    if rest and _far(desk, fits):
+        fits, rest = [*fits, *_tried(desk, rest)], []
+    if _far(desk, fits):
+        found = replace(judge(desk, fits, far=True), far=True)
+    else:
+        fits = _settled(desk.first.evidence, fits, desk)
+        found = judge(desk, fits)
+        if not found.adequate and rest:
+            fits = _settled(desk.first.evidence, [*fits, *_tried(desk, rest)], desk)
+            found = judge(desk, fits)
     judged = {fit.causes for fit in found.fits}
     return replace(found, hopeless=tuple(fit for fit in fits if fit.causes not in judged))
 
 
-def _tried(
-    desk: FitContext, suspects: list[Candidate], others: list[Fit]
-) -> tuple[Explanation, list[Fit]]:
-    """Suspects fitted and judged beside what was fitted before; every fit that was made."""
+def _tried(desk: FitContext, suspects: list[Candidate]) -> list[Fit]:
+    """Suspects fitted roughly, each from the sizes that it may have."""
     first = desk.first
     start = _start(first)
     jobs, owner = [], []
@@ -146,32 +167,26 @@ def _tried(
             jobs.append(_job(first.evidence, (hypothesis,), [sizes], start))
             owner.append(n)
     tried = _refined(jobs, desk, "fitting single causes")
-    fits = [
+    return [
         min((f for f, o in zip(tried, owner, strict=True) if o == n), key=lambda fit: fit.chi2)
         for n in sorted(set(owner))
     ]
-    settled = _settled(first.evidence, [*others, *fits], desk)
-    return judge(desk, settled), settled
 
 
-@dataclass(frozen=True)
-class _Job:
-    """One fit, as it travels to a process."""
+def _far(desk: FitContext, fits: list[Fit]) -> bool:
+    """Whether what causes take is so little that neither new columns nor a second one would do.
 
-    evidence: Evidence
-    causes: tuple[Hypothesis, ...]
-    shift: FloatArray
-    local: Linearisation
-    step_share: float
-
-    @staticmethod
-    def again(evidence: Evidence, fit: Fit, local: Linearisation | None = None) -> _Job:
-        """From where a fit ended, under another noise or with other columns."""
-        return _Job(evidence, fit.causes, fit.shift, local or fit.local, fit.step_share)
-
-    @staticmethod
-    def run(job: _Job) -> Fit:
-        return refine(job.evidence, job.causes, job.shift, job.local, step_share=job.step_share)
+    Of a machine of many parameters alone: of others runs are cheap, and laws may be looked for.
+    """
+    first, best = desk.first, min(fits, key=lambda fit: fit.chi2)
+    if not desk.settings.sparse or desk.settings.causes > TOGETHER or first.commissioning is None:
+        return False
+    noise = len(best.residual)
+    there = first.commissioning.chi2 - noise
+    if best.chi2 - noise < (1.0 - HOPE) * there or best.chi2 < STRANGE * noise:
+        return False
+    power = float(first.z @ first.left)
+    return all(one.score < HOPE * power for one, _ in first.screen.pairs(first.z, 1))
 
 
 def _job(
@@ -179,17 +194,17 @@ def _job(
     causes: tuple[Hypothesis, ...],
     sizes: list[FloatArray],
     start: _Start,
-) -> _Job:
-    """From a point and the columns there, with the causes at given sizes."""
+) -> FitJob:
+    """From a point and the columns there, with the causes at given sizes; roughly, at first."""
     runs, shift = evidence.runs, start.shift
     for cause, size in zip(causes, sizes, strict=True):
         shift = runs.depart(shift, runs.indices(cause), size)
-    return _Job(evidence, causes, shift, start.local, start.step_share)
+    return FitJob(evidence, causes, shift, start.local, start.step_share, True)
 
 
-def _refined(jobs: list[_Job], desk: FitContext, what: str) -> list[Fit]:
+def _refined(jobs: list[FitJob], desk: FitContext, what: str) -> list[Fit]:
     fits: list[Fit] = []
-    for fit in desk.first.evidence.runs.workers.map(_Job.run, jobs):
+    for fit in desk.first.evidence.runs.workers.map(FitJob.run, jobs):
         desk.progress(len(fits) / len(jobs), what)
         fits.append(fit)
     return fits
@@ -222,7 +237,7 @@ def _settled(evidence: Evidence, fits: list[Fit], desk: FitContext) -> list[Fit]
         settled = _again(evidence, leader, desk.settings.rounds)
         near = RIVAL_RATIO * settled.chi2
         others = [fit for fit in fits if fit is not leader]
-        jobs = [_Job.again(evidence, f, settled.local) for f in others if f.chi2 < near]
+        jobs = [FitJob.again(evidence, f, settled.local) for f in others if f.chi2 < near]
         rivals = _refined(jobs, desk, "fitting its rivals")
         fits = [settled, *rivals, *(fit for fit in others if fit.chi2 >= near)]
         if all(rival.chi2 >= settled.chi2 for rival in rivals):
@@ -236,7 +251,12 @@ def _again(evidence: Evidence, fit: Fit, rounds: int) -> Fit:
 
 
 def _starts(first: Assessment, suspect: Candidate) -> list[FloatArray]:
-    """The screen's scaled size, and the unscaled size of the bank nearest to the record."""
+    """The screen's scaled size, and the unscaled size of the bank nearest to the record.
+
+    One is enough of a cause that is linear: any size leads to the same.
+    """
+    if first.screen.bank.hypotheses[suspect.hypothesis].linear:
+        return [suspect.sizes]
     rows = first.screen.bank.entries(suspect.hypothesis)
     match = first.screen.match(first.z)[rows]
     nearest = rows[np.argmax(2.0 * match - first.screen.power[rows])]
@@ -245,8 +265,14 @@ def _starts(first: Assessment, suspect: Candidate) -> list[FloatArray]:
     return [suspect.sizes, other] if apart else [suspect.sizes]
 
 
-def judge(desk: FitContext, fits: list[Fit]) -> Explanation:
-    """Whiten by what the best fit leaves, fit again, weigh the rivals, test what is left."""
+def judge(desk: FitContext, fits: list[Fit], far: bool = False) -> Explanation:
+    """Whiten by what the best fit leaves, fit again, weigh the rivals, test what is left.
+
+    Args:
+        desk: the record before any cause.
+        fits: under the first whitening.
+        far: whether all are so far off that they are weighed roughly, and no other is looked for.
+    """
     first, settings = desk.first, desk.settings
     runs = first.evidence.runs
     leader = min(fits, key=lambda fit: fit.chi2)
@@ -254,30 +280,35 @@ def judge(desk: FitContext, fits: list[Fit]) -> Explanation:
     plain = replace(declared, colour=0.0 * declared.colour, level=0.0 * declared.level + 1.0)
     own = plain.adapted(plain.apply(bare_residual(first.evidence, leader)))
     evidence = Evidence(runs, first.evidence.measured, own)
-    commissioning = _commissioning(desk, evidence, leader)
+    commissioning, rough = _commissioning(desk, evidence, leader, far)
     near = RIVAL_RATIO * leader.chi2
-    jobs = [_Job.again(evidence, fit) for fit in fits if fit.chi2 < near]
+    jobs = [FitJob.again(evidence, fit) for fit in fits if fit.chi2 < near]
+    if far:
+        jobs = [replace(job, rough=True) for job in jobs]
     ranked = _refined(jobs, desk, "weighing rivals")
     ranked.sort(key=lambda fit: fit.chi2)
     best = ranked[0]
-    allowance = settings.model_error**2 * max(commissioning.chi2 - best.chi2, 0.0)
+    taken = max(commissioning.chi2 - best.chi2, 0.0)
+    sure = min(taken, best.power) if rough else taken
+    doubt = settings.model_error * np.sqrt(sure / max(taken, 1e-30))
+    allowance = doubt**2 * taken
     chosen, weights = probabilities(ranked, allowance, settings.odds)
     before = cells(own, commissioning.residual)
     after = cells(own, chosen[0].residual)
-    score = misfit(after, before, settings.model_error)
+    score = misfit(after, before, float(doubt))
     beside = allowance + first.allowance
-    second = _second(desk, evidence, chosen[0], beside)
+    second = None if far else _second(desk, evidence, chosen[0], beside)
     limit = desk.thresholds.effect + beside
-    fall = commissioning.chi2 - chosen[0].chi2
+    fall = commissioning.chi2 - chosen[0].chi2 - (taken - sure)
     strained = chosen[0].pull > pull_limit(first.screen.bank, settings.alpha)
-    enough = fall > LEAST * desk.thresholds.effect and not strained
+    enough = fall > LEAST * desk.thresholds.effect and not strained and second is not None
     return Explanation(
         evidence=evidence,
         commissioning=commissioning,
         fits=tuple(ranked),
         chosen=tuple(chosen),
         weights=tuple(weights),
-        adequate=score < desk.thresholds.misfit and second < limit and enough,
+        adequate=enough and score < desk.thresholds.misfit and (second or 0.0) < limit,
         score=score,
         second=second,
         before=tuple(before),
@@ -285,20 +316,28 @@ def judge(desk: FitContext, fits: list[Fit]) -> Explanation:
     )
 
 
-def _commissioning(desk: FitContext, evidence: Evidence, leader: Fit) -> Fit:
-    """The best fit without a cause, from the first look, and beside the leader.
+def _commissioning(
+    desk: FitContext, evidence: Evidence, leader: Fit, far: bool
+) -> tuple[Fit, bool]:
+    """The best fit without a cause, from the first look and beside the leader; whether it is rough.
 
     Beside the leader: what it moves, where commissioning may have moved it too, stays. Columns are
     computed anew only where the cause takes off little.
     """
     first, runs = desk.first, evidence.runs
     shift, start = np.where(runs.sd > 0.0, leader.shift, 0.0), _start(first)
-    beside = _Job(evidence, (), shift, leader.local, leader.step_share)
-    alone = _Job(evidence, (), start.shift, start.local, start.step_share)
-    best = min(_refined([beside, alone], desk, "commissioning errors alone"), key=lambda f: f.chi2)
-    if best.chi2 - leader.chi2 > CLEAR * desk.thresholds.effect:
-        return best
-    return _again(evidence, best, desk.settings.rounds)
+    sparse, last = desk.settings.sparse, first.commissioning
+    job = FitJob(evidence, (), shift, leader.local, leader.step_share, sparse)
+    best = _refined([job], desk, "commissioning errors alone")[0]
+    if not sparse or last is None or last.chi2 < WORSE_START * best.chi2:
+        job = FitJob(evidence, (), start.shift, start.local, start.step_share, sparse)
+        alone = _refined([job], desk, "commissioning errors alone")[0]
+        best = min(best, alone, key=lambda fit: fit.chi2)
+    clear = leader.chi2 + CLEAR * desk.thresholds.effect
+    if sparse and (far or best.chi2 > clear + SLACK * leader.chi2):
+        return best, True
+    best = _again(evidence, best, 0) if sparse else best
+    return (best if best.chi2 > clear else _again(evidence, best, desk.settings.rounds)), False
 
 
 def _second(desk: FitContext, evidence: Evidence, fit: Fit, allowance: float) -> float:
@@ -322,7 +361,7 @@ def suspects_at(
     others = [bank.hypotheses[s.hypothesis] for s in likely]
     rest = tuple(h for h in others if h not in fit.causes)[:SHORTLIST]
     base = renewed(fit.local, fit.shift, fit.prediction)
-    local = build_bank(evidence.runs, fit.shift, rest, desk.progress, base)
+    local = build_bank(evidence.runs, fit.shift, rest, desk.progress, base, desk.settings.sparse)
     z = residual_about(evidence, fit, local.base)
     return rest, Screen(local, evidence.whitening, fit.free).suspects(z)
 

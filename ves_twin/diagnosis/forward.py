@@ -110,6 +110,11 @@ class Hypothesis:
         """effect@target, as in the verdict."""
         return f"{self.effect}@{self.target}"
 
+    @property
+    def kind(self) -> tuple[str, str]:
+        """Effect, and the sort of part that has it: ("valve_null", "leg") for "leg.3"."""
+        return self.effect, self.target.split(".")[0]
+
     def departures(self) -> FloatArray:
         """Finite sizes for the bank (k, parameters), never all zero.
 

@@ -99,6 +99,7 @@ def held_out_gain(
     extended: Fit,
     confidence: float = 0.90,
     seed: int = 0,
+    base: Linearisation | None = None,
 ) -> Gain:
     """Predict held-out recordings by both models and compare.
 
@@ -114,8 +115,10 @@ def held_out_gain(
         extended: fit of the causes to them.
         confidence: of the interval.
         seed: of the resampling.
+        base: of these recordings where nothing departs, if it is known: its columns serve where
+            they do not bend.
     """
-    better = _Carried.of(runs, extended)
+    better = _Carried.of(runs, extended, base)
     plain = better.beside(extended, nominal)
     own = whitening.adapted(better.left(measured, whitening))
     floor = own.floor(better.left(measured, own))
@@ -143,6 +146,50 @@ def held_out_gain(
 
 
 @dataclass(frozen=True)
+class _Known:
+    """Columns at some point of the held-out recordings, some of which hold at others too.
+
+    Attributes:
+        local: prediction there, and the columns.
+        place: coordinate -> its column.
+        sd: for how much of the coordinate each column is.
+        usual: the same columns for one commissioning sd; none of what has no such sd.
+    """
+
+    local: Linearisation
+    place: Mapping[int, int]
+    sd: FloatArray
+    usual: Linearisation
+
+    @staticmethod
+    def of(base: Linearisation) -> _Known:
+        """Of a linearisation over all commissioning tolerances."""
+        runs = base.runs
+        place = {int(i): n for n, i in enumerate(runs.nuisances)}
+        return _Known(base, place, runs.sd[runs.nuisances], base)
+
+    def at(self, axes: _Axes) -> _Carried:
+        """Carried over by these columns: those that bend on the way, or are new, are computed."""
+        runs = self.local.runs
+        where = np.concatenate([axes.carried, axes.new])
+        sd = np.concatenate([axes.sd, axes.drawn])
+        rows = np.array([self.place.get(int(i), -1) for i in where], int)
+        share = np.where(rows >= 0, sd / self.sd[rows], 0.0).astype(np.float32)
+        columns = self.local.columns[[*rows, -1]]
+        columns[:-1] *= share[:, None, None]
+        strange = strangeness(self.usual, runs.one(axes.point))
+        told = np.minimum(sd / np.maximum(runs.sd[where], 1e-30), 1.0)  # of a commissioning sd
+        bent = np.flatnonzero((axes.bends * told * strange > STIFF) | (rows < 0))
+        some = where[bent], sd[bent]
+        there = linearise(runs, axes.point, axes=some, forward_step=FORWARD_STEP)
+        columns[[*bent, -1]] = there.columns
+        bends = np.append(axes.bends, 0.0)
+        return _Carried(
+            Linearisation(runs, axes.point, there.prediction, columns, bends), axes.root
+        )
+
+
+@dataclass(frozen=True)
 class _Carried:
     """A fit carried over to other recordings.
 
@@ -155,34 +202,23 @@ class _Carried:
     root: FloatArray
 
     @staticmethod
-    def of(runs: Runs, fit: Fit) -> _Carried:
+    def of(runs: Runs, fit: Fit, base: Linearisation | None) -> _Carried:
         axes = _Axes.of(runs, fit)
+        if base is not None:
+            return _Known.of(base).at(axes)
         every = np.concatenate([axes.carried, axes.new]), np.concatenate([axes.sd, axes.drawn])
         return _Carried(
             linearise(runs, axes.point, axes=every, forward_step=FORWARD_STEP), axes.root
         )
 
     def beside(self, one: Fit, other: Fit) -> _Carried:
-        """Another fit, by the columns of this one: those that bend, or are new, are computed."""
+        """Another fit, by the columns of this one."""
         runs = self.local.runs
-        mine, axes = _Axes.of(runs, one), _Axes.of(runs, other)
+        mine = _Axes.of(runs, one)
         place = {int(i): n for n, i in enumerate([*mine.carried, *mine.new])}
-        where = np.concatenate([axes.carried, axes.new])
-        sd, own = np.concatenate([axes.sd, axes.drawn]), np.concatenate([mine.sd, mine.drawn])
-        rows = np.array([place.get(int(i), -1) for i in where], int)
-        share = np.where(rows >= 0, sd / own[rows], 0.0).astype(np.float32)
-        columns = self.local.columns[[*rows, -1]]
-        columns[:-1] *= share[:, None, None]
         usual = replace(self.local, columns=self._in_tolerances(mine))
-        strange = strangeness(usual, runs.one(axes.point))
-        bent = np.flatnonzero((axes.bends * strange > STIFF) | (rows < 0))
-        some = where[bent], sd[bent]
-        there = linearise(runs, axes.point, axes=some, forward_step=FORWARD_STEP)
-        columns[[*bent, -1]] = there.columns
-        bends = np.append(axes.bends, 0.0)
-        return _Carried(
-            Linearisation(runs, axes.point, there.prediction, columns, bends), axes.root
-        )
+        known = _Known(self.local, place, np.concatenate([mine.sd, mine.drawn]), usual)
+        return known.at(_Axes.of(runs, other))
 
     def without(self, fit: Fit) -> _Carried:
         """The same with the causes of the fit taken out: nominal there, all else as carried."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -21,6 +22,9 @@ STIFF = 3.0
 
 FORWARD_STEP = 1.0
 """Commissioning sd of a one-sided difference at a fit."""
+
+MANY = 3
+"""Like causes from which one stands for another."""
 
 
 @dataclass(frozen=True)
@@ -50,7 +54,7 @@ def linearise(
     axes: tuple[IntArray, FloatArray] | None = None,
     forward_step: float | None = None,
 ) -> Linearisation:
-    """Differences over one sd to either side, one-sided at a bound.
+    """Differences over one sd to either side; to one side at a bound, and of what is linear.
 
     Args:
         runs: of which plant and programmes.
@@ -64,46 +68,113 @@ def linearise(
         Columns in the order of the coordinates; last (f(h/2) - f(h)) times STEP_SD.
     """
     where, spreads = (runs.nuisances, runs.sd[runs.nuisances]) if axes is None else axes
-    moves = (1.0, -1.0) if forward_step is None else (forward_step, 0.0)
-    shifts, weights = [point], []
+    straight = _straight(runs)
+    shifts, sides = [point], []
     for i, sd in zip(where, spreads, strict=True):
-        ends = [runs.depart(point, np.array([i]), point[i] + move * sd) for move in moves]
-        if ends[0][i] == ends[1][i]:  # at its upper bound
-            ends[0] = runs.depart(point, np.array([i]), point[i] - moves[0] * sd)
-        shifts += ends if forward_step is None else ends[:1]
-        weights.append(sd / (ends[0][i] - ends[1][i]))
+        step = sd * (1.0 if forward_step is None else forward_step)
+        ends = [runs.depart(point, np.array([i]), point[i] + move) for move in (step, -step)]
+        moved = [end for end in ends if end[i] != point[i]]
+        if forward_step is not None or i in straight:
+            moved = moved[:1]
+        sides.append(range(len(shifts), len(shifts) + len(moved)))
+        shifts += moved
     stacks = runs.many(shifts, progress, "commissioning tolerances")
+    columns = [
+        _slope(stacks, shifts, side, int(i), float(sd))
+        for side, i, sd in zip(sides, where, spreads, strict=True)
+    ]
     prediction = stacks[0]
-    far = stacks[1:] if forward_step is not None else stacks[1::2]
-    near = prediction[None] if forward_step is not None else stacks[2::2]
-    columns = list((far - near) * np.array(weights, np.float32)[:, None, None])
-    for k, column in enumerate(columns):
-        if not np.all(np.isfinite(column)):
-            columns[k] = _one_sided(far[k], near[k % len(near)], prediction, np.float32(weights[k]))
     columns.append(np.float32(STEP_SD) * (runs.one(point, refined=True) - prediction))
     found = np.stack(columns)
     return Linearisation(runs, point, prediction, found, GUESS * _sizes(runs, found))
 
 
-def _one_sided(
-    far: SingleArray, near: SingleArray, middle: SingleArray, weight: np.float32
+def _straight(runs: Runs) -> frozenset[int]:
+    """Coordinates of causes that are linear over their whole range: one side tells it all."""
+    linear = [h for h in runs.forward.hypotheses if h.linear]
+    return frozenset(int(i) for h in linear for i in runs.indices(h))
+
+
+def _slope(
+    stacks: SingleArray, shifts: Sequence[FloatArray], side: range, axis: int, sd: float
 ) -> SingleArray:
-    """The column from the side on which the plant did not fail; nothing if it did on both."""
-    for change in (far - middle, middle - near):
-        if np.all(np.isfinite(change)):
-            return np.asarray(np.float32(2.0) * weight * change)
-    return np.zeros_like(middle) if np.all(np.isfinite(middle)) else middle
+    """Change for one sd from the first to the last of what was simulated along an axis.
+
+    From the point itself where one side was, or where the plant failed on the other; nothing if it
+    failed on both.
+    """
+    good = [k for k in side if np.all(np.isfinite(stacks[k]))]
+    if not good:
+        return np.zeros_like(stacks[0]) if np.all(np.isfinite(stacks[0])) else stacks[0]
+    far, near = good[0], good[1] if len(good) > 1 else 0
+    weight = sd / (shifts[far][axis] - shifts[near][axis])
+    return np.asarray((stacks[far] - stacks[near]) * np.float32(weight))
 
 
-def with_bends(base: Linearisation, progress: Progress = silent) -> Linearisation:
-    """The same, with its bends as a second linearisation at a drawn rig has them."""
+def with_bends(
+    base: Linearisation, progress: Progress = silent, together: bool = False
+) -> Linearisation:
+    """The same, with its bends as they are at a rig drawn within its tolerances.
+
+    Args:
+        base: whose columns are tried elsewhere.
+        progress: told how far it is.
+        together: like tolerances of many parts are moved in one run, one sd each: what their
+            columns do not foretell is shared out among them by their sizes.
+    """
     runs, where = base.runs, base.runs.nuisances
-    drawn = np.random.default_rng(0).standard_normal(len(where))
-    there = runs.depart(base.point, where, base.point[where] + runs.sd[where] * drawn)
-    other = linearise(runs, there, progress, forward_step=FORWARD_STEP)
-    if not np.all(np.isfinite(other.columns)):
+    rng = np.random.default_rng(0)
+    drawn = base.point[where] + runs.sd[where] * rng.standard_normal(len(where))
+    there = runs.depart(base.point, where, drawn)
+    groups = _moved_together(runs) if together else [np.array([n]) for n in _bending(runs)]
+    moves = [_shaken(runs, there, where[rows], rng) for rows in groups]
+    stacks = runs.many([there, *moves], progress, "how far tolerances bend")
+    finer = np.float32(STEP_SD) * (runs.one(there, refined=True) - stacks[0])
+    if not (np.all(np.isfinite(stacks)) and np.all(np.isfinite(finer))):
         return base
-    return replace(base, bends=_sizes(runs, other.columns - base.columns))
+    sizes, bends = _sizes(runs, base.columns), np.zeros(len(base.columns))
+    for rows, move, stack in zip(groups, moves, stacks[1:], strict=True):
+        share = ((move - there)[where[rows]] / runs.sd[where[rows]]).astype(np.float32)
+        surprise = stack - stacks[0] - np.tensordot(share, base.columns[rows], axes=1)
+        portion = sizes[rows] / max(float(np.linalg.norm(sizes[rows])), 1e-30)
+        bends[rows] = portion * _sizes(runs, surprise[None])[0]
+    bends[-1] = _sizes(runs, (finer - base.columns[-1])[None])[0]
+    return replace(base, bends=bends)
+
+
+def _bending(runs: Runs) -> list[int]:
+    """Rows of the nuisances whose columns may bend: what only adds to the channels does not."""
+    axes = [runs.coordinates[i].parameter for i in runs.nuisances]
+    return [row for row, parameter in enumerate(axes) if not parameter.additive]
+
+
+def _moved_together(runs: Runs) -> list[IntArray]:
+    """Rows of the nuisances by kind of part; of causes that are not linear, by kind of cause too.
+
+    Fewer than MANY say little about each other, and stay alone.
+    """
+    kinds: dict[int, tuple[str, str]] = {}
+    for h in runs.forward.hypotheses:
+        kind = ("" if h.linear else h.effect, h.kind[1])
+        kinds |= {int(i): kind for i in runs.indices(h)}
+    groups: dict[object, list[int]] = {}
+    for row in _bending(runs):
+        i = int(runs.nuisances[row])
+        groups.setdefault(kinds.get(i, i), []).append(row)
+    found = []
+    for rows in groups.values():
+        found += [np.array(rows)] if len(rows) >= MANY else [np.array([row]) for row in rows]
+    return found
+
+
+def _shaken(runs: Runs, there: FloatArray, axes: IntArray, rng: np.random.Generator) -> FloatArray:
+    """A rig with some coordinates one sd further, to random sides where they are several."""
+    signs = rng.choice([-1.0, 1.0], len(axes)) if len(axes) > 1 else np.ones(1)
+    moved = runs.depart(there, axes, there[axes] + signs * runs.sd[axes])
+    stuck = moved[axes] == there[axes]
+    back = runs.depart(there, axes, there[axes] - signs * runs.sd[axes])
+    moved[axes[stuck]] = back[axes[stuck]]
+    return moved
 
 
 def renewed(local: Linearisation, point: FloatArray, prediction: SingleArray) -> Linearisation:

@@ -45,7 +45,7 @@ def separations(
     """
     found = []
     axes = _axes(there, rivals) if programmes else None
-    held = np.array([_held(fit) for fit in rivals])
+    held = np.array([fit.power for fit in rivals])
     for programme in programmes:
         runs = Runs(there.forward, (programme,), there.columns, there.workers)
         base = linearise(runs, runs.origin, axes=_on(runs, there, axes))
@@ -93,13 +93,6 @@ def _carry(there: Runs, fit: Fit, runs: Runs) -> FloatArray:
     free = fit.active[: len(fit.sizes)]
     where = np.array([names.index(there.coordinates[i].parameter.name) for i in free], int)
     return runs.depart(runs.origin, where, fit.sizes)
-
-
-def _held(fit: Fit) -> float:
-    """Size over its sd, squared, as the recordings that are there tell it."""
-    count = len(fit.sizes)
-    known = fit.posterior[:count, :count]
-    return float(fit.sizes @ np.linalg.lstsq(known, fit.sizes, rcond=None)[0])
 
 
 def _closest(gram: FloatArray, held: FloatArray) -> float:

@@ -18,7 +18,7 @@ from ves_twin.diagnosis.preprocess import FEWEST_ROWS
 from ves_twin.diagnosis.runs import Progress, Runs, silent
 from ves_twin.diagnosis.screen import Screen
 from ves_twin.diagnosis.settings import Settings
-from ves_twin.diagnosis.signature_library import build_bank, cached_bank
+from ves_twin.diagnosis.signature_library import SignatureLibrary, build_bank, cached_bank
 from ves_twin.diagnosis.slices import of_channels, of_time
 from ves_twin.diagnosis.tolerances import naming_limit
 from ves_twin.diagnosis.whitening import whitening_declared
@@ -122,7 +122,11 @@ def _plan(
 ) -> Plan:
     forward, programme = runs.forward, runs.programmes[0]
     columns, length = _columns(forward, channels), _length(runs, seconds)
-    whole = cached_bank(runs, chosen.cache, lambda: build_bank(runs, progress=progress))
+
+    def build() -> SignatureLibrary:
+        return build_bank(runs, progress=progress, sparse=chosen.sparse)
+
+    whole = cached_bank(runs, chosen.cache, build, chosen.bank)
     part = whole if length is None else of_time(whole, length)
     bank = of_channels(part, columns)
     whitening = whitening_declared(bank.base.runs)

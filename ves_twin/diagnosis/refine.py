@@ -12,10 +12,14 @@ from ves_twin.diagnosis.forward import Hypothesis
 from ves_twin.diagnosis.linearise import STEP_SD, Linearisation, renewed
 from ves_twin.diagnosis.probe import probe
 from ves_twin.diagnosis.runs import Runs
-from ves_twin.diagnosis.search import FARTHEST, RELATIVE_CONVERGENCE, Point, Search
+from ves_twin.diagnosis.search import FARTHEST, ITERATIONS, RELATIVE_CONVERGENCE, Point, Search
 
 NEAR = 0.3
 """Commissioning sd within which nuisance columns are taken to hold; absent parameters: 6 %."""
+
+ROUGH = 0.01
+"""Fall of chi^2, of all of it, that ends a search whose end nobody reads: it is gone on with where
+the fit turns out to be near the best, or a share of chi^2 is all that is asked."""
 
 WORTH = 3e-4
 """Fall of chi^2, of all of it, below which another linearisation is not worth its runs."""
@@ -62,6 +66,13 @@ class Fit:
         errors = np.setdiff1d(self.active[len(self.sizes) :], self.active[: len(self.sizes)])
         return float(np.max(np.abs(self.shift[errors]) / runs.sd[errors], initial=0.0))
 
+    @property
+    def power(self) -> float:
+        """d^2 of the causes: their sizes over their covariance, as the record tells it."""
+        count = len(self.sizes)
+        known = self.posterior[:count, :count]
+        return float(self.sizes @ np.linalg.lstsq(known, self.sizes, rcond=None)[0])
+
 
 def refine(
     evidence: Evidence,
@@ -73,6 +84,7 @@ def refine(
     farthest: float = FARTHEST,
     probed: bool = False,
     enough: float = RELATIVE_CONVERGENCE,
+    steps: int = ITERATIONS,
 ) -> Fit:
     """Fit causes and nuisances with the full forward.
 
@@ -88,6 +100,8 @@ def refine(
         probed: whether the Jacobian is put right along what is known least at the end: for fits
             whose intervals somebody reads.
         enough: fall of chi^2, of all of it, that is not worth another run.
+        steps: at most from one linearisation; fewer than usual are for a first impression, for
+            which what the integration step is worth at the fit does not count.
     """
     runs = evidence.runs
     free = (
@@ -95,10 +109,11 @@ def refine(
         if causes
         else np.zeros(0, int)
     )
-    search = Search(evidence, free, local, farthest, enough)
+    search = Search(evidence, free, local, farthest, enough, steps)
     start = np.clip(shift, search.low, search.high)
     point, jacobian = search.run(search.at(start, step_share))
-    if np.isfinite(point.chi2) and not _near(runs, search, point.shift):
+    whole = steps == ITERATIONS and np.isfinite(point.chi2)
+    if whole and not _near(runs, search, point.shift):
         search = Search(evidence, free, _stepped(search, point), farthest, enough)
         point, jacobian = search.run(search.at(point.shift, point.delta))
     for _ in range(rounds):

@@ -28,6 +28,7 @@ class Settings:
         seed: of the null distribution.
         causes: that may be named together; beyond two only on held-out recordings.
         rate: of the analysis grid [Hz].
+        sparse: whether banks are built with fewer runs, as a machine of many parameters needs.
         laws: whether a law is looked for where no cause explains the record, and the plant can
             have laws; None where that takes minutes at most.
     """
@@ -45,4 +46,10 @@ class Settings:
     seed: int = 0
     causes: int = 2
     rate: float = RATE
+    sparse: bool = False
     laws: bool | None = False
+
+    @property
+    def bank(self) -> str:
+        """Sort of bank, where it is not the full one."""
+        return "sparse" if self.sparse else ""

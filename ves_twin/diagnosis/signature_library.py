@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import hashlib
+from collections import Counter
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -12,10 +13,11 @@ from zipfile import BadZipFile
 import numpy as np
 
 from ves_twin.core.errors import FileAccessError, InvalidInputError
-from ves_twin.core.types import FloatArray, IntArray, SingleArray
+from ves_twin.core.types import BoolArray, FloatArray, IntArray, SingleArray
 from ves_twin.core.whole_file import whole_file
 from ves_twin.diagnosis.forward import Hypothesis
 from ves_twin.diagnosis.linearise import Linearisation, linearise, with_bends
+from ves_twin.diagnosis.rungs import rungs
 from ves_twin.diagnosis.runs import Progress, Runs, silent
 
 STRAIGHT = 4.0
@@ -92,6 +94,7 @@ def build_bank(
     hypotheses: tuple[Hypothesis, ...] | None = None,
     progress: Progress = silent,
     base: Linearisation | None = None,
+    sparse: bool = False,
 ) -> SignatureLibrary:
     """Simulate every hypothesis at its finite sizes.
 
@@ -102,6 +105,8 @@ def build_bank(
         hypotheses: the library; that of the forward if None.
         progress: told how far it is.
         base: linearisation there, if it is known.
+        sparse: fewer runs, for a machine of many parameters: most sizes are scaled from another,
+            and like tolerances tell together how far they bend.
 
     Returns:
         The bank, without entries that bounds leave near the starting point or that diverge.
@@ -112,55 +117,125 @@ def build_bank(
     start = runs.origin if point is None else point
     library = runs.forward.hypotheses if hypotheses is None else hypotheses
     if base is None:
-        base = with_bends(linearise(runs, start, progress), progress)
+        base = with_bends(linearise(runs, start, progress), progress, sparse)
     if not np.all(np.isfinite(base.prediction)):
         came = "set-points at which the plant leaves its limits"
         raise InvalidInputError("programme", came, "one that the nominal plant carries out")
-    shifts, owner, sizes = [], [], []
-    for h, hypothesis in enumerate(library):
-        if hypothesis.linear and _column(runs, hypothesis) is not None:
-            continue
-        where = runs.indices(hypothesis)
-        for departure in hypothesis.departures():
-            shift = runs.depart(start, where, start[where] + departure)
-            moved = shift[where] - start[where]
-            if np.any(np.abs(moved) > 0.5 * np.abs(departure)):
-                shifts.append(shift)
-                owner.append(h)
-                sizes.append(moved)
+    climbs = [
+        _Climb.of(runs, start, h, hypothesis, sparse)
+        for h, hypothesis in enumerate(library)
+        if not (hypothesis.linear and _column(runs, hypothesis) is not None)
+    ]
+    shifts = [end for climb in climbs for end in climb.ends]
     stacks = runs.many(shifts, progress, "signatures") - base.prediction
-    kept = np.flatnonzero(np.all(np.isfinite(stacks), axis=(1, 2)))
+    found, shapes = _Entries([], [], [], []), list[SingleArray]()
+    for climb in climbs:
+        own, stacks = stacks[: len(climb.ends)], stacks[len(climb.ends) :]
+        climb.add(found, shapes, own, len(base.columns))
     straight = _straight(base, library)
-    count = len(base.columns)
+    rows = len(base.prediction)
     return SignatureLibrary(
         base,
         library,
-        np.array([*(owner[i] for i in kept), *straight.owner], int),
-        (*(sizes[i] for i in kept), *straight.sizes),
-        np.array([*range(count, count + len(kept)), *straight.column], int),
-        np.array([*np.ones(len(kept)), *straight.factor]),
-        stacks[kept],
+        np.array([*found.owner, *straight.owner], int),
+        (*found.sizes, *straight.sizes),
+        np.array([*found.shape, *straight.shape], int),
+        np.array([*found.factor, *straight.factor], float),
+        np.array(shapes, np.float32).reshape(-1, rows, len(runs.columns)),
     )
 
 
 @dataclass(frozen=True)
-class _Straight:
-    """Entries that are multiples of a nuisance column."""
+class _Entries:
+    """Entries of a bank: owner, departure, shape and factor of each."""
 
     owner: list[int]
     sizes: list[FloatArray]
-    column: list[int]
+    shape: list[int]
     factor: list[float]
 
+    def add(self, owner: int, sizes: FloatArray, shape: int, factor: float) -> None:
+        """One more."""
+        self.owner.append(owner)
+        self.sizes.append(sizes)
+        self.shape.append(shape)
+        self.factor.append(factor)
 
-def _straight(base: Linearisation, library: tuple[Hypothesis, ...]) -> _Straight:
+
+@dataclass(frozen=True)
+class _Climb:
+    """The sizes of one cause from a point: which are simulated, and what entries they make.
+
+    Attributes:
+        hypothesis: number in the library.
+        moved: departures that are simulated, as bounds let them (m, parameters).
+        reached: which of them bounds leave far enough from the point (m,).
+        ends: points that are simulated.
+        weights: of their traces in each entry (k, m).
+        room: farthest departures to either side that bounds let (2, parameters).
+    """
+
+    hypothesis: int
+    moved: FloatArray
+    reached: BoolArray
+    ends: list[FloatArray]
+    weights: FloatArray
+    room: FloatArray
+
+    @staticmethod
+    def of(
+        runs: Runs, start: FloatArray, number: int, hypothesis: Hypothesis, sparse: bool
+    ) -> _Climb:
+        where = runs.indices(hypothesis)
+        asked = hypothesis.departures()
+        weights = np.eye(len(asked))
+        if sparse:
+            crowd = Counter(h.kind for h in runs.forward.hypotheses)[hypothesis.kind]
+            asked, weights = rungs(hypothesis, crowd)
+        ends = [runs.depart(start, where, start[where] + row) for row in asked]
+        moved = np.array([end[where] - start[where] for end in ends])
+        reached = np.any(np.abs(moved) > 0.5 * np.abs(asked), axis=1)
+        kept = np.flatnonzero(reached)
+        room = np.array([runs.low[where], runs.high[where]]) - start[where]
+        ends = [ends[n] for n in kept]
+        return _Climb(number, moved, reached, ends, weights, room)
+
+    def add(
+        self, found: _Entries, shapes: list[SingleArray], stacks: SingleArray, columns: int
+    ) -> None:
+        """Its entries, of traces without those that bounds left out; none of what diverges."""
+        place = np.full(len(self.moved), -1)
+        place[self.reached] = np.arange(len(stacks))
+        for n, at in enumerate(place):
+            good = at >= 0 and np.all(np.isfinite(stacks[at]))
+            place[n] = at if good else -1
+        own: dict[int, int] = {}
+        for weights in self.weights:
+            used = np.flatnonzero(weights)
+            sizes = weights @ self.moved
+            held = np.clip(sizes, *self.room)
+            if np.any(place[used] < 0) or not np.any(np.abs(held) > 0.5 * np.abs(sizes)):
+                continue
+            if len(used) > 1:
+                mixed = np.tensordot(weights[used].astype(np.float32), stacks[place[used]], axes=1)
+                found.add(self.hypothesis, sizes, columns + len(shapes), 1.0)
+                shapes.append(mixed)
+                continue
+            n = int(used[0])
+            if n not in own:
+                own[n] = len(shapes)
+                shapes.append(stacks[place[n]])
+            found.add(self.hypothesis, sizes, columns + own[n], float(weights[n]))
+
+
+def _straight(base: Linearisation, library: tuple[Hypothesis, ...]) -> _Entries:
     """Linear signatures of causes that are commissioning parameters too.
 
     Where a tolerance bends the prediction by more than noise, the finite signature holds what its
     own nuisance column cannot explain, though a strong commissioning error would bend as well. A
     record corrected for that is linear, and only the column itself fits it.
     """
-    runs, found = base.runs, _Straight([], [], [], [])
+    runs, found = base.runs, _Entries([], [], [], [])
     for h, hypothesis in enumerate(library):
         rows = _column(runs, hypothesis)
         if rows is None:
@@ -168,10 +243,7 @@ def _straight(base: Linearisation, library: tuple[Hypothesis, ...]) -> _Straight
         sd = runs.sd[runs.nuisances[rows]]
         for spreads in _ladder(hypothesis, float(sd[0])):
             for sign in hypothesis.signs:
-                found.owner.append(h)
-                found.sizes.append(sign * spreads * sd)
-                found.column.append(int(rows[0]))
-                found.factor.append(sign * spreads)
+                found.add(h, sign * spreads * sd, int(rows[0]), sign * spreads)
     return found
 
 
@@ -193,16 +265,22 @@ def _ladder(hypothesis: Hypothesis, sd: float) -> list[float]:
 
 
 def cached_bank(
-    runs: Runs, folder: Path | None, build: Callable[[], SignatureLibrary]
+    runs: Runs, folder: Path | None, build: Callable[[], SignatureLibrary], sort: str = ""
 ) -> SignatureLibrary:
     """The bank of a plant and its programmes from a file, built and written where none holds.
+
+    Args:
+        runs: of which plant and programmes.
+        folder: of the file; none is kept if None.
+        build: makes it.
+        sort: of bank, where it is not the full one.
 
     Raises:
         FileAccessError: the folder cannot be written.
     """
     if folder is None:
         return build()
-    path = folder / f"bank-{bank_key(runs)}.npz"
+    path = folder / f"bank-{bank_key(runs, sort.encode())}.npz"
     kept = _read(path, runs)
     if kept is not None and still_predicts(runs, kept.base.prediction):
         return kept

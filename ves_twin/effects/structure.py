@@ -53,7 +53,6 @@ class BaseTilt(Effect):
     kind = "base_tilt"
     sizes = (Size("roll", "rad"), Size("pitch", "rad"))
     source = "thesis 3.4.5: half a degree of orientation is not acceptable"
-    proportional = False
     rows = (Row(RIG, (3e-4, 1e-3, 0.05), ("sensor.wrench",), part=Part.STRUCTURE),)
 
     def edit_rig(self, rig: mujoco.MjSpec) -> None:

@@ -77,9 +77,9 @@ class Study:
 
         def build() -> SignatureLibrary:
             check_likeness(seen, seen.runs.one(seen.runs.origin))
-            return build_bank(seen.runs)
+            return build_bank(seen.runs, sparse=self.settings.sparse)
 
-        bank = cached_bank(seen.runs, self.settings.cache, build)
+        bank = cached_bank(seen.runs, self.settings.cache, build, self.settings.bank)
         bank = bank.without(tuple(h.label for h in bank.hypotheses if not self._asked(h)))
         self._banks[key] = bank, compute(bank)
         return self._banks[key]

@@ -54,7 +54,7 @@ class WithFilterPlaces(ForwardWrapper):
     def hypotheses(self) -> tuple[Hypothesis, ...]:
         """Those of the rig, and one for each place."""
         other = (
-            Hypothesis(EFFECT, place.value, (_name(place),), (0.4,), (1.25,), (1,), SOURCE)
+            Hypothesis(EFFECT, place.value, (_name(place),), (0.4,), (1.25,), (1,), SOURCE, True)
             for place in self.places
         )
         return (*self.forward.hypotheses, *other)

@@ -1,0 +1,121 @@
+"""Banks with fewer runs: what is simulated, and that the rest follows."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+import pytest
+from toy import GAIN, NUISANCES, Toy, _cause, programme
+
+from ves_twin.diagnosis.forward import Hypothesis, Parameter
+from ves_twin.diagnosis.linearise import linearise, with_bends
+from ves_twin.diagnosis.rungs import rungs
+from ves_twin.diagnosis.runs import Runs
+from ves_twin.diagnosis.signature_library import build_bank, cached_bank
+
+JOINTS = 4
+CURVE = 3.0
+
+
+@dataclass(frozen=True)
+class Jointed(Toy):
+    """A toy whose gain bends four like tolerances, and that counts its runs."""
+
+    counted: tuple[list[int], ...] = ([],)
+
+    @property
+    def parameters(self):
+        stiff = (Parameter(f"j{n}.size", "1", 0.0, -5.0, 5.0, sd=0.02) for n in range(JOINTS))
+        return (*super().parameters, *stiff)
+
+    @property
+    def hypotheses(self):
+        kind = _cause("friction")
+        stiff = (
+            replace(kind, effect="spring", target=f"joint.{n}", parameters=(f"j{n}.size",))
+            for n in range(JOINTS)
+        )
+        return (replace(GAIN, linear=True), *map(_cause, self.causes), *stiff)
+
+    def simulate(self, programme, values, refined=False):
+        self.counted[0].append(1)
+        rows = super().simulate(programme, values)
+        time, gain = programme.time, values.get("plant.gain", 1.0) - 1.0
+        for n in range(JOINTS):
+            wave = np.sin((n + 1.0) * time)[:, None] * [1.0, 0.0]
+            rows = rows + values.get(f"j{n}.size", 0.0) * (1.0 + CURVE * gain) * wave
+        return rows
+
+
+@pytest.fixture
+def runs():
+    return Runs(Jointed(counted=([],)), (programme(),), (0, 1))
+
+
+def count(runs):
+    return len(runs.forward.counted[0])
+
+
+def test_what_is_linear_takes_one_run_and_what_is_at_a_bound_takes_one(runs):
+    plain = linearise(runs, runs.origin)
+    # the point, its refinement, one for the gain, two for each of the others
+    assert count(runs) == 2 + 1 + 2 * (len(runs.nuisances) - 1)
+    held = replace(NUISANCES[1], low=0.0)
+    bound = Runs(Jointed(nuisances=(NUISANCES[0], held, NUISANCES[2]), counted=([],)),
+                 runs.programmes, (0, 1))  # fmt: skip
+    there = linearise(bound, bound.origin)
+    assert count(bound) == count(runs) - 1
+    assert there.columns == pytest.approx(plain.columns, abs=1e-5)
+
+
+def test_like_tolerances_that_are_moved_together_bend_as_they_do_one_by_one(runs):
+    base = linearise(runs, runs.origin)
+    before = count(runs)
+    alone = with_bends(base)
+    between = count(runs)
+    together = with_bends(base, together=True)
+    # the four springs share a run; what only adds, as no toy's tolerance says, would take none
+    assert (between - before) - (count(runs) - between) == JOINTS - 1
+    springs = slice(3, 3 + JOINTS)
+    assert np.all(alone.bends[springs] > 0.0)
+    assert together.bends[springs] == pytest.approx(alone.bends[springs], rel=0.2)
+
+
+def test_sizes_that_are_not_simulated_are_scaled_from_the_nearest(runs):
+    full, before = build_bank(runs), count(runs)
+    sparse = build_bank(runs, sparse=True)
+    assert count(runs) - before < before / 2
+    assert len(sparse.bent) < len(full.bent) / 2
+    for h in range(len(full.hypotheses)):
+        sizes = [[float(bank.sizes[k][0]) for k in bank.entries(h)] for bank in (full, sparse)]
+        assert sizes[1] == pytest.approx(sizes[0])
+        for a, b in zip(full.entries(h), sparse.entries(h), strict=True):  # a linear plant
+            assert sparse.signature(b) == pytest.approx(full.signature(a), abs=1e-4)
+
+
+def test_a_linear_cause_of_two_parameters_is_simulated_along_each_and_added():
+    tilt = Hypothesis("tilt", "rig", ("a", "b"), (0.1, 0.2), (1.0, 2.0), linear=True)
+    asked, weights = rungs(tilt, 1)
+    assert asked.shape == (2, 2)
+    assert np.count_nonzero(asked) == 2
+    assert weights @ asked == pytest.approx(tilt.departures())
+
+
+@pytest.mark.parametrize("signs", [(-1,), (1,), (-1, 1)])
+@pytest.mark.parametrize("crowd", [1, 6])
+def test_every_size_is_one_of_its_own_sign_scaled(signs, crowd):
+    cause = Hypothesis("lag", "leg.1", ("lag",), (0.01,), (1.0,), signs)
+    asked, weights = rungs(cause, crowd)
+    assert len(asked) == len(signs) * (1 if crowd == 6 else 2)
+    assert weights @ asked == pytest.approx(cause.departures())
+    assert np.all(weights >= 0.0)
+    assert np.all(np.count_nonzero(weights, axis=1) == 1)
+
+
+def test_a_sparse_bank_is_not_taken_for_a_full_one(runs, tmp_path):
+    sparse = cached_bank(runs, tmp_path, lambda: build_bank(runs, sparse=True), "sparse")
+    full = cached_bank(runs, tmp_path, lambda: build_bank(runs))
+    again = cached_bank(runs, tmp_path, lambda: pytest.fail("built anew"), "sparse")
+    assert len(full.bent) > len(sparse.bent)
+    assert np.array_equal(again.bent, sparse.bent)

@@ -1,0 +1,48 @@
+"""FitJob: one fit, as it travels to a process."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from ves_twin.core.types import FloatArray
+from ves_twin.diagnosis.evidence import Evidence
+from ves_twin.diagnosis.forward import Hypothesis
+from ves_twin.diagnosis.linearise import Linearisation
+from ves_twin.diagnosis.refine import ROUGH, Fit, refine
+
+FEW = 5
+"""Steps of a rough fit: what is far from the record mimics it by ever smaller ones."""
+
+
+@dataclass(frozen=True)
+class FitJob:
+    """What a fit begins with.
+
+    Attributes:
+        evidence: what was measured.
+        causes: whose parameters are free.
+        shift: departures to begin at.
+        local: nuisance columns.
+        step_share: of the discretisation column, to begin at.
+        rough: for a first impression: no more than FEW steps, ended by ROUGH.
+    """
+
+    evidence: Evidence
+    causes: tuple[Hypothesis, ...]
+    shift: FloatArray
+    local: Linearisation
+    step_share: float
+    rough: bool = False
+
+    @staticmethod
+    def again(evidence: Evidence, fit: Fit, local: Linearisation | None = None) -> FitJob:
+        """From where a fit ended, under another noise or with other columns."""
+        return FitJob(evidence, fit.causes, fit.shift, local or fit.local, fit.step_share)
+
+    @staticmethod
+    def run(job: FitJob) -> Fit:
+        """The fit."""
+        at = (job.shift, job.local, 0, job.step_share)
+        if job.rough:
+            return refine(job.evidence, job.causes, *at, enough=ROUGH, steps=FEW)
+        return refine(job.evidence, job.causes, *at)
