@@ -23,10 +23,11 @@ MARK = "## Beside mujoco.sysid"
 
 HEAD = """{mark}
 
-Written by `.venv/bin/python benchmarks/diagnosis_pendulum.py docs/diagnosis-method.md`.
-Six pendulums whose data is made as the peers' was (8 s, 500 Hz, the same integrator, white
-noise); `mujoco.sysid` fitted damping (0.05) and mass (1.0). Its answers are
-quoted: it cannot be imported from the mujoco package without an extra. Blind pendulums are on the [scorecard](diagnosis-scorecard.md).
+Written by `.venv/bin/python benchmarks/diagnosis_pendulum.py docs/diagnosis-method.md`. Six
+pendulums whose data is made as the peers' was (8 s, 500 Hz, the same integrator, white noise);
+`mujoco.sysid` fitted damping (0.05) and mass (1.0). Its answers are quoted: it cannot be imported
+from the mujoco package without an extra. Blind pendulums are on the
+[scorecard](diagnosis-scorecard.md).
 
 | hidden | mujoco.sysid 4.0.0 (quoted) | verdict | size found | hidden size |
 |---|---|---|---|---|

@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable
+from contextlib import redirect_stderr
 from dataclasses import dataclass
+from io import StringIO
 from pathlib import Path
 
 import pytest
@@ -13,6 +15,7 @@ import pytest
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 from ves_twin.cli import progress
+from ves_twin.core.compiled import say_that_it_compiles
 
 pytest_plugins = ["costs", "once", "shipped"]
 
@@ -40,6 +43,8 @@ def pytest_addoption(parser: pytest.Parser) -> None:
 
 def pytest_configure(config: pytest.Config) -> None:
     progress.FIRST = 3600.0  # lines of progress come by the clock, which no test may depend on
+    with redirect_stderr(StringIO()):
+        say_that_it_compiles()  # once in a process: here, so that no line depends on caches
     config.stash[FIGURES] = []
 
 

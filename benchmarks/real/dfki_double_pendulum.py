@@ -30,13 +30,13 @@ HEAD = """schema = 1
 kind = "rig"
 name = "{name}"
 model = "{name}.xml"
-rate = 100
+rate = 25
 [clock]
 column = "t"
 [drive]
 mode = "motion"
 joints = {{ shoulder = "q.1", elbow = "q.2" }}
-smoothing = "30 Hz"
+smoothing = "10 Hz"
 """
 
 JOINTS, MOTORS, BODIES = ("shoulder", "elbow"), ("motor_1", "motor_2"), ("upper", "lower")
@@ -55,7 +55,8 @@ def model(parameters: Mapping[str, float]) -> str:
     return MODEL.format(**told)
 
 
-def description(name: str, parameters: Mapping[str, float]) -> str:
+def description(name: str, parameters: Mapping[str, float], other: bool) -> str:
+    """The machine's file; link lengths are open where the model is that of another design."""
     text = HEAD.format(name=name)
     for k, joint in enumerate(JOINTS, 1):
         mass = parameters[f"m{k}"]
@@ -88,7 +89,7 @@ def description(name: str, parameters: Mapping[str, float]) -> str:
         ("body_mass", BODIES),
         ("mass_centre", [f"{b}.{axis}" for b in BODIES for axis in "xz"]),
         ("body_inertia", BODIES),
-        ("body_place", ["lower.z"]),
+        *([("body_place", ["lower.z"])] if other else []),
     )
 
 
@@ -141,7 +142,7 @@ def sets(data: Path, folder: Path) -> list[Set]:
     for name, file, fitted, held, expert in SETS:
         numbers = published(here / f"params_design_{file}.yml")
         label = name.replace(" ", "_")
-        rig = machine(folder, label, model(numbers), description(label, numbers))
+        rig = machine(folder, label, model(numbers), description(label, numbers, " by " in name))
         logs = [
             [read(rig, even(here / f"{n}.csv", folder)) for n in names] for names in (fitted, held)
         ]

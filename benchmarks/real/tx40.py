@@ -90,7 +90,6 @@ def description() -> str:
         ("viscous_asymmetry", JOINTS),
         ("coulomb_asymmetry", JOINTS),
         ("stribeck_friction", JOINTS),
-        ("load_friction", JOINTS),
         ("quadratic_drag", JOINTS),
         ("force_offset", JOINTS),
         ("joint_spring", JOINTS),

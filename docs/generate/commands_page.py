@@ -36,6 +36,8 @@ EXAMPLES = {
         "ves-twin plan --plant pendulum --quick",
         "ves-twin plan --scenario identify_fast --channels leg.length --seconds 15",
     ),
+    "new": ("ves-twin new my_robot.xml lab.csv --out my_robot.toml",),
+    "dataset": ("ves-twin dataset VibrationDamping-v0 --episodes 10",),
     "diagnose": (
         "ves-twin diagnose rec.parquet --plant my_machine.toml --held-out other.parquet",
         "ves-twin diagnose today.parquet --plant my_machine.toml --baseline last_week.parquet",

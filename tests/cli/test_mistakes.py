@@ -1,5 +1,8 @@
 """Mistakes of a newcomer with files of their own: one line says what came, and nothing is left."""
 
+import subprocess
+import sys
+
 import numpy as np
 import pyarrow as pa
 import pyarrow.parquet as pq
@@ -82,3 +85,25 @@ def test_a_window_beyond_the_end_has_no_rows(bench, capsys):
     assert main(["import", "log.parquet", "--map", "six.toml", "--out", "rec.parquet"]) == 0
     assert main(["compare", "rec.parquet", "--experiment", "lab.toml"]) == 2
     assert "got '0 rows between 20 and" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    "words",
+    [
+        "compare no.csv",
+        "diagnose no.csv --held-out lab.csv",
+        "diagnose lab.csv --plant no.toml",
+        "plan --plant no.toml",
+        "new no.xml lab.csv",
+    ],
+)
+def test_a_file_that_is_not_there_is_told_before_anything_heavy_is_imported(bench, words):
+    """Each of these took two seconds of processor time for one line."""
+    script = (
+        "import sys; from ves_twin.cli.main import main; code = main(sys.argv[1:]);"
+        " print(code, *{'mujoco', 'numba', 'scipy', 'pyarrow', 'pydantic'} & sys.modules.keys())"
+    )
+    command = [sys.executable, "-c", script, *words.split()]
+    done = subprocess.run(command, capture_output=True, text=True, check=True)
+    assert done.stdout.split() == ["2"]
+    assert "does not exist" in done.stderr

@@ -101,7 +101,7 @@ def test_without_held_out_data_the_first_screen_says_so_and_is_no_surer(friction
     assert "Best explained by friction at plant" in top
     assert "no other recording has tested it" in top
     assert "a held-out recording or a recording of this machine in order was not given" in top
-    assert "Record another programme on the same rig and give it as --held-out." in top
+    assert "Record another programme on the same machine and give it as --held-out." in top
     assert "Found" not in top
     assert tone(friction) == "open"
 
@@ -438,7 +438,7 @@ def test_no_loud_cell_is_said_beside_the_threshold_and_not_as_noise(proven):
     quiet = replace(proven, leftover=replace(proven.leftover, loud=()))
     page = diagnosis_page(quiet)
     assert "beyond noise." not in page[page.index("What is left") :]
-    assert "the most that rigs in order leave" in page
+    assert "the most that machines in order leave" in page
 
 
 def factor(verdict, name):

@@ -11,8 +11,6 @@ from typing import Any
 
 from tqdm import tqdm
 
-from ves_twin.core.compiled import say_that_it_compiles
-
 FIRST = 1.0
 """A command that is done sooner says nothing [s]: a bad input is then one line alone."""
 
@@ -78,7 +76,6 @@ class RunProgress:
         return text
 
     def __enter__(self) -> RunProgress:
-        say_that_it_compiles()
         self._before = signal.signal(signal.SIGINT, self._stop)
         if self._bar.disable:
             self._teller.start()

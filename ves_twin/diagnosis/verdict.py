@@ -259,8 +259,8 @@ class Verdict:
             case Kind.NOTHING:
                 return "Nothing beyond noise and commissioning tolerances."
             case Kind.UNKNOWN:
-                if self.law is not None and self.law.claimed:
-                    return f"No cause in the library explains it. A law does: {self.law.words}."
+                if self.lawful:
+                    return self.lawful
                 hint = f"; the nearest of its causes is {self.suspect}" if self.suspect else ""
                 return f"Something is wrong that the library does not explain{hint}."
             case _:
@@ -268,6 +268,13 @@ class Verdict:
                 if self.proved:
                     return self.proving + limit
                 return self.naming([self._name(i) for i in range(len(self.causes))]) + limit
+
+    @property
+    def lawful(self) -> str:
+        """The sentence of a law that is claimed; empty without one."""
+        if self.law is None or not self.law.claimed:
+            return ""
+        return f"No cause in the library explains it. A law does: {self.law.words}."
 
     def naming(self, names: Sequence[str], begin: str = "") -> str:
         """The sentence of a verdict that names causes.

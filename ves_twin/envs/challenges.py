@@ -46,7 +46,7 @@ def score_challenges(
     Raises:
         VesTwinError: as `evaluate`.
     """
-    rows = []
+    rows: list[Row] = []
     for name, rigs in CHALLENGES.items():
 
         def show(share: float, name: str = name) -> None:

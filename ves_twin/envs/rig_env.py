@@ -10,11 +10,11 @@ from typing import TYPE_CHECKING, Any, ClassVar, Generic
 import gymnasium as gym
 import numpy as np
 
-from ves_twin.core.compiled import say_that_it_compiles
 from ves_twin.core.errors import InvalidInputError, UnknownNameError
 from ves_twin.core.types import FloatArray, SingleArray
 from ves_twin.envs.channels import Channels
 from ves_twin.envs.costs import Costs, Limits
+from ves_twin.envs.given import given_plant, given_scenario
 from ves_twin.envs.picture import Picture
 from ves_twin.envs.policy import TaskSpec
 from ves_twin.envs.settled_rigs import Hand, SettledRig, SettledRigs
@@ -90,8 +90,8 @@ class RigEnv(gym.Env[Any, FloatArray], abc.ABC, Generic[Hand]):
         if render_mode not in (None, *self.metadata["render_modes"]):
             raise UnknownNameError("render_mode", str(render_mode), self.metadata["render_modes"])
         self.render_mode = render_mode
-        self._scenario = _scenario(scenario or self.SCENARIO)
-        self._plant = _plant(plant or self._scenario.plant)
+        self._scenario = given_scenario(scenario or self.SCENARIO)
+        self._plant = given_plant(plant or self._scenario.plant)
         self.check(self._scenario)
         self.observations, self.actions = self.channels(self._scenario)
         self._scaled = scaled
@@ -221,13 +221,12 @@ class RigEnv(gym.Env[Any, FloatArray], abc.ABC, Generic[Hand]):
             if key not in OPTIONS:
                 raise UnknownNameError("option of reset", str(key), OPTIONS)
         noise_seed = int(self.np_random.integers(2**63 - 1))
-        scenario = _scenario(given.get("scenario", self._scenario))
+        scenario = given_scenario(given.get("scenario", self._scenario))
         if "scenario" in given:
             self.check(scenario)
         plant = self.plant_of(given)
         plant = plant if plant.effects else self.hidden(plant)
         scenario, goal = self.draw(scenario, given.get("goal"))
-        say_that_it_compiles()
         self._rig = self._rigs.find(plant, scenario) or self._rigs.keep(
             plant, *self.build(plant, scenario)
         )
@@ -304,9 +303,11 @@ class RigEnv(gym.Env[Any, FloatArray], abc.ABC, Generic[Hand]):
     def plant_of(self, options: Mapping[str, object]) -> Plant:
         """The plant that `reset` would take by its options, without the scenario's own changes."""
         if "plant" in options:
-            return _plant(options["plant"])
+            return given_plant(options["plant"])
         return (
-            _plant(_scenario(options["scenario"]).plant) if "scenario" in options else self._plant
+            given_plant(given_scenario(options["scenario"]).plant)
+            if "scenario" in options
+            else self._plant
         )
 
     def close(self) -> None:
@@ -372,22 +373,6 @@ class RigEnv(gym.Env[Any, FloatArray], abc.ABC, Generic[Hand]):
 
 def _shares(width: int, dtype: type[np.float32 | np.float64]) -> Any:
     return gym.spaces.Box(-1.0, 1.0, (width,), dtype)
-
-
-def _scenario(given: object) -> Scenario:
-    if isinstance(given, Scenario):
-        return given
-    if isinstance(given, str):
-        return Scenario.load(given)
-    raise InvalidInputError("scenario", given, "a name, a file or a Scenario")
-
-
-def _plant(given: object) -> Plant:
-    if isinstance(given, Plant):
-        return given
-    if isinstance(given, str):
-        return Plant.load(given)
-    raise InvalidInputError("plant", given, "a name, a file or a Plant")
 
 
 def rig_env(env: gym.Env[Any, Any]) -> RigEnv[Any]:

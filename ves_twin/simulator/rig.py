@@ -9,6 +9,7 @@ import mujoco
 import numpy as np
 
 from ves_twin.control.belief import Belief
+from ves_twin.core.compiled import say_that_it_compiles
 from ves_twin.core.engine_log import log_engine
 from ves_twin.core.types import Block, FloatArray
 from ves_twin.plant.assembly import assemble, compile_model
@@ -60,6 +61,7 @@ class Rig:
         self, plant: Plant, clock: Clock, legs: Legs, belief: Belief, noise: NoiseStreams
     ) -> None:
         log_engine()
+        say_that_it_compiles()
         self.plant = plant
         self.clock = clock
         self.model = compile_model(assemble(plant, clock.tick / clock.substeps))

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import Protocol, runtime_checkable
 
 from ves_twin.core.types import FloatArray
-from ves_twin.diagnosis.forward import Channel, Excitation, Hypothesis, Parameter
+from ves_twin.diagnosis.forward import Excitation, Forward
 from ves_twin.effects.law import Law, LawKind
 
 
@@ -44,28 +44,8 @@ class LawPlace:
 
 
 @runtime_checkable
-class LawForward(Protocol):
-    """A `Forward` in which laws can act: what `Forward` has, and three verbs."""
-
-    @property
-    def identity(self) -> str:
-        """See `Forward`."""
-
-    @property
-    def drive(self) -> tuple[str, ...]:
-        """See `Forward`."""
-
-    @property
-    def channels(self) -> tuple[Channel, ...]:
-        """See `Forward`."""
-
-    @property
-    def parameters(self) -> tuple[Parameter, ...]:
-        """See `Forward`."""
-
-    @property
-    def hypotheses(self) -> tuple[Hypothesis, ...]:
-        """See `Forward`."""
+class LawForward(Forward, Protocol):
+    """A `Forward` in which laws can act: two more verbs, and a simulation that takes laws."""
 
     def simulate(
         self,

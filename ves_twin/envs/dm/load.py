@@ -74,7 +74,7 @@ def control_environment(
     Args:
         env: the environment, not scaled.
         random: seed of the first episode; later ones go on from it.
-        **environment_kwargs: of `control.Environment`; the time limit is the environment's own.
+        environment_kwargs: of `control.Environment`; the time limit is the environment's own.
 
     Raises:
         InvalidInputError: a scaled environment, or one of another kind.

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
@@ -38,7 +39,9 @@ class Inputs:
     flaws: tuple[Check, ...]
 
 
-def prepare_inputs(recordings: Sequence[Recording], plant: Plant, word: str) -> Inputs:
+def prepare_inputs(
+    recordings: Sequence[Recording], plant: Plant, word: str, scenario: Scenario | None = None
+) -> Inputs:
     """Put recordings through the quality gate and on an even clock.
 
     Rows that are missing become rows without measurements, and short holes of the set-points are
@@ -48,6 +51,7 @@ def prepare_inputs(recordings: Sequence[Recording], plant: Plant, word: str) -> 
         recordings: measured or simulated.
         plant: whose arm the force sensor carries.
         word: what they are called in messages, for instance "recording".
+        scenario: how the leg program was set; as each recording says if None.
 
     Raises:
         VesTwinError: columns that look swapped, turned, in other units or in another frame.
@@ -62,8 +66,9 @@ def prepare_inputs(recordings: Sequence[Recording], plant: Plant, word: str) -> 
         load = recording[LOAD.name][0, 0] if LOAD.name in recording.signals else 0.0
         failed = quality_gate(recording, float((carried + load) * gravity)).failures
         wrong = [check for check in failed if check.name in REFUSED]
-        if not wrong:  # else it would say the same in other words
-            legs = replay_scenario(recording).legs
+        known = scenario is not None or json.loads(recording.info.settings)
+        if known and not wrong:  # else it would say the same in other words
+            legs = replay_scenario(recording, scenario).legs
             program = check_leg_program(recording, legs, full_speed)
             wrong = [program] if program.grade is Grade.FAILED else []
         if wrong:

@@ -130,7 +130,8 @@ class Ves2Machine(Machine):
         plant = plant or Plant.load(first.info.plant_base or "ves2")
         flaws: list[Check] = []
         for sort, word in SORTS.items():
-            made = prepare_inputs([one.recording for one in getattr(material, sort)], plant, word)
+            own = [one.recording for one in getattr(material, sort)]
+            made = prepare_inputs(own, plant, word, scenario)
             material = material.with_sort(sort, made.recordings)
             flaws += made.flaws
         setting = one_step(replay_scenario(material.measured[0].recording, scenario))
@@ -139,8 +140,8 @@ class Ves2Machine(Machine):
         loaded = any(LOAD.name in one.recording.signals for one in material.every)
         if loaded:
             for sort in SORTS:
-                own = tuple(one.recording for one in getattr(material, sort))
-                material = material.with_sort(sort, loads_of(own))
+                carried = tuple(one.recording for one in getattr(material, sort))
+                material = material.with_sort(sort, loads_of(carried))
         machine = replace(self, plant=plant, scenario=setting, loaded=loaded)
         return Prepared(machine, material, tuple(flaws))
 

@@ -108,8 +108,8 @@ def _unknown(verdict: Verdict) -> str:
             "These recordings do not agree. Each alone is in order or has one cause, but nothing"
             " explains all of them."
         )
-    if verdict.law is not None and verdict.law.claimed:
-        return f"No cause in the library explains it. A law does: {verdict.law.words}."
+    if verdict.lawful:
+        return verdict.lawful
     if strange:
         names = ", ".join(strange[:TOLD])
         return (
@@ -189,7 +189,7 @@ def nearest_sentence(verdict: Verdict) -> str:
     left = verdict.leftover
     if verdict.verdict is not Kind.UNKNOWN or left is None or disagree(verdict.alone):
         return ""
-    if verdict.law is not None and verdict.law.claimed:
+    if verdict.lawful:
         return ""
     said = ""
     if verdict.suspect:

@@ -110,9 +110,9 @@ def _robustness(verdict: Verdict) -> Factor:
     fitted = [r for r in verdict.rivals if r.standing is not Standing.SCREENED]
     if len(fitted) > 1 and fitted[1].behind is not None:
         said = (
-            f"{len(fitted)} explanations were fitted in full; the nearest rival of the best leaves"
+            f"Explanations fitted in full: {len(fitted)}. The nearest rival of the best leaves"
             f" {digits(fitted[1].behind)} more of chi^2."
         )
         return Factor("results robustness", Pedigree.MEASURED, said)
-    said = f"{len(verdict.smallest_findable)} causes were searched; none had to be fitted."
+    said = f"Causes searched: {len(verdict.smallest_findable)}; none had to be fitted."
     return Factor("results robustness", Pedigree.MEASURED, said)

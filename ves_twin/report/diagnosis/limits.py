@@ -49,7 +49,7 @@ def limit_sentences(verdict: Verdict) -> tuple[str, ...]:
     if verdict.causes:
         said.append(
             "Probabilities and intervals hold if the cause is in the library and the model is"
-            " otherwise right; they are not probabilities that the rig is as the model says."
+            " otherwise right; they are not probabilities that the machine is as the model says."
         )
     if verdict.causes and verdict.basis.held_out == "none":
         said.append(
@@ -115,18 +115,18 @@ def next_sentences(verdict: Verdict) -> tuple[str, ...]:
             said.append(f"To tell {names}: another programme; none was offered to choose from.")
     if verdict.verdict is Kind.UNKNOWN:
         said.append(
-            "Record the same programme on a rig in order, or before and after a change, and compare"
-            " the two recordings (ves-twin compare --against)."
+            "Record the same programme on a machine in order, or before and after a change, and"
+            " compare the two recordings (ves-twin compare --against)."
         )
     if verdict.causes and verdict.basis.held_out == "none":
-        said.append("Record another programme on the same rig and give it as --held-out.")
+        said.append("Record another programme on the same machine and give it as --held-out.")
     if verdict.basis.tolerances == "declared":
         said.append(
-            f"Record {FEWEST} rigs in order, or this one mounted anew {FEWEST} times, and give them"
-            " as --commissioning: then the tolerances are measured."
+            f"Record {FEWEST} machines in order, or this one mounted anew {FEWEST} times, and give"
+            " them as --commissioning: then the tolerances are measured."
         )
     if verdict.basis.noise == "declared":
-        said.append("Record the rig standing still and give it as --standstill.")
+        said.append("Record the machine standing still and give it as --standstill.")
     blind = [spoken(k) for k, f in verdict.smallest_findable.items() if f.value is None]
     if blind:
         some = ", ".join(blind[:TOLD])

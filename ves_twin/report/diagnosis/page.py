@@ -51,6 +51,12 @@ from ves_twin.report.page import html_page
 SHOWN = 4
 """Channels drawn large: those that the cause changes most beyond what tolerances can."""
 
+CHI2 = (
+    "chi^2 is the squared error in units of noise, summed over the recordings. A rival that is"
+    " worse by about 10 or more is unlikely; one that is worse by 2 is as good."
+)
+"""How the table of rivals is read; 2 ln 100, at which a rival is dropped, is 9.2."""
+
 DRAWN = 2
 """Recordings whose traces are drawn; the numbers are of all."""
 
@@ -75,7 +81,8 @@ def diagnosis_page(verdict: Verdict, title: str = "Diagnosis", plant: str = "") 
     if verdict.law is not None:
         parts.insert(1, section("A law in place of a cause", *law_parts(verdict.law)))
     if verdict.rivals:
-        parts.append(section("Rivals, and why they lost", _rivals(verdict.rivals)))
+        note = paragraph(CHI2, "note")
+        parts.append(section("Rivals, and why they lost", note, _rivals(verdict.rivals)))
     parts += [
         section("Smallest size that would have been found", *_findable(verdict)),
         section("What this does not prove", bullets(limit_sentences(verdict))),
@@ -183,7 +190,7 @@ def _pictures(verdict: Verdict, exhibit: ReportTraces) -> list[Html]:
         if exhibit.causes
         else "No cause is in the model: its tolerances alone are fitted."
     )
-    if verdict.verdict is Kind.UNKNOWN and exhibit.causes:
+    if verdict.verdict is Kind.UNKNOWN and exhibit.causes and not verdict.lawful:
         what += " That cause is the nearest that the library has, and was not accepted."
     left = [
         residuals_figure(exhibit.channels, traces, f"r{k}") for k, traces in enumerate(shown, 1)
@@ -213,7 +220,7 @@ def _pictures(verdict: Verdict, exhibit: ReportTraces) -> list[Html]:
 
 
 def _rivals(rivals: tuple[Rival, ...]) -> Html:
-    head = ("cause", "size fitted", "chi^2 more than the best", "why")
+    head = ("cause", "size fitted", "worse than the best by (chi^2)", "why")
     rows = [
         (
             " with ".join(map(spoken, rival.causes)),
@@ -266,7 +273,9 @@ def _leftover(verdict: Verdict) -> list[Html]:
     parts = [paragraph(f"Mean square of what is left: {left.mean_square:.3g} (1 is noise).")]
     if not left.loud:
         most = digits(verdict.statistics.misfit_threshold)
-        said = f"No band and no stretch of time passes {most} sigma, the most that rigs in order"
+        said = (
+            f"No band and no stretch of time passes {most} sigma, the most that machines in order"
+        )
         return [*parts, paragraph(f"{said} leave in these recordings.")]
     if left.onset is not None:
         parts.append(paragraph(f"First stretch beyond noise: from {left.onset:.2f} s."))

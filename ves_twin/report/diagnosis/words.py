@@ -32,6 +32,8 @@ def fitted_word(verdict: Verdict) -> str:
     """What the fitted model of a verdict's traces is called."""
     if verdict.exhibit is None or not verdict.exhibit.causes:
         return "tolerances fitted"
+    if verdict.lawful:
+        return "with the law"
     if verdict.verdict is Kind.UNKNOWN:
         return "with the nearest cause"
     return "with the cause" if len(verdict.exhibit.causes) == 1 else "with the causes"

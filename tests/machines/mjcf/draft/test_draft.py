@@ -191,6 +191,14 @@ def test_a_log_in_milliseconds_and_semicolons_needs_no_hand(arm, columns, write)
     assert read_recording(log, rig).time[-1] == pytest.approx(7.995)
 
 
+def test_the_largest_table_of_a_file_of_arrays_is_taken_by_its_full_names(arm, columns, tmp_path):
+    slow = {"temp": np.arange(50.0), "clock": np.arange(50.0)}
+    np.savez(tmp_path / "log.npz", **columns, **slow)
+    _, rig = drafted(arm, tmp_path / "log.npz")
+    recording = read_recording(tmp_path / "log.npz", rig)
+    assert recording["turn.position"][:, 0] == pytest.approx(columns["q1"], abs=1e-12)
+
+
 def test_where_no_name_tells_the_effort_is_the_one_that_the_other_s_motion_needs(tmp_path):
     model = tmp_path / "mass.xml"
     model.write_text(

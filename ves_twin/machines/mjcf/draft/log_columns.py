@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
@@ -89,7 +89,10 @@ class LogColumns:
             if fields[0].guessed:
                 notes.append(f"clock {clock}: no unit is given, {fields[0].unit} is a guess")
             period = _period(scale * read[clock], clock, notes)
-        return _sorted(table.columns, read, clock, scale, period, path, notes)
+        full = {c.name: table.full_name(c.name) for c in table.columns}
+        named = [replace(c, name=full[c.name]) for c in table.columns]
+        read = {full[name]: rows for name, rows in read.items()}
+        return _sorted(named, read, full.get(clock, ""), scale, period, path, notes)
 
 
 def _period(time: FloatArray, clock: str, notes: list[str]) -> float:

@@ -1,0 +1,92 @@
+"""A law in a report: what is claimed, what it is worth, what else it could be, and its picture."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from ves_twin.diagnosis.gain import Gain
+from ves_twin.diagnosis.law.result import LawFinding, LawNumber, LawRival
+from ves_twin.diagnosis.verdict import Basis, Kind, Statistics, Verdict
+from ves_twin.report.diagnosis.answer import verdict_sentence
+from ves_twin.report.diagnosis.law import draw_law, law_parts, law_sentences
+
+X = np.linspace(-5.0, 5.0, 11)
+Y = -0.02 * np.abs(X) * X
+
+LAW = LawFinding(
+    claimed=True,
+    reason="",
+    place="joint",
+    kind="effort",
+    of=("speed@joint",),
+    units=("rad/s", "N*m"),
+    shape="table",
+    form="-0.02 |x| x",
+    numbers=(LawNumber("factor of |x| x", -0.02, -0.021, -0.019),),
+    knots=(tuple(X.tolist()),),
+    values=tuple(Y.tolist()),
+    band=(tuple(X.tolist()), tuple((Y - 0.01).tolist()), tuple((Y + 0.01).tolist())),
+    seen=((-5.0, 5.0),),
+    points=((0.0, 1.0), (0.0, -0.02), (0.01, 0.01)),
+    transient=False,
+    nats=812.0,
+    misfit=1.2,
+    misfit_limit=5.0,
+    further=-3.0,
+    also=(LawRival("joint(speed@joint): cubic", "-0.004 x^3", 1.0, True),),
+    gain=Gain(0.97, 0.95, 0.98, 12.0, 1.3, {}, 9.0),
+)
+
+
+def verdict(law: LawFinding) -> Verdict:
+    basis, figures = Basis("measured", "declared", "measured"), Statistics(1.0, 2.0, 9.0, 5.0)
+    return Verdict(Kind.UNKNOWN, basis, figures, law=law)
+
+
+def test_a_claimed_law_is_told_with_its_gain_its_range_and_what_is_as_good():
+    said = " ".join(law_sentences(LAW))
+    for words in ("-0.02 |x| x", "97 %", "812 nats", "-5", "never measured", "-0.004 x^3"):
+        assert words in said
+    assert verdict_sentence(verdict(LAW)).endswith("depends on its speed: -0.02 |x| x.")
+
+
+def test_without_a_claim_the_reason_and_the_place_are_told_and_no_law():
+    none = replace(LAW, claimed=False, reason="what it leaves is not noise", form="")
+    said = law_sentences(none)[0]
+    assert said.startswith("No law is claimed: what it leaves is not noise.")
+    assert "joint" in said
+    assert "A law does" not in verdict_sentence(verdict(none))
+
+
+def test_a_law_of_time_says_that_it_foretells_nothing():
+    drift = replace(LAW, of=("time",), units=("s", "N*m"), transient=True)
+    assert any("foretells nothing" in text for text in law_sentences(drift))
+
+
+def test_a_law_without_held_out_recordings_is_a_candidate():
+    assert "no held-out recordings" in replace(LAW, gain=None).refusal
+    assert LAW.refusal == ""
+
+
+@pytest.mark.parametrize("shape", ["table", "play"])
+def test_the_section_has_a_picture_where_there_is_something_to_draw(shape):
+    law = LAW if shape == "table" else replace(LAW, shape="play", of=(), seen=(), knots=(), band=())
+    text = "".join(map(str, law_parts(law)))
+    assert ("<svg" in text) == (shape == "table")
+    assert "factor of |x| x" in text
+
+
+def test_a_picture_shows_law_band_recordings_and_truth():
+    figure = draw_law(LAW, lambda x: -0.02 * np.abs(x) * x)
+    labels = figure.axes[0].get_legend_handles_labels()[1]
+    assert set(labels) == {"law", "90 % band", "recordings", "truth"}
+
+
+def test_a_verdict_with_a_law_is_json_with_the_law_in_it():
+    told = json.loads(verdict(LAW).to_json())["law"]
+    assert told["form"] == "-0.02 |x| x"
+    assert told["gain"]["share"] == 0.97
