@@ -163,7 +163,7 @@ def _doubt(verdict: Verdict) -> str:
         return f"{it} fits these recordings; no other recording has tested it."
     if gain is None or gain.share is None:
         return "The held-out recordings can neither confirm nor refute it."
-    share = shares(gain.share, gain.low, gain.high)[0]
+    share = "all" if gain.share >= 1.0 else shares(gain.share, gain.low, gain.high)[0]
     return f"Held-out recordings confirm it: there it takes {share} of the error beyond noise away."
 
 

@@ -56,9 +56,11 @@ def limit_sentences(verdict: Verdict) -> tuple[str, ...]:
             "A cause that fits these recordings may fail on others; no held-out one was given."
         )
     if verdict.basis.tolerances == "declared":
+        loose = any(not cause.firm for cause in verdict.causes)
         said.append(
             "The tolerances are declared. Were they 2.5 times too small, an error of commissioning"
-            " would look like a cause; names below that are called provisional."
+            " would look like a cause"
+            + ("; a name called provisional may be one." if loose else ", but of a smaller size.")
         )
     if verdict.unseen:
         said.append(

@@ -158,11 +158,16 @@ def _cause(cause: Cause, verdict: Verdict) -> list[tuple[str, ...]]:
             size_words(estimate, _origin(verdict)),
             interval_words(estimate),
             quantity(estimate.nominal, estimate.unit),
-            f"{100.0 * cause.probability:.0f} %",
+            _probability(cause.probability),
             standing,
         )
         for name, estimate in cause.largest.items()
     ]
+
+
+def _probability(share: float) -> str:
+    """Never certain: what is not in the library has no share."""
+    return "> 99 %" if share > 0.99 else f"{100.0 * share:.0f} %"
 
 
 def _levels(verdict: Verdict) -> list[Html]:

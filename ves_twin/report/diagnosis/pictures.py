@@ -65,7 +65,8 @@ def answer_figure(exhibit: ReportTraces, fitted: str) -> Html:
     caption = (
         f"{exhibit.channels[column].name} of {traces.name}, the channel that tells most; below, the"
         " same less the model before. Grey: where a machine in order may lie, by noise and"
-        " tolerances (95 % of the rows)."
+        " tolerances (95 % of the rows), point by point: a curve inside may still be one that no"
+        " such machine draws."
     )
     return svg(draw_answer(exhibit, fitted), "answer", caption)
 
