@@ -61,8 +61,10 @@ def words_of(command: str, tmp_path: Path, recording: Path) -> list[str]:
         "inspect": [str(recording)],
         "import": [str(recording), "--map", str(tmp_path / "map.toml")],
         "export": [str(recording), "--format", "csv"],
+        "new": [str(recording), str(recording)],
     }
-    inside = f"{out}/r.parquet" if command in {"inspect", "import", "export"} else out
+    files = {"inspect", "import", "export", "new"}
+    inside = f"{out}/r.parquet" if command in files else out
     return [command, *given[command], "--out", inside]
 
 

@@ -198,15 +198,11 @@ class Search:
             found = self._step(point, jacobian)
             fall = point.chi2 - found.chi2
             point = found
-            if fall < self._worth(point):
+            if fall < CONVERGED + self.enough * point.chi2:
                 if not self.tempered or self._prior_weight(point) < NONLINEAR_CHI2:
                     break
                 self.tempered = False
         return point, jacobian
-
-    def _worth(self, point: Point) -> float:
-        """Fall of chi^2 from a point that is worth another run."""
-        return CONVERGED + self.enough * point.chi2
 
     def _prior_weight(self, point: Point) -> float:
         """Squared residual per sample: while it is far above one the model is not yet linear."""
@@ -237,8 +233,6 @@ class Search:
             far = attempt == 0 and prior > NONLINEAR_CHI2
             weights = (prior, PRIOR_WEIGHT_RATIO * prior) if far else (prior,)
             steps = [self._proposed(point, jacobian, weight) for weight in weights]
-            if attempt and point.chi2 - steps[0].foretold < self._worth(point):
-                break  # not even the linear model hopes for more
             trials = [self.at(step.shift, step.delta) for step in steps]
             for trial in trials:
                 self._learn(point, trial, jacobian)

@@ -11,7 +11,7 @@ from ves_twin.core.recording.files import save_recording
 NULLS = {"2026-03-02": 0.0, "2026-03-05": 0.0, "2026-03-09": 0.01, "2026-03-12": 0.01}
 
 
-@pytest.mark.slow
+@pytest.mark.nightly
 @pytest.mark.timeout(900)  # 800 simulations of 3 s, several minutes on a busy machine
 def test_a_null_that_came_is_named_dated_and_sized(tmp_path, capsys):
     short = {"run.duration": 3.0, "plant": "ves2_fast"}
