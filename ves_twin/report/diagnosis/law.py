@@ -21,6 +21,10 @@ EQUAL = 3.0
 """Nats within which another law is as good: odds below 20."""
 
 
+DRAWN = 400
+"""Places at which a law is drawn, from end to end of what was seen."""
+
+
 def law_sentences(law: LawFinding) -> list[str]:
     """What was found, what it is worth, where it was seen, what else it could be."""
     said = [capital(f"{law.words}.") if law.claimed else _missing(law)]
@@ -124,8 +128,7 @@ def draw_law(law: LawFinding, truth: Callable[[FloatArray], FloatArray] | None =
     figure = new_figure(3.6)
     axes = figure.subplots()
     low, high = law.seen[0]
-    x = np.array(law.knots[0])
-    inside = (x >= low) & (x <= high)
+    x = np.linspace(low, high, DRAWN)
     if law.points:
         at, value, sd = (np.array(rows) for rows in law.points)
         axes.errorbar(
@@ -136,9 +139,10 @@ def draw_law(law: LawFinding, truth: Callable[[FloatArray], FloatArray] | None =
         axes.fill_between(
             along, least, most, color=AFTER, alpha=0.25, linewidth=0, label="90 % band"
         )
-    axes.plot(x[inside], np.array(law.values)[inside], color=AFTER, lw=1.4, label="law")
+    found = np.interp(x, np.array(law.knots[0]), np.array(law.values))
+    axes.plot(x, found, color=AFTER, lw=1.4, label="law")
     if truth is not None:
-        axes.plot(x[inside], truth(x[inside]), "--", color="black", lw=1.0, label="truth")
+        axes.plot(x, truth(x), "--", color="black", lw=1.0, label="truth")
     axes.set_xlabel(f"{law.of[0]}, {law.units[0].replace('*', ' ')}".rstrip(", "), fontsize=8)
     axes.set_ylabel(f"{law.kind} at {law.place}, {law.units[-1].replace('*', ' ')}", fontsize=8)
     axes.tick_params(labelsize=8)
