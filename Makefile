@@ -27,12 +27,12 @@ demo-law: .venv/.run
 	$(BIN)/python benchmarks/demo_law.py --kind $(KIND) --out runs/demo-law
 
 test: .venv/.dev lint layers types
-	$(BIN)/python -m pytest -n 2 --dist worksteal --durations=25 --costs runs/test-costs.csv
+	$(BIN)/python -m pytest -n 2 --dist worksteal --durations=25 --costs=runs/test-costs.csv
 
 # Statistical suites at full size as well; ends with one table of them.
 nightly: .venv/.dev lint layers types attack
 	$(BIN)/python -m pytest -n 2 --dist worksteal --nightly --mutations 10000 \
-		--costs runs/nightly-costs.csv
+		--costs=runs/nightly-costs.csv
 	$(BIN)/python benchmarks/suites.py --size full --folder runs/blind
 
 check: .venv/.dev lint layers types fast
