@@ -32,6 +32,20 @@ def change(machine, fed, **values):
     return {name: with_it[name] - without[name] for name in with_it}
 
 
+def round_trip(machine, value) -> float:
+    """Rms [N] of the force that inverse dynamics asks for a simulated motion, less the one fed."""
+    fed = programme()
+    forward = MjcfForward.of(machine, Mode.CONTROL)
+    rows = forward.simulate(fed, value)
+    names = [c.name for c in forward.channels]
+    moved = {n: rows[:, [names.index(n)]] for n in ("cart.position", "arm.angle")}
+    back = efforts(machine, Excitation("back", TIME, {**fed.drive, **moved}), **value)
+    speed = np.gradient(moved["cart.position"][:, 0], TIME)[INNER]
+    asked = np.interp(TIME - 0.001, TIME, fed.drive["drive.force"][:, 0])
+    gap = (back["drive.force"] - asked)[INNER][np.abs(speed) > 0.05]
+    return float(np.sqrt(np.mean(gap**2)))
+
+
 def test_a_cubic_spring_pulls_with_the_cube_of_its_travel(machine):
     fed = programme()
     found = change(machine, fed, **{"cubic_spring@rail:stiffness": 2e3})["drive.force"]
@@ -42,16 +56,9 @@ def test_a_cubic_spring_pulls_with_the_cube_of_its_travel(machine):
 
 def test_forward_and_inverse_agree_about_a_cubic_spring(machine):
     """Through MuJoCo's own steps, and back through its inverse dynamics."""
-    fed, value = programme(), {"cubic_spring@rail:stiffness": 2e3}
-    forward = MjcfForward.of(machine, Mode.CONTROL)
-    rows = forward.simulate(fed, value)
-    names = [c.name for c in forward.channels]
-    moved = {n: rows[:, [names.index(n)]] for n in ("cart.position", "arm.angle")}
-    back = efforts(machine, Excitation("back", TIME, {**fed.drive, **moved}), **value)
-    speed = np.gradient(moved["cart.position"][:, 0], TIME)[INNER]
-    asked = np.interp(TIME - 0.001, TIME, fed.drive["drive.force"][:, 0])
-    gap = (back["drive.force"] - asked)[INNER][np.abs(speed) > 0.05]
-    assert np.sqrt(np.mean(gap**2)) < 0.3  # soft friction: 2 % of 15 N
+    assert (
+        round_trip(machine, {"cubic_spring@rail:stiffness": 2e3}) < 0.3
+    )  # soft friction: 2 % of 15 N
 
 
 def test_friction_by_load_is_a_share_of_what_the_joint_carries(machine):
@@ -66,17 +73,9 @@ def test_friction_by_load_is_a_share_of_what_the_joint_carries(machine):
 
 
 def test_friction_by_load_slows_a_simulated_cart_as_its_inverse_says(machine):
-    fed, value = programme(), {"load_friction@rail:share": 0.2}
-    forward = MjcfForward.of(machine, Mode.CONTROL)
-    rows = forward.simulate(fed, value)
-    names = [c.name for c in forward.channels]
-    moved = {n: rows[:, [names.index(n)]] for n in ("cart.position", "arm.angle")}
-    back = efforts(machine, Excitation("back", TIME, {**fed.drive, **moved}), **value)
-    speed = np.gradient(moved["cart.position"][:, 0], TIME)[INNER]
-    asked = np.interp(TIME - 0.001, TIME, fed.drive["drive.force"][:, 0])
-    gap = (back["drive.force"] - asked)[INNER][np.abs(speed) > 0.05]
     # what the joint carries holds its own friction loss and damping, which inverse takes out
-    assert np.sqrt(np.mean(gap**2)) < 0.3 + 0.2 * (0.5 + 4.0 * 0.3)
+    asked = 0.3 + 0.2 * (0.5 + 4.0 * 0.3)
+    assert round_trip(machine, {"load_friction@rail:share": 0.2}) < asked
 
 
 def test_turned_gravity_loads_a_machine_that_rests(machine):
