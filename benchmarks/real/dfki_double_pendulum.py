@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 from scipy.interpolate import CubicSpline
 
-from real.machine import Set, effects, machine, read
+from real.machine import OF_JOINTS, Set, effects, machine, read
 
 PERIOD = 0.002
 """Of the even clock that the jittery stamps are put on [s]."""
@@ -69,21 +69,7 @@ def description(name: str, parameters: Mapping[str, float], other: bool) -> str:
         text += f'[[parameters]]\nbody = "{body}"\nattribute = "mass"\nsd = {0.05 * mass}\n'
         text += f'[[parameters]]\nbody = "{body}"\nattribute = "centre_z"\nsd = "5 mm"\n'
     return text + effects(
-        *(
-            (kind, JOINTS)
-            for kind in (
-                "viscous_friction",
-                "coulomb_friction",
-                "viscous_asymmetry",
-                "coulomb_asymmetry",
-                "quadratic_drag",
-                "stribeck_friction",
-                "load_friction",
-                "force_offset",
-                "joint_spring",
-                "rotor_inertia",
-            )
-        ),
+        *((kind, JOINTS) for kind in OF_JOINTS),
         ("actuator_delay", MOTORS),
         ("sensor_gain", [f"{t}.1" for t in TORQUES]),
         ("body_mass", BODIES),

@@ -67,6 +67,21 @@ def stretch(recording: Recording, start: float, stop: float) -> Recording:
     return Recording(recording.time[rows], signals, recording.info)
 
 
+OF_JOINTS = (
+    "viscous_friction",
+    "coulomb_friction",
+    "viscous_asymmetry",
+    "coulomb_asymmetry",
+    "quadratic_drag",
+    "stribeck_friction",
+    "load_friction",
+    "force_offset",
+    "joint_spring",
+    "rotor_inertia",
+)
+"""Kinds that are offered at every joint of an arm."""
+
+
 def effects(*kinds: tuple[str, Iterable[str]]) -> str:
     """Tables of what may be wrong, and where."""
     tables = (f'\n[[effects]]\nkind = "{k}"\non = {json.dumps(list(on))}\n' for k, on in kinds)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from real.machine import Set, effects, machine, of_urdf, read
+from real.machine import OF_JOINTS, Set, effects, machine, of_urdf, read
 
 TORQUES = (18, 100, 35, 35, 6, 7, 1)
 """Typical torque [N m] of each joint, read off the recordings; speeds are near 1.5 rad/s."""
@@ -45,21 +45,7 @@ def description() -> str:
     for body, mass in zip(BODIES, MASSES, strict=True):
         text += f'[[parameters]]\nbody = "{body}"\nattribute = "mass"\nsd = {0.05 * mass}\n'
     return text + effects(
-        *(
-            (kind, JOINTS)
-            for kind in (
-                "viscous_friction",
-                "coulomb_friction",
-                "viscous_asymmetry",
-                "coulomb_asymmetry",
-                "quadratic_drag",
-                "stribeck_friction",
-                "load_friction",
-                "force_offset",
-                "joint_spring",
-                "rotor_inertia",
-            )
-        ),
+        *((kind, JOINTS) for kind in OF_JOINTS),
         ("sensor_gain", [f"torque.{k}.1" for k in range(1, 8)]),
         ("body_mass", BODIES),
         ("mass_centre", [f"{b}.{axis}" for b in BODIES for axis in "xyz"]),
