@@ -9,7 +9,8 @@ import pytest
 from toy import QUICK, SD, Toy, programme
 
 from ves_twin.diagnosis.assess import assess
-from ves_twin.diagnosis.explain import CLOSE, FAR, _starts, explain
+from ves_twin.diagnosis.explain import FAR, explain
+from ves_twin.diagnosis.fits import CLOSE, _starts
 from ves_twin.diagnosis.null import Thresholds
 from ves_twin.diagnosis.runs import Runs
 from ves_twin.diagnosis.signature_library import build_bank
@@ -97,7 +98,7 @@ def test_a_fit_begins_at_the_size_of_the_bank_too_where_that_is_another(looked):
 
 def test_two_causes_explain_what_one_does_not(looked):
     record = looked(TWO)
-    single = explain(record, LEVELS, QUICK, pairs=False)
+    single = explain(record, LEVELS, QUICK, together=False)
     assert not single.adequate
     assert len(single.best.causes) == 1
     assert single.alone == ()
@@ -122,7 +123,9 @@ def test_what_no_cause_of_the_library_explains_is_not_adequate(looked):
 def test_what_no_cause_comes_near_is_given_up_before_pairs_and_second_causes(looked, monkeypatch):
     time = FED.time[:, None]
     strange = 3.0 * np.sin(2.0 * np.pi * 9.0 * time) * np.where(time > 4.0, [1.0, -2.0], 0.0)
-    monkeypatch.setattr("ves_twin.diagnosis.explain.suspects_at", lambda *_: pytest.fail("looked"))
+    for where in ("judge", "pairs"):
+        name = f"ves_twin.diagnosis.{where}.suspects_at"
+        monkeypatch.setattr(name, lambda *_: pytest.fail("looked"))
     many = replace(QUICK, sparse=True)
     found = explain(looked({}, added=strange), LEVELS, many)
     assert found.far
@@ -151,9 +154,9 @@ def test_a_cause_that_takes_less_off_than_the_threshold_explains_nothing(looked)
     fall = explain(record, LEVELS, QUICK)
     taken = fall.commissioning.chi2 - fall.best.chi2
     high = replace(LEVELS, effect=2.0 * taken)
-    assert not explain(record, high, QUICK, pairs=False).adequate
+    assert not explain(record, high, QUICK, together=False).adequate
     low = replace(LEVELS, effect=1.2 * taken)  # a cause may take LEAST of it
-    assert explain(record, low, QUICK, pairs=False).adequate
+    assert explain(record, low, QUICK, together=False).adequate
 
 
 def test_an_empty_library_explains_nothing():
@@ -179,5 +182,5 @@ def test_no_signatures_are_simulated_anew_where_the_nominal_ones_find_nothing_mo
     assert ("signatures" in told) == (found.second >= LEVELS.effect)
     told.clear()
     low = replace(LEVELS, effect=0.0)
-    explain(looked(ONE), low, QUICK, pairs=False, progress=lambda share, what: told.append(what))
+    explain(looked(ONE), low, QUICK, together=False, progress=lambda share, what: told.append(what))
     assert "signatures" in told

@@ -85,6 +85,7 @@ def refine(
     probed: bool = False,
     enough: float = RELATIVE_CONVERGENCE,
     steps: int = ITERATIONS,
+    target: float = np.inf,
 ) -> Fit:
     """Fit causes and nuisances with the full forward.
 
@@ -102,6 +103,7 @@ def refine(
         enough: fall of chi^2, of all of it, that is not worth another run.
         steps: at most from one linearisation; fewer than usual are for a first impression, for
             which what the integration step is worth at the fit does not count.
+        target: chi^2 that counts: a search ends where it falls too slowly to come down to it.
     """
     runs = evidence.runs
     free = (
@@ -109,21 +111,22 @@ def refine(
         if causes
         else np.zeros(0, int)
     )
-    search = Search(evidence, free, local, farthest, enough, steps)
+    search = Search(evidence, free, local, farthest, enough, steps, target)
     start = np.clip(shift, search.low, search.high)
     point, jacobian = search.run(search.at(start, step_share))
     whole = steps == ITERATIONS and np.isfinite(point.chi2)
     if whole and not _near(runs, search, point.shift):
-        search = Search(evidence, free, _stepped(search, point), farthest, enough)
-        point, jacobian = search.run(search.at(point.shift, point.delta))
+        last, local = search, _stepped(search, point)
+        search = Search(evidence, free, local, farthest, enough, target=target)
+        point, jacobian = search.run(search.at(point.shift, point.delta), last)
     for _ in range(rounds):
         if _near(runs, search, point.shift):
             break
-        before = point.chi2
+        before, last = point.chi2, search
         turned = replace(search.local, columns=search.turned)
         local = renewed(turned, point.shift, point.prediction)
         search = Search(evidence, free, local, farthest, enough)
-        point, jacobian = search.run(search.at(point.shift, point.delta))
+        point, jacobian = search.run(search.at(point.shift, point.delta), last)
         if before - point.chi2 < WORTH * point.chi2:
             break
     if probed and np.isfinite(point.chi2):
