@@ -83,8 +83,9 @@ def test_those_near_the_likeliest_are_fitted_and_two_at_least(looked):
     assert {effect for fit in (*found.fits, *found.hopeless) for effect in effects(fit)} == names
 
 
-def test_a_fit_begins_at_the_size_of_the_bank_too_where_that_is_another(looked):
-    record = looked(ONE)
+def test_a_fit_begins_at_the_size_of_the_bank_too_where_that_is_another(looked, bank):
+    seen = looked(ONE)
+    record = replace(seen, beside=None)
     suspect = record.suspects[0]
     rows = record.screen.bank.entries(suspect.hypothesis)
     match = record.screen.match(record.z)[rows]
@@ -94,6 +95,9 @@ def test_a_fit_begins_at_the_size_of_the_bank_too_where_that_is_another(looked):
     scaled, other = _starts(record, replace(suspect, sizes=3.0 * own))
     assert np.array_equal(scaled, 3.0 * own)
     assert np.array_equal(other, own)
+    assert seen.beside.causes == (bank.hypotheses[suspect.hypothesis],)
+    (start,) = _starts(seen, replace(suspect, sizes=3.0 * own))  # it was fitted before
+    assert start is seen.beside.sizes
 
 
 def test_two_causes_explain_what_one_does_not(looked):

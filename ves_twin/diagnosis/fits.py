@@ -12,8 +12,8 @@ from ves_twin.diagnosis.evidence import Evidence
 from ves_twin.diagnosis.fit_context import FitContext
 from ves_twin.diagnosis.fit_job import FitJob
 from ves_twin.diagnosis.forward import Hypothesis
-from ves_twin.diagnosis.linearise import Linearisation
-from ves_twin.diagnosis.refine import Fit, refine
+from ves_twin.diagnosis.linearise import Linearisation, renewed
+from ves_twin.diagnosis.refine import Fit, near, refine
 from ves_twin.diagnosis.screen import Candidate
 
 RIVAL_RATIO = 4.0
@@ -111,16 +111,23 @@ def within_reach(leader: Fit, desk: FitContext) -> float:
 
 
 def again(evidence: Evidence, fit: Fit, rounds: int) -> Fit:
-    """From where a fit ended, with columns computed there."""
-    return refine(evidence, fit.causes, fit.shift, fit.local, rounds, fit.step_share)
+    """From where a fit ended, with columns computed there before anything is searched."""
+    local = fit.local
+    if rounds and not near(local, fit.shift):
+        local, rounds = renewed(local, fit.shift, fit.prediction), rounds - 1
+    return refine(evidence, fit.causes, fit.shift, local, rounds, fit.step_share)
 
 
 def _starts(first: Assessment, suspect: Candidate) -> list[FloatArray]:
     """The screen's scaled size, and the unscaled size of the bank nearest to the record.
 
-    One is enough of a cause that is linear: any size leads to the same.
+    One is enough of a cause that is linear: any size leads to the same. Of one that was fitted
+    before, that size is nearer than either.
     """
-    if first.screen.bank.hypotheses[suspect.hypothesis].linear:
+    hypothesis = first.screen.bank.hypotheses[suspect.hypothesis]
+    if first.beside is not None and first.beside.causes == (hypothesis,):
+        return [first.beside.sizes]
+    if hypothesis.linear:
         return [suspect.sizes]
     rows = first.screen.bank.entries(suspect.hypothesis)
     match = first.screen.match(first.z)[rows]

@@ -77,7 +77,7 @@ def strained_pair(desk: FitContext, fits: Sequence[Fit]) -> Explanation | None:
         beside = bank.hypotheses[suspect.hypothesis]
         if beside not in causes:
             proposed.append(((*leader.causes, beside), [leader.sizes, suspect.sizes]))
-    tried = _fitted(desk, evidence, [*proposed, *_screened(desk)], leader)
+    tried = _fitted(desk, evidence, proposed, leader)
     if min(fit.chi2 for fit in tried) > leader.chi2 - desk.thresholds.effect:
         return None
     double = judge(desk, settled(evidence, tried, desk))
