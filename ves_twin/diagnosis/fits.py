@@ -79,13 +79,21 @@ def start_of(first: Assessment) -> Start:
     return Start(last.shift, last.local, last.step_share)
 
 
-def settled(evidence: Evidence, fits: list[Fit], desk: FitContext) -> list[Fit]:
+def settled(
+    evidence: Evidence, fits: list[Fit], desk: FitContext, leader: Fit | None = None
+) -> list[Fit]:
     """Fits by columns computed at the leader: what rivals share of the commissioning errors.
 
     Hopeless rivals stay as they are. Where a rival leads then, once more at its own.
+
+    Args:
+        evidence: what was measured.
+        fits: rough ones.
+        desk: how many linearisations.
+        leader: the one to begin with; the best if None.
     """
     for _ in range(2):
-        leader = min(fits, key=lambda fit: fit.chi2)
+        leader = leader or min(fits, key=lambda fit: fit.chi2)
         first = again(evidence, leader, desk.settings.rounds)
         others = [fit for fit in fits if fit is not leader]
         jobs = [
@@ -97,6 +105,7 @@ def settled(evidence: Evidence, fits: list[Fit], desk: FitContext) -> list[Fit]:
         fits = [first, *rivals, *(fit for fit in others if not is_near(fit, first))]
         if all(rival.chi2 >= first.chi2 for rival in rivals):
             break
+        leader = None
     return fits
 
 

@@ -80,7 +80,7 @@ def strained_pair(desk: FitContext, fits: Sequence[Fit]) -> Explanation | None:
     tried = _fitted(desk, evidence, proposed, leader)
     if min(fit.chi2 for fit in tried) > leader.chi2 - desk.thresholds.effect:
         return None
-    double = judge(desk, settled(evidence, tried, desk))
+    double = judge(desk, settled(evidence, tried, desk, tried[0]))
     best = double.best
     shift = np.where(evidence.runs.sd > 0.0, best.shift, 0.0)
     kept = evidence.runs.indices(leader.causes[0])
