@@ -21,6 +21,9 @@ from ves_twin.diagnosis.screen import Screen
 PAIRS = 6
 """Pairs of causes that are fitted with the full forward."""
 
+HALF = 0.5
+"""Share of what a second cause must take off, below which rough fits show that it will not."""
+
 Proposal = tuple[tuple[Hypothesis, ...], list[FloatArray]]
 """Causes, and a size of each to begin at."""
 
@@ -78,7 +81,8 @@ def strained_pair(desk: FitContext, fits: Sequence[Fit]) -> Explanation | None:
         if beside not in causes:
             proposed.append(((*leader.causes, beside), [leader.sizes, suspect.sizes]))
     tried = _fitted(desk, evidence, proposed, leader)
-    if min(fit.chi2 for fit in tried) > leader.chi2 - desk.thresholds.effect:
+    least = desk.thresholds.effect + desk.settings.model_error**2 * leader.power
+    if leader.chi2 - min(fit.chi2 for fit in tried) < HALF * least:
         return None
     double = judge(desk, settled(evidence, tried, desk, tried[0]))
     best = double.best
