@@ -41,8 +41,9 @@ CASES = {
     ),
     "outside": BlindRig({}, "gear_ripple", 3.0),
 }
-"""What is hidden; the last is of a kind that the library lacks. A pair has 30 and 26 sigma, as blind
-suites draw them; the dead band of the loud one has 2 900, of which 2 % are more than the gain."""
+"""What is hidden; the last is of a kind that the library lacks. A pair has 30 and 26 sigma,
+as blind suites draw them; the loud one's dead band has 2 900, of which 2 % are more than the gain.
+"""
 
 STAGES = {
     "_bank": "bank",

@@ -43,6 +43,7 @@ def effects(fit):
 
 ONE = {"friction.size": 0.05, "plant.slope": 0.03}
 TWO = {"friction.size": 0.1, "ripple.size": 0.1}
+STRAINED = {"friction.size": 0.1, "plant.gain": 1.3}  # 15 sd of what commissioning leaves open
 
 
 def test_one_cause_explains_a_record_of_one(looked):
@@ -151,6 +152,31 @@ def test_a_machine_of_many_parameters_names_the_same(looked):
         assert effects(sparse.best) == effects(usual.best)
         assert sparse.adequate == usual.adequate
         assert sparse.best.sizes == pytest.approx(usual.best.sizes, rel=1e-3)
+
+
+def test_where_runs_are_dear_a_strained_pair_comes_before_single_causes_are_weighed(
+    looked, monkeypatch
+):
+    record, dear = looked(STRAINED), replace(QUICK, sparse=True)
+    usual = explain(record, LEVELS, QUICK)
+    monkeypatch.setattr("ves_twin.diagnosis.explain.judge", lambda *_: pytest.fail("weighed"))
+    found = explain(record, LEVELS, dear)
+    assert found.adequate
+    assert effects(found.best) == effects(usual.best) == {"friction", "gain"}
+    order = [cause.effect for cause in usual.best.causes]
+    mine = dict(zip((c.effect for c in found.best.causes), found.best.sizes, strict=True))
+    assert [mine[name] for name in order] == pytest.approx(usual.best.sizes, rel=1e-3)
+    alone = found.alone[0]
+    assert len(alone.causes) == 1
+    assert alone.chi2 > found.best.chi2 + LEVELS.effect
+    monkeypatch.undo()
+    assert len(explain(record, LEVELS, dear, together=False).best.causes) == 1
+
+
+def test_a_second_cause_that_takes_too_little_off_is_no_pair_however_strained(looked):
+    record = looked(STRAINED)
+    high = replace(LEVELS, effect=1e6)
+    assert len(explain(record, high, replace(QUICK, sparse=True)).best.causes) == 1
 
 
 def test_a_cause_that_takes_less_off_than_the_threshold_explains_nothing(looked):
