@@ -57,11 +57,13 @@ square law at full scale [1], its hysteresis [N]; ripple of the q2 gear [N m]; a
 the range of q2 [N m/rad]; square-law drag on the platform [N s^2/m^2]; the arm's clock running fast
 [1]; Fz cut off at a share of its largest [1]; the encoder of q3 slipping half way [rad]."""
 
+LATE_CLOCK = "late_sensor_clock"
+
 EDITS = {
     "payload_off_centre": Edit("mass_centre@arm.link3.y:shift", 0.01, 0.08),
     "leaning_gravity": Edit("base_tilt@rig:roll", 1e-3, 2e-2),
     "friction_loss": Edit("coulomb_friction@arm.q2:level", 2.0, 20.0),
-    "late_sensor_clock": Edit("sensor_delay@sensor:delay", 2e-3, 1.5e-2),
+    LATE_CLOCK: Edit("sensor_delay@sensor:delay", 2e-3, 1.5e-2),
     "crossed_wires": Edit("cross_talk@sensor.mx.fz:share", 5e-3, 5e-2),
     "logged_length": Edit("recorder_offset@leg.length.3:offset", 4e-4, 5e-3),
     "late_length": Edit("recorder_delay@leg.length.4:delay", 5e-3, 4e-2),
@@ -122,11 +124,14 @@ class BlindVes2(BlindMachine):
         plant = plant.with_values(
             {name: self.plant.parameters.array(name) * rng.uniform(*LEVELS) for name in NOISES}
         )
-        scenario = self._programme(programme, {"run.substeps": 2, **rig.deployed})
+        log = {"run.log": "tick"} if rig.outside == LATE_CLOCK else {}
+        scenario = self._programme(programme, {"run.substeps": 2, **rig.deployed, **log})
         sim = _Edited(rig, plant, scenario, int(rng.integers(2**31)))
         sim.model.opt.integrator = mujoco.mjtIntegrator.mjINT_IMPLICIT
         _run(sim, rig, rng)
         rows = _collected(sim, self._programme(programme, {"run.substeps": 2}))
+        if log:
+            rows = _sampled_late(rows, sim.rig.clock.admittance, rig.size)
         signals = {name: np.array(values) for name, values in rows.signals.items()}
         signals["sensor.wrench"] += offsets
         _edit_signals(signals, rows.time, rig, rng, self.plant)
@@ -214,6 +219,16 @@ def _collected(sim: Simulator, written: Scenario) -> Recording:
     return Recording(time, measured, info)
 
 
+def _sampled_late(rows: Recording, every: int, delay: float) -> Recording:
+    """Every so many rows, with the wrench as it was a delay before each of them."""
+    time = rows.time[::every]
+    late = [np.interp(time - delay, rows.time, column) for column in rows["sensor.wrench"].T]
+    signals = {name: values[::every] for name, values in rows.signals.items()}
+    signals["sensor.wrench"] = np.stack(late, axis=1)
+    info = replace(rows.info, period=every * rows.info.period)
+    return Recording(time, signals, info)
+
+
 def _edit_signals(
     signals: dict[str, FloatArray],
     time: FloatArray,
@@ -256,15 +271,12 @@ def _edit_wrench(
         case "clipped_channel":
             limit = size * np.max(np.abs(fz))
             np.clip(fz, -limit, limit, out=fz)
-        case "late_sensor_clock":
-            wrench[:] = _late(wrench, time, size)
         case "crossed_wires":
             wrench[:, 3] += size * ranges[3] / ranges[2] * fz
 
 
 def _late(values: FloatArray, time: FloatArray, delay: float) -> FloatArray:
-    columns = [np.interp(time - delay, time, column) for column in values.T]
-    return np.stack(columns, axis=1)
+    return np.stack([np.interp(time - delay, time, column) for column in values.T], axis=1)
 
 
 def _skewed(values: FloatArray, time: FloatArray, skew: float) -> FloatArray:
