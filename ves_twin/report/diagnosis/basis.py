@@ -41,14 +41,24 @@ def _listed(names: list[str]) -> str:
     return f"{', '.join(names[:-1])} and {names[-1]}" if len(names) > 1 else names[0]
 
 
+def taken_share(gain: Gain) -> str:
+    """How much of what is there an extension takes away: no more than all of it."""
+    return _taken(gain)[0]
+
+
 def taken_words(gain: Gain) -> str:
-    """How much of what is there, within which range; no more than all of it."""
-    what = "of the error beyond noise on held-out recordings"
-    ends = [None if end is None else min(end, 1.0) for end in (gain.share, gain.low, gain.high)]
+    """The same, of what, and within which range."""
+    share, low, high = _taken(gain)
+    span = f" ({low} to {high})" if low else ""
+    return f"{share} of the error beyond noise on held-out recordings{span}"
+
+
+def _taken(gain: Gain) -> tuple[str, str, str]:
     if gain.low is not None and gain.low > NEARLY_ALL:
-        return f"more than {100.0 * NEARLY_ALL:.0f} % {what}"
+        return f"more than {100.0 * NEARLY_ALL:.0f} %", "", ""
+    ends = (None if end is None else min(end, 1.0) for end in (gain.share, gain.low, gain.high))
     share, low, high = shares(*ends)
-    return f"{share} {what} ({low} to {high})"
+    return share, low, high
 
 
 def gain_sentence(verdict: Verdict) -> str:
