@@ -12,6 +12,7 @@ from ves_twin.core.recording.recording import Recording
 from ves_twin.core.signals import Signal
 from ves_twin.data.quality.check import Check
 from ves_twin.data.suspicions import Range
+from ves_twin.diagnosis.design import DesignSpace
 from ves_twin.diagnosis.forward import Excitation, Forward
 from ves_twin.diagnosis.refusal import refusal
 from ves_twin.diagnosis.settings import Settings
@@ -214,6 +215,14 @@ class Machine(ABC):
 
         Raises:
             VesTwinError: no such excitation, or one that the machine does not carry out.
+        """
+
+    @abstractmethod
+    def design_space(self, seconds: float) -> DesignSpace:
+        """Excitations of a length [s] within the machine's limits, from which one is designed.
+
+        Raises:
+            InvalidInputError: inputs that cannot be bounded.
         """
 
     @abstractmethod
