@@ -42,7 +42,7 @@ REACH = 0.3
 """First step of the search from the best point, the box being 2 wide."""
 
 FORWARD_STEP = 1.0
-"""Commissioning sd of the one-sided differences of the search."""
+"""Commissioning sd of one-sided differences: where tolerances are many, the search takes them."""
 
 NOTHING = 30.0
 """Cost of a point that no machine bears: worse than any separation."""
@@ -136,8 +136,8 @@ def design_excitation(
 ) -> Design:
     """Optimise a programme for the separation of causes, and hold it against the menu's best.
 
-    The search takes one-sided differences, and of many tolerances those that count (`_axes`);
-    what it finds is judged by all of them.
+    Of many tolerances the search takes those that count (`_counting`), by one-sided differences;
+    what it finds is judged by all of them, by differences to both sides.
 
     Args:
         forward: the plant, its tolerances and its library.
@@ -196,7 +196,8 @@ class _Desk:
         """Score by few runs, with the tolerances of some names; zero where the plant fails."""
         runs = self.runs(programme)
         axes = _axes(runs, names)
-        base = linearise(runs, runs.origin, axes=axes, forward_step=FORWARD_STEP)
+        step = None if names is None else FORWARD_STEP
+        base = linearise(runs, runs.origin, axes=axes, forward_step=step)
         chi2 = self.question.least(separation(base, self.question, axes))
         return score(chi2) if np.all(np.isfinite(chi2)) else 0.0
 
