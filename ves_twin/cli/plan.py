@@ -42,6 +42,12 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         " that the machine's first excitation confuses. Writes them and compares with the menu's"
         " best; --seconds is their length (default: 5)",
     )
+    parser.add_argument(
+        "--add-channel",
+        action="store_true",
+        help="rank further sensors by what they would tell of the causes that are confused now:"
+        " those not in --channels, and those that an MJCF model could have",
+    )
     parser.add_argument("--out", metavar="DIR", help="of --design (default: runs/design)")
     parser.add_argument("--json", action="store_true", help="the plan as JSON on stdout")
 
@@ -50,6 +56,8 @@ def execute(arguments: argparse.Namespace) -> int:
     """Plan and print."""
     from ves_twin.cli.plan_text import plan_text
 
+    if arguments.add_channel:
+        return _add_channel(arguments)
     if arguments.design is not None:
         return _design(arguments)
     if arguments.out is not None:
@@ -102,4 +110,27 @@ def _design(arguments: argparse.Namespace) -> int:
         where = f"written   {', '.join(written)} in {held.path}"
     print(found.design.to_json() if arguments.json else design_text(found.design))
     print(where, file=sys.stderr if arguments.json else sys.stdout)
+    return 0
+
+
+def _add_channel(arguments: argparse.Namespace) -> int:
+    from ves_twin.cli.further_text import further_text
+    from ves_twin.cli.given import bank_settings
+    from ves_twin.cli.progress import RunProgress
+    from ves_twin.core.errors import InvalidInputError
+    from ves_twin.machines.add_channel import add_channel
+
+    for option in ("design", "seconds", "out"):
+        given = getattr(arguments, option)
+        if given is not None:
+            raise InvalidInputError(f"--{option}", given, "--add-channel without it")
+    with RunProgress("plan", 1.0, unit="share") as progress:
+        found = add_channel(
+            arguments.plant,
+            arguments.scenario,
+            channels=arguments.channels,
+            settings=bank_settings(),
+            progress=progress.share,
+        )
+    print(found.to_json() if arguments.json else further_text(found))
     return 0

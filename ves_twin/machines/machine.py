@@ -233,6 +233,10 @@ class Machine(ABC):
             FileAccessError: not writable.
         """
 
+    def further(self) -> Forward:
+        """The machine with every channel that it could have, its own first, in their order."""
+        return self.forward
+
     def drawing(self) -> Drawing | None:
         """Its bodies, for pictures; None where its recordings do not say where they are."""
         return None

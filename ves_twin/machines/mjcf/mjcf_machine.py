@@ -32,6 +32,7 @@ from ves_twin.machines.mjcf.excitations import SECONDS, offered, write_inputs
 from ves_twin.machines.mjcf.experiment import MjcfExperiment
 from ves_twin.machines.mjcf.extend import extended, write_rig
 from ves_twin.machines.mjcf.forward import MjcfForward
+from ves_twin.machines.mjcf.further import with_further
 from ves_twin.machines.mjcf.interleaved_split import alternate
 from ves_twin.machines.mjcf.machine import Rig
 from ves_twin.machines.mjcf.plausible import check_plausible
@@ -201,6 +202,10 @@ class MjcfMachine(Machine):
     def _unbounded(self) -> InvalidInputError:
         came = "nothing that is within typical effort, speed and travel of its joints"
         return InvalidInputError(f"excitations of {self.name}", came, "a recording to go by")
+
+    def further(self) -> MjcfForward:
+        """With sensors of position, speed, effort, force and acceleration."""
+        return with_further(self.forward)
 
     def save_excitation(self, excitation: Excitation, folder: Path) -> None:
         """Columns as the machine's file names and scales them."""
