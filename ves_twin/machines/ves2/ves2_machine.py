@@ -28,6 +28,7 @@ from ves_twin.machines.machine import Machine, Material, Named, Prepared
 from ves_twin.machines.ves2.applied import applied
 from ves_twin.machines.ves2.case import ves2_case
 from ves_twin.machines.ves2.declared_load import LOAD, loads_of
+from ves_twin.machines.ves2.design_space import LEAST, MOST, Ves2DesignSpace
 from ves_twin.machines.ves2.drawn import drawn
 from ves_twin.machines.ves2.effects_of import effects_of
 from ves_twin.machines.ves2.excitations import offered_programmes
@@ -212,6 +213,12 @@ class Ves2Machine(Machine):
             raise InvalidInputError(what, recording.info.outcome, "a run that is completed")
         fed = replace(self, plant=plant, scenario=one_step(replay_scenario(recording)))
         return fed, Excitation.of(recording, DRIVE, scenario.name)
+
+    def design_space(self, seconds: float) -> Ves2DesignSpace:
+        """Multisines of the platform with moves of the arm, at the rates of this machine."""
+        if not LEAST <= seconds <= MOST:
+            raise InvalidInputError("seconds", seconds, f"{LEAST:g} to {MOST:g}")
+        return Ves2DesignSpace(self._rig, self.scenario or Scenario.load(USUAL), seconds)
 
     def drawing(self) -> Drawing:
         """By leg lengths and joint angles."""
