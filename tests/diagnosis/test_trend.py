@@ -155,8 +155,8 @@ def test_two_machines_are_told_apart_and_grouped():
 
 
 @pytest.fixture(scope="module")
-def settings(tmp_path_factory):
-    return Settings(nulls=60, cache=tmp_path_factory.mktemp("banks"), candidates=3)
+def settings(banks):
+    return Settings(nulls=60, cache=banks, candidates=3)
 
 
 def machine(rng):

@@ -23,6 +23,9 @@ from ves_twin.thesis.verdict import Verdict
 
 LONG = {
     "C016",
+    "C085",
+    "C086",
+    "C131",
     "C023",
     "C035",
     "C116",
@@ -48,7 +51,7 @@ LONG = {
     "C056",
     "C114",
 } | {f"C0{number}" for number in range(41, 54)}
-"""Claims that take more than a second or two: once, in the slow test."""
+"""Claims that take more than a second: once, in the slow test, and again in `make nightly`."""
 
 BUILT = [n for n, a in ANSWERS.items() if not isinstance(a, NotBuilt | NotTestable)]
 
@@ -58,7 +61,9 @@ def nominal():
     return Plant.load("ves2")
 
 
-@pytest.mark.parametrize("name", [name for name in BUILT if name not in LONG])
+@pytest.mark.parametrize(
+    "name", [pytest.param(n, marks=pytest.mark.nightly) if n in LONG else n for n in BUILT]
+)
 def test_an_evaluation_repeats_to_the_bit_and_has_values_to_compare(claims, nominal, name):
     one, two = (ANSWERS[name](Context(nominal, True), claims[name]) for _ in range(2))
     assert one == two
