@@ -36,13 +36,13 @@ from ves_twin.simulator.log_faults import logged
 
 PLANT = vt.Plant.load("ves2_pressure")
 MOVING = {
-    "run.duration": 1.6,
-    "run.settle": 1.0,
+    "run.duration": 1.1,
+    "run.settle": 0.4,
     "run.noise": False,
     "platform.motion.fade": 0.3,
     "platform.motion.frequency": [0.9, 1.1, 1.3, 1.0, 1.2, 0.8],
     "platform.motion.amplitude": [0.03, 0.03, 0.03, 0.05, 0.05, 0.06],
-    "arm.moves": [{"start": 0.1, "duration": 1.4, "to": [0.7, 1.0, 0.6]}],
+    "arm.moves": [{"start": 0.1, "duration": 1.0, "to": [0.5, 0.7, 0.45]}],
 }
 QUIET = {
     "transducer.resolution": 0.0,
@@ -62,7 +62,7 @@ FIRST = [(kind, row.targets[0]) for kind in ON_VES2 for row in EFFECTS[kind].row
 
 FLOATING = (
     "beam_horizontal_truth",
-    {"run.duration": 1.6, "run.settle": 1.0, "run.noise": False},
+    {"run.duration": 1.1, "run.settle": 0.4, "run.noise": False},
 )
 SCENES = {
     "filter_edge": ("position_sine", MOVING | {"legs.filter": "feedback"}),

@@ -28,11 +28,14 @@ COUNTS = {Hidden.NONE: 1, Hidden.SINGLE: 2, Hidden.OUTSIDE: 2, Hidden.PAIR: 1, H
 RECIPE = Recipe("pendulum", COUNTS, 3)
 
 
+def made(recipe, folder):
+    make_suite(recipe, folder, folder.with_name("key"), silent)
+    return folder
+
+
 @pytest.fixture(scope="module")
 def suite(tmp_path_factory):
-    folder = tmp_path_factory.mktemp("blind") / "suite"
-    make_suite(RECIPE, folder, folder.with_name("key"), silent)
-    return folder
+    return made(RECIPE, tmp_path_factory.mktemp("blind") / "suite")
 
 
 def test_a_seal_opens_with_its_key_alone_and_shows_tampering():
@@ -101,8 +104,9 @@ def test_a_folder_whose_key_is_gone_is_refused(suite, tmp_path):
         make_suite(RECIPE, suite, tmp_path / "other", silent)
 
 
-def test_answering_imports_no_generator_and_reads_no_key(suite):
+def test_answering_imports_no_generator_and_reads_no_key(tmp_path):
     """A fresh process, in which opening the key or importing a generator ends in an error."""
+    suite = made(Recipe("pendulum", {Hidden.NONE: 1, Hidden.SINGLE: 1}, 3), tmp_path / "suite")
     code = f"""
 import builtins, sys
 from pathlib import Path

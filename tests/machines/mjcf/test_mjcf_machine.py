@@ -152,8 +152,8 @@ def test_what_is_offered_keeps_typical_travel_and_speed_and_reads_back(machine, 
         )
 
 
-def test_a_plan_of_an_mjcf_machine_says_what_an_excitation_could_find(machine):
-    settings = Settings(nulls=20)
+def test_a_plan_of_an_mjcf_machine_says_what_an_excitation_could_find(tmp_path):
+    machine, settings = Machine.load(str(slide.write_files(tmp_path))), Settings(nulls=20)
     plan = vt.plan(machine, "multisine", quick=True, settings=settings)
     assert plan.programme == "multisine"
     assert {p.effect for p in plan.prospects if p.smallest is not None} >= {"coulomb_friction"}
