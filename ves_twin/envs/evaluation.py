@@ -23,7 +23,7 @@ from ves_twin.core.workers import Workers
 from ves_twin.envs import ENVIRONMENTS
 from ves_twin.envs.baselines import BASELINES
 from ves_twin.envs.policy import Policy
-from ves_twin.envs.rig_env import rig_env
+from ves_twin.envs.task_env import task_env
 from ves_twin.envs.wrappers import RandomRigs
 
 RESAMPLES = 2000
@@ -228,7 +228,7 @@ def named(policy: Policy, time: float) -> Iterator[None]:
 def _episode(job: tuple[Trial, int]) -> Episode:
     trial, seed = job
     env = gym.make(environment_id(trial.environment), plant=trial.plant, disable_env_checker=True)
-    policy = policy_class(trial.policy).build(rig_env(env).briefing())
+    policy = policy_class(trial.policy).build(task_env(env).briefing())
     if trial.rigs != NO_RIGS:
         env = RandomRigs(env, trial.rigs)
     try:
