@@ -20,7 +20,7 @@ import gymnasium as gym
 import mujoco
 import numpy as np
 
-from ves_twin.envs import ENVIRONMENTS
+from ves_twin.envs import RIG_ENVIRONMENTS
 from ves_twin.envs.rig_env import CYCLES
 
 STEPS = 10
@@ -74,7 +74,7 @@ def main() -> None:
     print("a process of its own, processor time: ", end="", flush=True)
     subprocess.run([sys.executable, "-c", FIRST], check=True)
     print("environment                       plant       ratio   5 %    95 %  steps/s")
-    for name in ENVIRONMENTS:
+    for name in RIG_ENVIRONMENTS:
         for plant in ("ves2", "ves2_fast"):
             found, speed = ratios(name, plant, given.rounds)
             cuts = statistics.quantiles(found, n=20)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any, ClassVar, final
+from typing import Any, final
 
 import numpy as np
 
@@ -52,8 +52,6 @@ class DiagnoseAndRetune(TaskEnv):
     """
 
     metadata: dict[str, Any] = {"render_modes": []}  # noqa: RUF012  (as the base class has it)
-    WORST: ClassVar[float] = 1000.0
-    """A score that no trial passes by much: a joint that stands still has 500 mrad."""
 
     def __init__(
         self,

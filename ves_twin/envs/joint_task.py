@@ -154,14 +154,14 @@ class JointTask:
         left = Channel(
             "trials.left", ("1",), np.zeros(1), np.array([float(trials)]), "the last one is scored"
         )
-        e, v, x = units[0], f"{units[2]}", units[1]
+        e, x = units[0], units[1]
         tuned = (
             ("feedback.stiffness", "octave", 3.0, "of the nominal gain of the position"),
             ("feedback.damping", "octave", 3.0, "of the nominal gain of the speed"),
             ("feedback.integral", "octave", 3.0, "of the nominal gain of the integral"),
             ("feedforward.inertia", "1", 1.0, "added, share of the believed inertia"),
             ("feedforward.gravity", "1", 1.0, "added, share of the believed gravity"),
-            ("feedforward.viscous", f"{e}/({v})", 0.2 * self.at.effort / self.at.speed, "added"),
+            ("feedforward.viscous", f"{e}*s/{x}", 0.2 * self.at.effort / self.at.speed, "added"),
             ("feedforward.dry", e, 0.6 * self.at.effort, "added, by the sign of the speed"),
             ("feedforward.spring", f"{e}/{x}", 1.5 * self.at.effort / self.at.travel, "added"),
             ("reading.offset", x, 0.15 * self.at.travel, "taken off the position"),

@@ -15,7 +15,7 @@ from ves_twin.core.errors import InvalidInputError, UnknownNameError, VesTwinErr
 from ves_twin.core.json_text import json_text
 from ves_twin.core.types import FloatArray
 from ves_twin.envs.baselines import EXPERTS
-from ves_twin.envs.evaluation import NO_RIGS, environment_id, named, policy_class
+from ves_twin.envs.evaluation import NO_RIGS, built, environment_id, named, policy_class
 from ves_twin.envs.policy import Policy
 from ves_twin.envs.task_env import task_env
 from ves_twin.envs.wrappers import RandomRigs
@@ -107,7 +107,7 @@ def record_dataset(
     )
     if record.rigs != NO_RIGS:
         env = RandomRigs(env, record.rigs)
-    policy = made.build(task_env(env).briefing())
+    policy = built(made, env)
     buffers, told = [], []
     try:
         for count, seed in enumerate(seeds, 1):
