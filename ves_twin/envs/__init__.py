@@ -7,7 +7,6 @@ import gymnasium as gym
 from ves_twin.envs.admittance_tuning import AdmittanceTuning
 from ves_twin.envs.capture import MicrogravityCapture
 from ves_twin.envs.damping import VibrationDamping
-from ves_twin.envs.diagnose_and_retune import DiagnoseAndRetune
 from ves_twin.envs.gravity_compensation import GravityCompensation
 from ves_twin.envs.reach import VibrationFreeReach
 from ves_twin.envs.tracking import PlatformTracking
@@ -26,7 +25,8 @@ ENVIRONMENTS = {
     **RIG_ENVIRONMENTS,
     "VesTwin/DiagnoseAndRetune-v0": "ves_twin.envs.diagnose_and_retune:DiagnoseAndRetune",
 }
-"""Id -> entry point. A change of what an episode does asks for a new version of its id."""
+"""Id -> entry point; what needs the diagnosis is imported when it is made. A change of what an
+episode does asks for a new version of its id."""
 
 for _id, _entry_point in ENVIRONMENTS.items():
     gym.register(_id, entry_point=_entry_point)
@@ -35,7 +35,6 @@ __all__ = [
     "ENVIRONMENTS",
     "RIG_ENVIRONMENTS",
     "AdmittanceTuning",
-    "DiagnoseAndRetune",
     "GravityCompensation",
     "MicrogravityCapture",
     "PlatformTracking",

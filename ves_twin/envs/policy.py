@@ -9,13 +9,14 @@ from typing import TYPE_CHECKING, Any
 
 from ves_twin.core.types import FloatArray
 from ves_twin.envs.channels import Channels
-from ves_twin.envs.joint_task import JointTask
 from ves_twin.mechanics.emulated import EmulatedSystem
 from ves_twin.plant.plant import Plant
 from ves_twin.scenario.schema import Scenario
 
 if TYPE_CHECKING:
     from control import StateSpace
+
+    from ves_twin.envs.joint_task import JointTask
 
 
 @dataclass(frozen=True)

@@ -368,6 +368,6 @@ def rig_env(env: gym.Env[Any, Any]) -> RigEnv[Any]:
     """
     inner = env.unwrapped
     if not isinstance(inner, RigEnv):
-        expected = "an environment with a rig of VES II"
+        expected = "one of ves_twin.envs with a rig of VES II"
         raise InvalidInputError("environment", type(inner).__name__, expected)
     return inner
