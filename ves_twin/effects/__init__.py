@@ -1,6 +1,13 @@
 """effects: named deviations of a machine from its description, which diagnosis looks for."""
 
-from ves_twin.effects.actuators import ActuatorDeadband, ActuatorDelay, ActuatorGain
+from ves_twin.effects.actuators import (
+    ActuatorAsymmetry,
+    ActuatorDeadband,
+    ActuatorDelay,
+    ActuatorGain,
+    ActuatorOffset,
+    ActuatorSaturation,
+)
 from ves_twin.effects.bodies import (
     BodyInertia,
     BodyMass,
@@ -14,6 +21,7 @@ from ves_twin.effects.effect import Effect
 from ves_twin.effects.friction import (
     FrictionBehindGap,
     LoadFriction,
+    OneWayLoad,
     QuadraticDrag,
     StribeckFriction,
 )
@@ -72,9 +80,12 @@ TorqueConstant = ActuatorGain
 # names of earlier versions, as registry.RENAMED has them of files
 
 __all__ = [
+    "ActuatorAsymmetry",
     "ActuatorDeadband",
     "ActuatorDelay",
     "ActuatorGain",
+    "ActuatorOffset",
+    "ActuatorSaturation",
     "AnchorPosition",
     "Backlash",
     "BaseTilt",
@@ -106,6 +117,7 @@ __all__ = [
     "MassCentre",
     "ModelMass",
     "OilAir",
+    "OneWayLoad",
     "PayloadMass",
     "PistonLeakage",
     "QuadraticDrag",

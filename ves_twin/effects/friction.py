@@ -167,6 +167,49 @@ class FrictionBehindGap(Effect):
         return self.difference, max(self.travel, LEAST_TRAVEL), self.gap
 
 
+@final
+@dataclass(frozen=True)
+class OneWayLoad(Effect):
+    """A load that resists motion one way, holds where the joint stands, and lets it go back free.
+
+    A cylinder against a relief valve behind a check valve, a weight on a ratchet. It sets in over
+    an elastic travel e, and is gone e behind where the motion turned: a Jenkins element whose
+    effort stays within 0 and load. Above zero it resists motion in the joint's positive direction.
+    """
+
+    load: float = 0.0
+    travel: float = 0.0
+
+    kind = "one_way_load"
+    sizes = (Size("load", EFFORT), Size("travel", LENGTH, Sign.POSITIVE))
+    anywhere = Anywhere(Element.JOINT)
+
+    @classmethod
+    def magnitudes_at(cls, place: Place) -> tuple[Magnitude, ...]:
+        """Load up to twice the typical effort, over up to half the typical travel."""
+        return cls.ranged(place, 2.0 * place.effort, 0.5 * place.travel)
+
+    @classmethod
+    def starts(cls, place: Place) -> tuple[tuple[float, ...], ...]:
+        """Half the typical effort either way, over travels each four times the last one."""
+        grid = product((0.5, -0.5), (0.002, 0.008, 0.032))
+        return tuple((load * place.effort, e * place.travel) for load, e in grid)
+
+    def hold(self, position: FloatArray) -> FloatArray:
+        """The effort along a motion that begins unloaded."""
+        return self._element.hold(np.asarray(position, float))
+
+    def holder(self) -> Callable[[float], float]:
+        """The same, position by position."""
+        return self._element.holder()
+
+    @property
+    def _element(self) -> FrictionBehindGap:
+        """Twice half the load on one side, none on the other."""
+        side = 1.0 if self.load > 0.0 else -1.0
+        return FrictionBehindGap(self.target, 0.5 * abs(self.load), side, 0.5 * self.travel)
+
+
 @compiled
 def _slip(
     position: float, slider: float, difference: float, travel: float, gap: float
