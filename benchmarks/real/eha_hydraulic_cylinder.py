@@ -21,12 +21,12 @@ PERIOD, SMOOTH = 0.005, 21
 """Of the rows [s]; rows of the parabola that tells speed: a count of 0.025 mm is 0.1 mm/s then."""
 
 DRIVE = """<mujoco model="cylinder">
-  <option timestep="5e-4" gravity="0 0 0" integrator="implicitfast"><flag contact="disable"/></option>
+  <option timestep="1.25e-3" gravity="0 0 0" integrator="implicitfast"><flag contact="disable"/></option>
   <worldbody>
     <body name="oil"><joint name="flow" type="slide" axis="1 0 0" damping="1e8"/>
       <inertial pos="0 0 0" mass="1" diaginertia="1 1 1"/>
-      <body name="rod"><joint name="squeeze" type="slide" axis="1 0 0" stiffness="2e7" damping="5e3"/>
-        <inertial pos="0 0 0" mass="20" diaginertia="1 1 1"/></body>
+      <body name="rod"><joint name="squeeze" type="slide" axis="1 0 0" stiffness="2e7" damping="2e4"/>
+        <inertial pos="0 0 0" mass="100" diaginertia="1 1 1"/></body>
     </body>
   </worldbody>
   <tendon><fixed name="stroke"><joint joint="flow" coef="1"/><joint joint="squeeze" coef="1"/></fixed></tendon>
@@ -38,7 +38,7 @@ DRIVE = """<mujoco model="cylinder">
 </mujoco>
 """
 """A pump that leaks is a force with a damper beside it, oil a spring: 0.2 l of 1 GPa. 0.125 mm a
-radian is the mean of both directions on the data's page."""
+radian is the mean of both directions on the data's page; 100 kg are nothing at such speeds."""
 
 OPEN = """schema = 1
 kind = "rig"
@@ -185,7 +185,7 @@ def sets(data: Path, folder: Path) -> list[Set]:
         ("sensor_gain", ["rod.speed.1", "shown.speed.1"]),
     )
     drive = machine(folder, "cylinder_speed", DRIVE, told)
-    fitted = [read(drive, logs[load, step]) for load in (1, 2, 4) for step in (2, 4)]
+    fitted = [read(drive, logs[load, step]) for load, step in ((1, 4), (2, 3), (4, 4))]
     held = [read(drive, logs[3, step]) for step in (1, 2, 3, 4)]
     asked = "<= 1.0 mm/s, lag of 60 ms to 20 %"
     found = [Set("cylinder, speed", drive, fitted, held, "1.25 mm/s", asked)]
