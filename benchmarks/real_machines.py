@@ -31,7 +31,7 @@ SETS = (
 )
 """Folders of the public data that a machine is written for here."""
 
-SETTINGS = Settings(nulls=40)
+SETTINGS = Settings(nulls=10)
 """Thresholds matter little where causes stand out by thousands of chi^2."""
 
 DATA = Path(__file__).parents[1] / ".." / "shared" / "data"

@@ -21,15 +21,17 @@ PERIOD, SMOOTH = 0.005, 21
 """Of the rows [s]; rows of the parabola that tells speed: a count of 0.025 mm is 0.1 mm/s then."""
 
 DRIVE = """<mujoco model="cylinder">
-  <option timestep="1.25e-3" gravity="0 0 0" integrator="implicitfast"><flag contact="disable"/></option>
+  <option timestep="1.25e-3" gravity="0 0 0" integrator="implicitfast"/>
   <worldbody>
     <body name="oil"><joint name="flow" type="slide" axis="1 0 0" damping="1e8"/>
       <inertial pos="0 0 0" mass="1" diaginertia="1 1 1"/>
-      <body name="rod"><joint name="squeeze" type="slide" axis="1 0 0" stiffness="2e7" damping="2e4"/>
+      <body name="rod">
+        <joint name="squeeze" type="slide" axis="1 0 0" stiffness="2e7" damping="2e4"/>
         <inertial pos="0 0 0" mass="100" diaginertia="1 1 1"/></body>
     </body>
   </worldbody>
-  <tendon><fixed name="stroke"><joint joint="flow" coef="1"/><joint joint="squeeze" coef="1"/></fixed></tendon>
+  <tendon><fixed name="stroke">
+    <joint joint="flow" coef="1"/><joint joint="squeeze" coef="1"/></fixed></tendon>
   <actuator>
     <motor name="pump" joint="flow" gear="12500"/>
     <motor name="pressures" tendon="stroke" gear="-1"/>

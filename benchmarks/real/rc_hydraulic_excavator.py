@@ -22,7 +22,7 @@ PERIOD, WINDOW, SMOOTH = 0.05, 3.0, 7
 1 mm/s then."""
 
 MODEL = """<mujoco model="boom">
-  <option timestep="0.01" gravity="0 0 0" integrator="implicitfast"><flag contact="disable"/></option>
+  <option timestep="0.01" gravity="0 0 0" integrator="implicitfast"/>
   <worldbody>
     <body name="rod"><joint name="boom" type="slide" axis="1 0 0" damping="100"/>
       <inertial pos="0 0 0" mass="1" diaginertia="1 1 1"/></body>
@@ -71,9 +71,13 @@ largest = "0.3 s"
 kind = "actuator_gain"
 on = ["valve"]
 largest = 7
+[[effects]]
+kind = "actuator_deadband"
+on = ["valve"]
+largest = 1.8
 """
 
-KINDS = ("offset", "deadband", "asymmetry", "saturation")
+KINDS = ("offset", "asymmetry", "saturation")
 
 
 def sets(data: Path, folder: Path) -> list[Set]:

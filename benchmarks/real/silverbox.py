@@ -112,7 +112,7 @@ def sets(data: Path, folder: Path) -> list[Set]:
         forward = MjcfForward.of(extended)
         fed = Excitation.of(arrow, forward.drive, rate=RATE)
         off = arrow["V2"] - forward.simulate(fed, {})
-        return f"{1e3 * float(np.sqrt(np.mean(np.square(off[:: FINER])))):.2f} mV"
+        return f"{1e3 * float(np.sqrt(np.mean(np.square(off[::FINER])))):.2f} mV"
 
     return [Set("silverbox", rig, [train], [proof], "1.71 mV (0.3 published)", asked, error)]
 

@@ -11,6 +11,7 @@ from ves_twin.effects import (
     ActuatorSaturation,
     Effect,
     OneWayLoad,
+    RegularizedFriction,
 )
 from ves_twin.effects.element import Element
 from ves_twin.effects.registry import EFFECTS
@@ -81,3 +82,11 @@ def test_a_load_of_the_other_sign_resists_the_other_way():
     effort = OneWayLoad("rod", load=-4000.0, travel=0.002).hold(path)
     np.testing.assert_allclose(effort[2:51], 0.0, atol=1e-9)
     np.testing.assert_allclose(effort[55:], -4000.0)
+
+
+def test_regularized_friction_is_viscous_where_slow_and_dry_where_fast():
+    effect = RegularizedFriction("a", level=2.0, transition=0.5)
+    speed = np.array([-50.0, -1e-3, 0.0, 1e-3, 50.0])
+    np.testing.assert_allclose(effect.resist(speed, 1e-4), [-2.0, -4e-3, 0.0, 4e-3, 2.0], rtol=1e-5)
+    sharp = RegularizedFriction("a", level=2.0)
+    np.testing.assert_allclose(sharp.resist(speed, 1e-6), [-2.0, -2.0, 0.0, 2.0, 2.0])

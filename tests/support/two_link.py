@@ -52,6 +52,7 @@ TARGETS = {
     "backlash": ["swing"],
     "quadratic_drag": ["rail"],
     "stribeck_friction": ["rail"],
+    "regularized_friction": ["rail"],
     "friction_behind_gap": ["rail"],
     "one_way_load": ["rail"],
     "coupling_inertia": ["belt"],

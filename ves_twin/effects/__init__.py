@@ -23,6 +23,7 @@ from ves_twin.effects.friction import (
     LoadFriction,
     OneWayLoad,
     QuadraticDrag,
+    RegularizedFriction,
     StribeckFriction,
 )
 from ves_twin.effects.hydraulics import (
@@ -121,6 +122,7 @@ __all__ = [
     "PayloadMass",
     "PistonLeakage",
     "QuadraticDrag",
+    "RegularizedFriction",
     "RotorInertia",
     "SensorDelay",
     "SensorDrift",

@@ -81,6 +81,40 @@ class StribeckFriction(Effect):
 
 @final
 @dataclass(frozen=True)
+class RegularizedFriction(Effect):
+    """Dry friction that sets in over a speed: level * tanh(v / transition).
+
+    Greased gears, and torques that are read from a current behind a filter: near a reversal they
+    have no sharp sign. Far below the transition it is viscous, far above Coulomb friction.
+
+    Source: Andersson, Soderberg and Bjorklund 2007, Friction models for sliding dry, boundary and
+    mixed lubricated contacts, with the hyperbolic tangent.
+    """
+
+    level: float = 0.0
+    transition: float = 0.0
+
+    kind = "regularized_friction"
+    sizes = (Size("level", EFFORT, Sign.POSITIVE), Size("transition", SPEED, Sign.POSITIVE))
+    anywhere = Anywhere(Element.JOINT)
+
+    @classmethod
+    def magnitudes_at(cls, place: Place) -> tuple[Magnitude, ...]:
+        """Up to the typical effort, over up to the typical speed."""
+        return cls.ranged(place, place.effort, place.speed)
+
+    @classmethod
+    def starts(cls, place: Place) -> tuple[tuple[float, ...], ...]:
+        """A tenth of the typical effort over 1, 3, 10, 30 % of the typical speed."""
+        return tuple((0.1 * place.effort, s * place.speed) for s in (0.01, 0.03, 0.1, 0.3))
+
+    def resist(self, speed: FloatArray, slow: float) -> FloatArray:
+        """The level, less where the joint is slower than the transition."""
+        return np.asarray(self.level * np.tanh(speed / max(self.transition, slow)))
+
+
+@final
+@dataclass(frozen=True)
 class LoadFriction(Effect):
     """Dry friction that grows with the load: share * |load| * sign(v), as in gears and seals.
 

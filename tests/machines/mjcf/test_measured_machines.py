@@ -15,7 +15,7 @@ from real import eha_hydraulic_cylinder, rc_hydraulic_excavator, silverbox
 
 pytestmark = [pytest.mark.nightly, pytest.mark.timeout(1800)]
 
-QUICK = Settings(nulls=40)
+QUICK = Settings(nulls=10)
 """Thresholds matter little where causes stand out by thousands of chi^2."""
 
 

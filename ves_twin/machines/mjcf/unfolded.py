@@ -12,7 +12,7 @@ from ves_twin.effects.actuators import ActuatorOffset
 from ves_twin.effects.bodies import BodyInertia, BodyPlace, MassCentre
 from ves_twin.effects.effect import Effect
 from ves_twin.effects.element import Element
-from ves_twin.effects.friction import OneWayLoad
+from ves_twin.effects.friction import OneWayLoad, RegularizedFriction
 from ves_twin.effects.registry import EFFECTS, attributes, build_anywhere, kind_anywhere
 from ves_twin.machines.mjcf.description import Allowed, Mode, RigDescription, Setting
 from ves_twin.machines.mjcf.places import anywhere, place_of
@@ -25,9 +25,9 @@ OF_TURNING = (MassCentre.kind, BodyInertia.kind)
 FEW = 2
 """Numbers of a kind that a "*" means."""
 
-BY_NAME = (ActuatorOffset.kind, OneWayLoad.kind)
-"""Kinds that a "*" does not mean: a force offset, and dry friction with its asymmetry, do the same
-on all machines but those whose file asks for these."""
+BY_NAME = (ActuatorOffset.kind, OneWayLoad.kind, RegularizedFriction.kind)
+"""Kinds that a "*" does not mean: a force offset, and dry or viscous friction, do nearly the same on
+most machines. A file asks for these by their names."""
 
 SLIDE = int(mujoco.mjtJoint.mjJNT_SLIDE)
 
