@@ -26,7 +26,7 @@ FEW = 2
 """Numbers of a kind that a "*" means."""
 
 BY_NAME = (ActuatorOffset.kind, OneWayLoad.kind, RegularizedFriction.kind)
-"""Kinds that a "*" does not mean: a force offset, and dry or viscous friction, do nearly the same on
+"""Kinds that a "*" does not mean: a force offset, and dry or viscous friction, do much the same on
 most machines. A file asks for these by their names."""
 
 SLIDE = int(mujoco.mjtJoint.mjJNT_SLIDE)
