@@ -8,7 +8,7 @@ import mujoco
 import numpy as np
 
 from ves_twin.core.errors import InvalidInputError, UnknownNameError, VesTwinError
-from ves_twin.effects.actuators import ActuatorOffset
+from ves_twin.effects.actuators import ActuatorAsymmetry, ActuatorOffset, ActuatorSaturation
 from ves_twin.effects.bodies import BodyInertia, BodyPlace, MassCentre
 from ves_twin.effects.effect import Effect
 from ves_twin.effects.element import Element
@@ -25,9 +25,12 @@ OF_TURNING = (MassCentre.kind, BodyInertia.kind)
 FEW = 2
 """Numbers of a kind that a "*" means."""
 
-BY_NAME = (ActuatorOffset.kind, OneWayLoad.kind, RegularizedFriction.kind)
-"""Kinds that a "*" does not mean: a force offset, and dry or viscous friction, do much the same on
-most machines. A file asks for these by their names."""
+BY_NAME = (
+    *(ActuatorAsymmetry.kind, ActuatorOffset.kind, ActuatorSaturation.kind),
+    *(OneWayLoad.kind, RegularizedFriction.kind),
+)
+"""Kinds that a "*" does not mean: on most machines a force offset and dry or viscous friction do
+much the same, and each of them costs runs. A file asks for these by their names."""
 
 SLIDE = int(mujoco.mjtJoint.mjJNT_SLIDE)
 
