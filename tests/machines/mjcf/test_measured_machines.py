@@ -11,7 +11,7 @@ from ves_twin.diagnosis.settings import Settings
 from ves_twin.machines.diagnose import diagnose
 
 sys.path.append(str(Path(__file__).parents[3] / "benchmarks"))
-from real import eha_hydraulic_cylinder, rc_hydraulic_excavator, silverbox
+from real import eha_hydraulic_cylinder
 
 pytestmark = [pytest.mark.nightly, pytest.mark.timeout(1800)]
 
@@ -48,20 +48,3 @@ def test_how_late_a_cylinders_shown_speed_is_comes_out_to_a_fifth(cylinder):
     cause, size = sizes(cylinder[1], "sensor_delay@shown.speed")
     assert cause.firm
     assert size["delay"] == pytest.approx(0.060, rel=0.20)
-
-
-def test_the_valve_of_an_excavator_has_a_dead_band_and_a_limit(data_folder, tmp_path, figure):
-    (one,) = rc_hydraulic_excavator.sets(data_folder, tmp_path)
-    found = found_of(one)
-    named = {f"{c.effect}@{c.target}" for c in found.verdict.causes}
-    assert {"actuator_deadband@valve", "actuator_saturation@valve"} <= named
-    off = float(one.error(found.extended.rig, one.held_out).split()[0])
-    figure("Excavator: length after 3 s, open loop (straight line: 0.377)", off, 0.11, "cm")
-
-
-def test_silverbox_has_a_cubic_spring(data_folder, tmp_path, figure):
-    (one,) = silverbox.sets(data_folder, tmp_path)
-    found = found_of(one)
-    assert "cubic_spring@y" in {f"{c.effect}@{c.target}" for c in found.verdict.causes}
-    off = float(one.error(found.extended.rig, []).split()[0])
-    figure("Silverbox: growing noise, free run (line: 15.7)", off, 1.71, "mV")
