@@ -187,3 +187,26 @@ def test_a_fit_knows_how_its_parameters_hang_together(evidence):
     assert np.max(np.abs(found - np.diag(np.diag(found)))) > 0.1
     pulls = np.abs(fit.shift[fit.active[1:]]) / runs.sd[fit.active[1:]]
     assert fit.pull == pytest.approx(np.max(pulls))
+
+
+def test_a_search_ends_where_its_falls_do_not_come_down_to_what_counts(search, monkeypatch):
+    begin = search.at(search.runs.origin, 0.0)
+
+    def steps(target):
+        taken = []
+
+        def fall(point, jacobian):
+            taken.append(point.chi2)
+            return replace(point, chi2=900.0 + 0.8 * (point.chi2 - 900.0))
+
+        monkeypatch.setattr(search, "_step", fall)
+        search.target = target
+        end, _ = search.descend(replace(begin, chi2=1900.0), np.zeros((0, 0)))
+        return len(taken), end.chi2
+
+    search.tempered = False
+    every, best = steps(np.inf)
+    assert steps(900.0) == (every, best)  # at the pace of the falls it would be reached
+    # ten times the first fall, of 200, reach from 1700 down to -300
+    assert steps(-600.0)[0] == 1
+    assert 1 < steps(0.0)[0] < every

@@ -32,6 +32,7 @@ from ves_twin.machines.mjcf.description import Mode
 from ves_twin.machines.mjcf.forward import MjcfForward
 from ves_twin.machines.mjcf.machine import Rig
 from ves_twin.plant.assembly import assemble
+from ves_twin.simulator.log_faults import logged
 
 PLANT = vt.Plant.load("ves2_pressure")
 MOVING = {
@@ -94,6 +95,10 @@ def sizes(kind: str, target: str, times: float):
         yield magnitude, build_effect(kind, target, {magnitude.name: size})
 
 
+WRITTEN = np.arange(5.0), np.random.default_rng(0).standard_normal((5, 6))
+"""Times and rows of any signal."""
+
+
 @cache
 def block() -> np.ndarray:
     """The loop's numbers, without any effect."""
@@ -101,7 +106,7 @@ def block() -> np.ndarray:
 
 
 def edited(*effects) -> tuple[bytes, ...]:
-    """Everything that effects can change on VES II: table, model, loop, computers' program."""
+    """Everything that effects can change on VES II: table, model, loop, computers' program, log."""
     numbers = {name: PLANT.parameters.array(name).copy() for name in PLANT.parameters}
     loop, computers = block().copy(), {"gravity.age": np.zeros(()), "emulated.mass": np.eye(6)}
     for effect in effects:
@@ -109,7 +114,8 @@ def edited(*effects) -> tuple[bytes, ...]:
         effect.edit_loop(loop[0])
         effect.edit_computers(computers)
     model = assemble(replace(PLANT, effects=effects), 341e-6).to_xml()
-    tables = [value.tobytes() for value in (*numbers.values(), loop, *computers.values())]
+    log = [logged(effects, name, *WRITTEN) for name in ("leg.length", "arm.q", "arm.torque")]
+    tables = [value.tobytes() for value in (*numbers.values(), loop, *computers.values(), *log)]
     return (model.encode(), *tables)
 
 

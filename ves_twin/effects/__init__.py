@@ -56,6 +56,12 @@ from ves_twin.effects.programs import (
     ServoGain,
     StaleGravity,
 )
+from ves_twin.effects.recorder import (
+    RecorderCrossTalk,
+    RecorderDelay,
+    RecorderGain,
+    RecorderOffset,
+)
 from ves_twin.effects.sensors import (
     CrossTalk,
     EncoderOffset,
@@ -122,6 +128,10 @@ __all__ = [
     "PayloadMass",
     "PistonLeakage",
     "QuadraticDrag",
+    "RecorderCrossTalk",
+    "RecorderDelay",
+    "RecorderGain",
+    "RecorderOffset",
     "RegularizedFriction",
     "RotorInertia",
     "SensorDelay",

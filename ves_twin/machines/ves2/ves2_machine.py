@@ -35,6 +35,7 @@ from ves_twin.machines.ves2.filter_place import EFFECT as FILTER_PLACE
 from ves_twin.machines.ves2.filter_place import WithFilterPlaces
 from ves_twin.machines.ves2.forward import DRIVE, RigForward
 from ves_twin.machines.ves2.inputs import SORTS, check_settings, one_step, prepare_inputs
+from ves_twin.machines.ves2.leg_program_check import misread_legs
 from ves_twin.machines.ves2.next_scenario import write_next_experiment
 from ves_twin.plant.plant import Plant
 from ves_twin.plant.signal_ranges import signal_ranges
@@ -45,6 +46,9 @@ from ves_twin.scenario.schema import Scenario
 from ves_twin.simulator.outcome import Outcome
 from ves_twin.simulator.replay import replay_scenario
 from ves_twin.simulator.simulate import simulate
+
+DIAGNOSED = frozenset({"measured", "held_out"})
+"""Sorts of recordings whose recorder may be at fault; what others say of the rig must be true."""
 
 USUAL = "identify_fast"
 """Scenario that is planned where nobody names one."""
@@ -58,6 +62,7 @@ class Ves2Machine(Machine):
         plant: the nominal rig; None: the one that recordings, or their experiment, name.
         scenario: rates, leg gains and start; None: those of the recordings.
         loaded: whether every recording says what hangs on the arm.
+        misread: legs, from 1, whose logged lengths are not what the leg program read.
         mapping: which column of a lab file is which signal; None: recordings of ours.
         folder: of recordings that are not found by their path.
     """
@@ -65,6 +70,7 @@ class Ves2Machine(Machine):
     plant: Plant | None = None
     scenario: Scenario | None = None
     loaded: bool = False
+    misread: tuple[int, ...] = ()
     mapping: ImportMap | None = None
     folder: str | None = None
 
@@ -98,7 +104,9 @@ class Ves2Machine(Machine):
         """With the places where the leg program may filter."""
         if self.scenario is None:
             raise InvalidInputError("VES II", "no rates and gains", "a recording, or an experiment")
-        return WithFilterPlaces(RigForward(self._rig, self.scenario, loaded=self.loaded))
+        return WithFilterPlaces(
+            RigForward(self._rig, self.scenario, loaded=self.loaded, misread=self.misread)
+        )
 
     def read(self, source: str) -> Recording:
         """A recording of ours, or a lab file by the map."""
@@ -131,7 +139,7 @@ class Ves2Machine(Machine):
         flaws: list[Check] = []
         for sort, word in SORTS.items():
             own = [one.recording for one in getattr(material, sort)]
-            made = prepare_inputs(own, plant, word, scenario)
+            made = prepare_inputs(own, plant, word, scenario, misread=sort in DIAGNOSED)
             material = material.with_sort(sort, made.recordings)
             flaws += made.flaws
         setting = one_step(replay_scenario(material.measured[0].recording, scenario))
@@ -142,7 +150,8 @@ class Ves2Machine(Machine):
             for sort in SORTS:
                 carried = tuple(one.recording for one in getattr(material, sort))
                 material = material.with_sort(sort, loads_of(carried))
-        machine = replace(self, plant=plant, scenario=setting, loaded=loaded)
+        misread = misread_legs(flaws)
+        machine = replace(self, plant=plant, scenario=setting, loaded=loaded, misread=misread)
         return Prepared(machine, material, tuple(flaws))
 
     def cases(self, given: Named, experiment: ExperimentFile | None = None) -> tuple[Case, ...]:
