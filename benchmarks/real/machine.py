@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import xml.etree.ElementTree as ElementTree
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -17,7 +17,10 @@ from ves_twin.machines.mjcf.machine import Rig
 
 @dataclass(frozen=True)
 class Set:
-    """One way to ask: which recordings are fitted, and which are held out."""
+    """One way to ask: which recordings are fitted, and which are held out.
+
+    `error` tells that of a rig on recordings where it is not the rms of the compared channels.
+    """
 
     name: str
     rig: Rig
@@ -25,6 +28,7 @@ class Set:
     held_out: list[Recording]
     expert: str
     asked: str
+    error: Callable[[Rig, Sequence[Recording]], str] | None = None
 
 
 def machine(folder: Path, name: str, model: str, description: str) -> Rig:
@@ -74,6 +78,7 @@ OF_JOINTS = (
     "coulomb_asymmetry",
     "quadratic_drag",
     "stribeck_friction",
+    "regularized_friction",
     "load_friction",
     "force_offset",
     "joint_spring",

@@ -11,6 +11,7 @@ from toy import SD, Toy, programme, shape
 from ves_twin.diagnosis.evidence import Evidence
 from ves_twin.diagnosis.forward import Parameter
 from ves_twin.diagnosis.linearise import linearise
+from ves_twin.diagnosis.probe import probe
 from ves_twin.diagnosis.refine import refine
 from ves_twin.diagnosis.runs import Runs
 from ves_twin.diagnosis.whitening import whitening_declared
@@ -69,3 +70,16 @@ def test_the_other_numbers_of_the_direction_are_put_right_too(fits):
 def test_the_true_size_lies_within_the_interval(fits):
     off = (fits[1].sizes[0] - LEVEL) / np.sqrt(fits[1].covariance[0, 0])
     assert abs(off) < 3.3
+
+
+def test_a_size_that_the_record_does_not_show_has_no_direction():
+    """As the limit of an actuator that nothing reaches."""
+
+    class Blind:
+        free = np.array([0])
+
+        def hessian(self, jacobian):
+            return np.zeros((2, 2))
+
+    columns = np.zeros((8, 2))
+    assert probe(Blind(), None, columns) is columns

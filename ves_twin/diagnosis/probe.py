@@ -41,6 +41,8 @@ def probe(search: Search, point: Point, jacobian: FloatArray) -> FloatArray:
     for n in range(len(search.free)):
         for _ in range(PROBES):
             covariance = np.linalg.pinv(search.hessian(jacobian), hermitian=True)
+            if not covariance[n, n] > 0.0:  # nothing shows it, as a limit that nothing reaches
+                break
             direction = covariance[:, n] / np.sqrt(covariance[n, n])
             seen = _change(search, point, jacobian, direction)
             if seen is None:

@@ -1,6 +1,13 @@
 """effects: named deviations of a machine from its description, which diagnosis looks for."""
 
-from ves_twin.effects.actuators import ActuatorDeadband, ActuatorDelay, ActuatorGain
+from ves_twin.effects.actuators import (
+    ActuatorAsymmetry,
+    ActuatorDeadband,
+    ActuatorDelay,
+    ActuatorGain,
+    ActuatorOffset,
+    ActuatorSaturation,
+)
 from ves_twin.effects.bodies import (
     BodyInertia,
     BodyMass,
@@ -14,7 +21,9 @@ from ves_twin.effects.effect import Effect
 from ves_twin.effects.friction import (
     FrictionBehindGap,
     LoadFriction,
+    OneWayLoad,
     QuadraticDrag,
+    RegularizedFriction,
     StribeckFriction,
 )
 from ves_twin.effects.hydraulics import (
@@ -78,9 +87,12 @@ TorqueConstant = ActuatorGain
 # names of earlier versions, as registry.RENAMED has them of files
 
 __all__ = [
+    "ActuatorAsymmetry",
     "ActuatorDeadband",
     "ActuatorDelay",
     "ActuatorGain",
+    "ActuatorOffset",
+    "ActuatorSaturation",
     "AnchorPosition",
     "Backlash",
     "BaseTilt",
@@ -112,6 +124,7 @@ __all__ = [
     "MassCentre",
     "ModelMass",
     "OilAir",
+    "OneWayLoad",
     "PayloadMass",
     "PistonLeakage",
     "QuadraticDrag",
@@ -119,6 +132,7 @@ __all__ = [
     "RecorderDelay",
     "RecorderGain",
     "RecorderOffset",
+    "RegularizedFriction",
     "RotorInertia",
     "SensorDelay",
     "SensorDrift",

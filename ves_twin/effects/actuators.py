@@ -1,4 +1,4 @@
-"""Effects of an actuator: gain, delay."""
+"""Effects of an actuator: gain, delay, and the curve from its command to what it gives."""
 
 from __future__ import annotations
 
@@ -11,9 +11,11 @@ import numpy as np
 from ves_twin.core.types import FloatArray
 from ves_twin.effects import change
 from ves_twin.effects.change import Law, Loop
+from ves_twin.effects.curve import Curve
 from ves_twin.effects.effect import Effect
 from ves_twin.effects.element import Element
-from ves_twin.effects.magnitude import Sign
+from ves_twin.effects.magnitude import Magnitude, Sign
+from ves_twin.effects.place import Place
 from ves_twin.effects.row import ALL_LEGS, JOINTS, Anywhere, Part, Row
 from ves_twin.effects.shifted import shifted
 from ves_twin.effects.size import Size
@@ -105,7 +107,30 @@ class ActuatorDelay(Effect):
 
 @final
 @dataclass(frozen=True)
-class ActuatorDeadband(Effect):
+class ActuatorOffset(Curve):
+    """A command acts as if it was another by a constant: u -> u + offset.
+
+    A valve whose neutral is off. Beside a dead band it makes the two sides differ.
+    """
+
+    offset: float = 0.0
+
+    kind = "actuator_offset"
+    sizes = (Size("offset", ""),)
+    anywhere = Anywhere(Element.ACTUATOR, lambda p: 0.5 * p.effort)
+
+    def edit_command(self, command: FloatArray, time: FloatArray) -> FloatArray:
+        """With the offset."""
+        return np.asarray(command + self.offset)
+
+    def edit_required(self, effort: FloatArray, time: FloatArray) -> FloatArray:
+        """Without it."""
+        return np.asarray(effort - self.offset)
+
+
+@final
+@dataclass(frozen=True)
+class ActuatorDeadband(Curve):
     """Nothing acts until the command leaves a band: u -> sign(u) max(|u| - band, 0).
 
     Overlapped valves, amplifiers that hold back small currents. The command that an effort needs
@@ -122,10 +147,72 @@ class ActuatorDeadband(Effect):
         """What of it lies outside the band."""
         return np.asarray(np.sign(command) * np.maximum(np.abs(command) - self.band, 0.0))
 
-    def edit_row(self, command: FloatArray, time: FloatArray, row: int) -> float:
-        """That of one row."""
-        return float(self.edit_command(command[row : row + 1], time)[0])
-
     def edit_required(self, effort: FloatArray, time: FloatArray) -> FloatArray:
         """Beyond the band."""
         return np.asarray(effort + self.band * np.sign(effort))
+
+
+@final
+@dataclass(frozen=True)
+class ActuatorAsymmetry(Curve):
+    """An actuator gives more one way than the other: u -> u (1 + share sign(u)).
+
+    A cylinder with a rod on one side moves faster where the oil enters there: areas A and B make a
+    share of (B - A) / (A + B).
+    """
+
+    share: float = 0.0
+
+    kind = "actuator_asymmetry"
+    sizes = (Size("share", "1"),)
+    # a rod of 0.7 of the bore halves the area, a share of a third
+    anywhere = Anywhere(Element.ACTUATOR, 0.5, 0.002, source="assumed: rods up to 0.8 of the bore")
+
+    def edit_command(self, command: FloatArray, time: FloatArray) -> FloatArray:
+        """Each side with its own gain."""
+        return np.asarray(command + self.share * np.abs(command))
+
+    def edit_required(self, effort: FloatArray, time: FloatArray) -> FloatArray:
+        """Each side without it."""
+        return np.asarray(effort / (1.0 + self.share * np.sign(effort)))
+
+
+LEAST_SLOPE = 0.01
+"""Of a saturated actuator where a command is asked for: none gives more than it can, and the
+command for more must be finite."""
+
+
+@final
+@dataclass(frozen=True)
+class ActuatorSaturation(Curve):
+    """Beyond a limit a command gives less: of what is beyond, a share is lost; all of it at 1.
+
+    A valve that is open, a pump or an amplifier at its end.
+    """
+
+    share: float = 0.0
+    limit: float = 0.0
+
+    kind = "actuator_saturation"
+    sizes = (Size("share", "1", Sign.POSITIVE), Size("limit", "", Sign.POSITIVE))
+    anywhere = Anywhere(Element.ACTUATOR)
+
+    @classmethod
+    def magnitudes_at(cls, place: Place) -> tuple[Magnitude, ...]:
+        """All of it lost, up to twice the typical command."""
+        return cls.ranged(place, 1.0, 2.0 * place.effort)
+
+    @classmethod
+    def starts(cls, place: Place) -> tuple[tuple[float, ...], ...]:
+        """All lost beyond an eighth to all of the typical command."""
+        return tuple((1.0, limit * place.effort) for limit in (0.125, 0.25, 0.5, 0.7, 1.0))
+
+    def edit_command(self, command: FloatArray, time: FloatArray) -> FloatArray:
+        """What is left of it."""
+        within = np.clip(command, -self.limit, self.limit)
+        return np.asarray(command - self.share * (command - within))
+
+    def edit_required(self, effort: FloatArray, time: FloatArray) -> FloatArray:
+        """Further out beyond the limit."""
+        within = np.clip(effort, -self.limit, self.limit)
+        return np.asarray(within + (effort - within) / max(1.0 - self.share, LEAST_SLOPE))

@@ -81,6 +81,40 @@ class StribeckFriction(Effect):
 
 @final
 @dataclass(frozen=True)
+class RegularizedFriction(Effect):
+    """Dry friction that sets in over a speed: level * tanh(v / transition).
+
+    Greased gears, and torques that are read from a current behind a filter: near a reversal they
+    have no sharp sign. Far below the transition it is viscous, far above Coulomb friction.
+
+    Source: Andersson, Soderberg and Bjorklund 2007, Friction models for sliding dry, boundary and
+    mixed lubricated contacts, with the hyperbolic tangent.
+    """
+
+    level: float = 0.0
+    transition: float = 0.0
+
+    kind = "regularized_friction"
+    sizes = (Size("level", EFFORT, Sign.POSITIVE), Size("transition", SPEED, Sign.POSITIVE))
+    anywhere = Anywhere(Element.JOINT)
+
+    @classmethod
+    def magnitudes_at(cls, place: Place) -> tuple[Magnitude, ...]:
+        """Up to the typical effort, over up to the typical speed."""
+        return cls.ranged(place, place.effort, place.speed)
+
+    @classmethod
+    def starts(cls, place: Place) -> tuple[tuple[float, ...], ...]:
+        """A tenth of the typical effort over 1, 3, 10, 30 % of the typical speed."""
+        return tuple((0.1 * place.effort, s * place.speed) for s in (0.01, 0.03, 0.1, 0.3))
+
+    def resist(self, speed: FloatArray, slow: float) -> FloatArray:
+        """The level, less where the joint is slower than the transition."""
+        return np.asarray(self.level * np.tanh(speed / max(self.transition, slow)))
+
+
+@final
+@dataclass(frozen=True)
 class LoadFriction(Effect):
     """Dry friction that grows with the load: share * |load| * sign(v), as in gears and seals.
 
@@ -165,6 +199,49 @@ class FrictionBehindGap(Effect):
     @property
     def _shape(self) -> tuple[float, float, float]:
         return self.difference, max(self.travel, LEAST_TRAVEL), self.gap
+
+
+@final
+@dataclass(frozen=True)
+class OneWayLoad(Effect):
+    """A load that resists motion one way, holds where the joint stands, and lets it go back free.
+
+    A cylinder against a relief valve behind a check valve, a weight on a ratchet. It sets in over
+    an elastic travel e, and is gone e behind where the motion turned: a Jenkins element whose
+    effort stays within 0 and load. Above zero it resists motion in the joint's positive direction.
+    """
+
+    load: float = 0.0
+    travel: float = 0.0
+
+    kind = "one_way_load"
+    sizes = (Size("load", EFFORT), Size("travel", LENGTH, Sign.POSITIVE))
+    anywhere = Anywhere(Element.JOINT)
+
+    @classmethod
+    def magnitudes_at(cls, place: Place) -> tuple[Magnitude, ...]:
+        """Load up to twice the typical effort, over up to half the typical travel."""
+        return cls.ranged(place, 2.0 * place.effort, 0.5 * place.travel)
+
+    @classmethod
+    def starts(cls, place: Place) -> tuple[tuple[float, ...], ...]:
+        """Half the typical effort either way, over travels each four times the last one."""
+        grid = product((0.5, -0.5), (0.002, 0.008, 0.032))
+        return tuple((load * place.effort, e * place.travel) for load, e in grid)
+
+    def hold(self, position: FloatArray) -> FloatArray:
+        """The effort along a motion that begins unloaded."""
+        return self._element.hold(np.asarray(position, float))
+
+    def holder(self) -> Callable[[float], float]:
+        """The same, position by position."""
+        return self._element.holder()
+
+    @property
+    def _element(self) -> FrictionBehindGap:
+        """Twice half the load on one side, none on the other."""
+        side = 1.0 if self.load > 0.0 else -1.0
+        return FrictionBehindGap(self.target, 0.5 * abs(self.load), side, 0.5 * self.travel)
 
 
 @compiled

@@ -124,3 +124,37 @@ def test_open_loop_recordings_are_judged_the_same_way(tmp_path):
     found = implausible(machine, scaled(record, **{"drive.force": -1.0}))
     assert found is not None
     assert "other sign of drive.force" in found.came
+
+
+VALVE = """<mujoco>
+  <worldbody><body><joint name="rod" type="slide" damping="100"/>
+    <inertial pos="0 0 0" mass="1" diaginertia="1 1 1"/></body></worldbody>
+  <actuator><motor name="valve" joint="rod"/></actuator>
+</mujoco>"""
+
+BEFORE_IT = """schema = 1
+kind = "rig"
+name = "valve"
+model = "valve.xml"
+clock = { column = "t" }
+drive = { mode = "control", smoothing = 10 }
+[signals]
+u = { columns = ["u"], unit = "N", actuator = "valve" }
+x = { columns = ["x"], unit = "m", joint = "rod", noise = 1e-5 }
+"""
+
+
+def test_a_model_with_too_much_friction_of_its_own_is_no_wrong_unit(tmp_path):
+    """It would be hidden by any unit that makes efforts large, or motion small."""
+    (tmp_path / "valve.xml").write_text(VALVE)
+    (tmp_path / "valve.toml").write_text(BEFORE_IT)
+    machine = Rig.load(str(tmp_path / "valve.toml"))
+    effort = np.sin(3.0 * TIME)
+    place = -np.cos(3.0 * TIME) / 3.0 / 40.0  # damping of 40 N s/m where the model has 100
+    recording = Recording(
+        TIME, {"u": effort[:, None], "x": place[:, None]}, RecordingInfo("measured")
+    )
+    assert implausible(machine, recording) is None
+    found = implausible(machine, scaled(recording, u=-1.0))
+    assert found is not None
+    assert "other sign" in found.came

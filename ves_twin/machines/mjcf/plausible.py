@@ -176,7 +176,11 @@ class _Seen:
 
     @cached_property
     def _plain(self) -> Work:
-        return Work.begin(self.rig, self.fed, {})
+        """Without friction of the joints: how much of it there is, is for the recording to say."""
+        work = Work.begin(self.rig, self.fed, {})
+        work.model.dof_damping[:] = 0.0
+        work.model.dof_frictionloss[:] = 0.0
+        return work
 
     def readings(self) -> Iterator[_Reading]:
         """Every other way to read the columns, one change at a time."""

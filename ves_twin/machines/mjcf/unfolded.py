@@ -8,9 +8,11 @@ import mujoco
 import numpy as np
 
 from ves_twin.core.errors import InvalidInputError, UnknownNameError, VesTwinError
+from ves_twin.effects.actuators import ActuatorAsymmetry, ActuatorOffset, ActuatorSaturation
 from ves_twin.effects.bodies import BodyInertia, BodyPlace, MassCentre
 from ves_twin.effects.effect import Effect
 from ves_twin.effects.element import Element
+from ves_twin.effects.friction import OneWayLoad, RegularizedFriction
 from ves_twin.effects.registry import EFFECTS, attributes, build_anywhere, kind_anywhere
 from ves_twin.machines.mjcf.description import Allowed, Mode, RigDescription, Setting
 from ves_twin.machines.mjcf.places import anywhere, place_of
@@ -22,6 +24,13 @@ OF_TURNING = (MassCentre.kind, BodyInertia.kind)
 
 FEW = 2
 """Numbers of a kind that a "*" means."""
+
+BY_NAME = (
+    *(ActuatorAsymmetry.kind, ActuatorOffset.kind, ActuatorSaturation.kind),
+    *(OneWayLoad.kind, RegularizedFriction.kind),
+)
+"""Kinds that a "*" does not mean: on most machines a force offset and dry or viscous friction do
+much the same, and each of them costs runs. A file asks for these by their names."""
 
 SLIDE = int(mujoco.mjtJoint.mjJNT_SLIDE)
 
@@ -118,7 +127,8 @@ def _every() -> list[str]:
     A law of more has others as its limits and takes their place: friction behind a gap that of a
     plain axis, which is then not found (EMPS). A file that asks for it by its name gets it.
     """
-    return [name for name, kind in EFFECTS.items() if kind.anywhere and len(kind.sizes) <= FEW]
+    found = [name for name, kind in EFFECTS.items() if kind.anywhere and len(kind.sizes) <= FEW]
+    return [name for name in found if name not in BY_NAME]
 
 
 def _fits(kind: str, target: str, told: RigDescription, model: mujoco.MjModel) -> bool:

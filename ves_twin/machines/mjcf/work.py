@@ -146,7 +146,7 @@ class Work:
 
     def required(self, actuator: str, effort: FloatArray) -> FloatArray:
         """The command that an actuator needs (n,)."""
-        for effect, _ in self.at(Element.ACTUATOR, actuator):
+        for effect, _ in reversed(self.at(Element.ACTUATOR, actuator)):
             effort = effect.edit_required(effort, self.programme.time)
         return effort
 
