@@ -27,6 +27,7 @@ import tempfile
 from dataclasses import asdict, dataclass
 from pathlib import Path
 
+import numpy as np
 from mutants import Mutant, mutants_of
 
 ROOT = Path(__file__).resolve().parents[1]
@@ -111,6 +112,10 @@ def main() -> None:
     parser.add_argument("file", type=Path, help="results, a JSON line for each mutant")
     parser.add_argument("--sample", type=int, default=SAMPLE, help="mutants of all")
     parser.add_argument("--module", default="", help="only those with this in their path")
+    parser.add_argument(
+        "--cheap", type=float, default=np.inf, metavar="S",
+        help="leave out tests of other files above so many processor seconds; then --again",
+    )  # fmt: skip
     parser.add_argument("--again", action="store_true", help="run the survivors once more")
     parser.add_argument("--report", action="store_true", help="run nothing, print what is known")
     options = parser.parse_args()
@@ -120,7 +125,7 @@ def main() -> None:
         again = {SURVIVED} if options.again else set[str]()
         left = [m for m in chosen if done.get(m.identity) in {None, *again}]
         left = [m for m in left if options.module in m.module]
-        _run(left, options.file)
+        _run(left, options.file, options.cheap)
         done = _done(options.file)
     print(_report(chosen, total, done))
 
@@ -139,14 +144,14 @@ def _done(file: Path) -> dict[tuple[str, str], str]:
     return {(row["key"], row["around"]): row["outcome"] for row in rows if "around" in row}
 
 
-def _run(left: list[Mutant], file: Path) -> None:
+def _run(left: list[Mutant], file: Path, cheap: float) -> None:
     file.parent.mkdir(parents=True, exist_ok=True)
     with tempfile.TemporaryDirectory(prefix="mutation-") as folder:
         copy = _copy(Path(folder) / "project")
         for room in ROOMS:
             here = [m for m in left if m.module in room.modules]
             if here:
-                with Bench(copy, room) as bench:
+                with Bench(copy, room, cheap) as bench:
                     _run_room(here, bench, file)
 
 
@@ -180,8 +185,8 @@ def _copy(folder: Path) -> Path:
 class Bench:
     """Runs the tests of a room in a copy, the quick ones first."""
 
-    def __init__(self, copy: Path, room: Room) -> None:
-        self.copy, self.room = copy, room
+    def __init__(self, copy: Path, room: Room, cheap: float) -> None:
+        self.copy, self.room, self.cheap = copy, room, cheap
         self.cache = copy.parent / "cache"
         self.limit = LONGEST
         self.cost: dict[str, float] = {}
@@ -215,7 +220,10 @@ class Bench:
             sys.exit(f"the tests of {self.room.modules[0]} fail without a mutant: {outcome}")
         self.limit = 4.0 * seconds + SLACK
         with costs.open(encoding="utf-8", newline="") as rows:
-            self.cost = {row["test"]: float(row["clock"]) for row in csv.DictReader(rows)}
+            self.cost = {
+                row["test"]: float(row["setup"]) + float(row["call"])
+                for row in csv.DictReader(rows)
+            }
         self.calls = json.loads(seen.read_text(encoding="utf-8"))
 
     def tested(self, mutant: Mutant) -> tuple[str, float]:
@@ -224,10 +232,14 @@ class Bench:
         own = f"test_{Path(mutant.module).stem}"
         place = f"{mutant.module}:{mutant.first}"
         every = mutant.first == 0 or self.room.compiled
-        tests = [test for test in self.cost if every or place in self.calls[test]]
+        ranks = {
+            test: (own not in test.split("::")[0], cost)
+            for test, cost in self.cost.items()
+            if every or place in self.calls[test]
+        }
+        tests = sorted((t for t in ranks if ranks[t] <= (True, self.cheap)), key=ranks.__getitem__)
         if not tests:
             return SURVIVED, 0.0
-        tests.sort(key=lambda t: (own not in t.split("::")[0], self.cost[t]))
         outcome, seconds = self._asked(tests, [], "")
         if self.room.compiled:
             shutil.rmtree(self.cache, ignore_errors=True)
