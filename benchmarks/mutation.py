@@ -71,7 +71,7 @@ ROOMS = (
                 "chambers", "cylinder", "delay", "force_sensor", "supply", "transducer", "valve",
             )
         ),
-        ("tests/plant/physics",),
+        ("tests/plant/physics", "tests/simulator/test_loop.py"),
         True,
     ),
     Room(

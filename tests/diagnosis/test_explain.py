@@ -111,6 +111,16 @@ def test_two_causes_explain_what_one_does_not(looked):
     assert all(len(fit.causes) == 1 for fit in double.alone)
 
 
+def test_a_second_cause_is_found_beside_the_best_where_the_bank_proposes_no_pair(
+    looked, monkeypatch
+):
+    """The bank's pairs are of what stands at nominal; beside a fit a second cause shows better."""
+    monkeypatch.setattr("ves_twin.diagnosis.screen.Screen.pairs", lambda *_: [])
+    double = explain(looked(TWO), LEVELS, QUICK)
+    assert double.adequate
+    assert effects(double.best) == {"friction", "ripple"}
+
+
 def test_what_no_cause_of_the_library_explains_is_not_adequate(looked):
     time = FED.time[:, None]
     strange = 0.3 * np.sin(2.0 * np.pi * 9.0 * time) * np.where(time > 4.0, [1.0, -2.0], 0.0)

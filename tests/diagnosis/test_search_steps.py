@@ -10,9 +10,18 @@ from toy import SD, Toy, programme
 
 from ves_twin.diagnosis.evidence import Evidence
 from ves_twin.diagnosis.linearise import linearise
-from ves_twin.diagnosis.refine import refine
+from ves_twin.diagnosis.refine import NEAR, _near, refine
 from ves_twin.diagnosis.runs import Runs
-from ves_twin.diagnosis.search import DAMPING, GAIN_RATIO, SECANT, Search
+from ves_twin.diagnosis.search import (
+    ATTEMPTS,
+    CHANCE,
+    DAMPING,
+    GAIN_RATIO,
+    NONLINEAR_CHI2,
+    PRIOR_WEIGHT_RATIO,
+    SECANT,
+    Search,
+)
 from ves_twin.diagnosis.whitening import whitening_declared
 
 FED = programme(1)
@@ -129,6 +138,17 @@ def test_an_undamped_step_of_a_linear_plant_is_the_whole_way(begun):
     assert again.foretold == pytest.approx(there.chi2, rel=1e-3)
 
 
+def test_a_step_is_the_same_whatever_unit_a_cause_is_counted_in(begun):
+    search, point, jacobian = begun
+    usual = search._proposed(point, jacobian, 1.0)
+    tiny = jacobian.copy()
+    tiny[:, 0] *= 1e-6
+    search.unit[0] *= 1e-6
+    step = search._proposed(point, tiny, 1.0)
+    np.testing.assert_allclose(step.shift, usual.shift, rtol=1e-6, atol=1e-9)
+    assert step.foretold == pytest.approx(usual.foretold, rel=1e-9)
+
+
 def test_damping_shortens_the_nuisances_way(begun):
     search, point, jacobian = begun
     free = search._proposed(point, jacobian, 1.0)
@@ -187,3 +207,103 @@ def test_a_fit_knows_how_its_parameters_hang_together(evidence):
     assert np.max(np.abs(found - np.diag(np.diag(found)))) > 0.1
     pulls = np.abs(fit.shift[fit.active[1:]]) / runs.sd[fit.active[1:]]
     assert fit.pull == pytest.approx(np.max(pulls))
+
+
+@pytest.fixture
+def weights(begun, monkeypatch):
+    """Weights of the priors that steps were proposed with."""
+    search, asked = begun[0], []
+    proposed = search._proposed
+
+    def noted(point, jacobian, weight):
+        asked.append(weight)
+        return proposed(point, jacobian, weight)
+
+    monkeypatch.setattr(search, "_proposed", noted)
+    return asked
+
+
+def test_far_from_noise_a_step_is_tried_at_two_weights_of_the_priors(begun, weights):
+    search, point, jacobian = begun
+    prior = search._prior_weight(point)
+    assert prior > NONLINEAR_CHI2
+    there = search._step(point, jacobian)
+    assert weights == [prior, PRIOR_WEIGHT_RATIO * prior]
+    assert search._prior_weight(there) < NONLINEAR_CHI2
+    weights.clear()
+    search._step(there, jacobian)
+    assert weights[0] == search._prior_weight(there)
+    assert PRIOR_WEIGHT_RATIO * weights[0] not in weights
+
+
+def test_where_no_step_helps_damping_grows_and_the_point_stays(begun, weights, monkeypatch):
+    search, point, jacobian = begun
+    monkeypatch.setattr(search, "at", lambda *_: replace(point, chi2=np.inf))
+    prior = search._prior_weight(point)
+    assert search._step(point, jacobian) is point
+    assert weights == [prior, PRIOR_WEIGHT_RATIO * prior, *[prior] * (ATTEMPTS - 1)]
+    assert search.damping == DAMPING**ATTEMPTS
+
+
+def test_a_small_fall_that_was_foretold_lessens_the_damping(begun):
+    search, point, jacobian = begun
+    best = search._step(search._step(point, jacobian), jacobian)
+    moved = best.shift.copy()
+    moved[search.nuisances[0]] += 0.2 * search.runs.sd[search.nuisances[0]]
+    beside = search.at(moved, best.delta)
+    assert 0.0 < beside.chi2 - best.chi2 < 0.2 * best.chi2
+    search.damping, search.tempered = 100.0, False
+    search._step(beside, jacobian)
+    assert search.damping == 10.0
+
+
+def test_a_surprise_turns_the_columns_that_may_be_off_before_and_behind_the_whitening(begun):
+    """J + (c - J m) (B m)' / (m'B m + CHANCE), B the squares of what the columns may be off by."""
+    search, point, jacobian = begun
+    whiten = search.evidence.whitening.apply
+    off = 1.3 / search.unit[0]  # the column of a whole unit of the cause, too large
+    search.raw = np.float32(off) * search.raw
+    jacobian[:, 0] *= off
+    search.unit[0] = 1.0
+    search.bends = np.array([3.0, 2.0, 1.0, 0.0, 0.0])
+    before = jacobian.copy()
+    shift = point.shift.copy()
+    shift[search.free[0]] = 2.0
+    shift[search.nuisances[:2]] += search.runs.sd[search.nuisances[:2]]
+    trial = search.at(shift, point.delta)
+    search._learn(point, trial, jacobian)
+    where = np.concatenate([search.free, search.nuisances])
+    gap = np.append(trial.shift[where] - point.shift[where], trial.delta - point.delta)
+    move = gap / search.unit
+    weight = search.bends**2 * move
+    surprise = point.residual - trial.residual - before @ move
+    expected = before + np.outer(surprise, weight / (weight @ move + CHANCE))
+    np.testing.assert_allclose(jacobian, expected, atol=1e-9 * np.abs(expected).max())
+    assert np.all(np.abs(jacobian - before).max(axis=0)[:3] > 0.1)
+    count = len(search.free)
+    for found, columns in (
+        (search.raw, jacobian[:, :count]),
+        (search.turned[search.kept], jacobian[:, count:-1]),
+    ):
+        # in single precision, of signals a thousand times the noise
+        np.testing.assert_allclose(whiten(found), columns.T, atol=1e-3 * np.abs(columns).max())
+
+
+@pytest.mark.parametrize(("off", "near"), [(0.9 * 0.2 * NEAR, True), (1.1 * 0.2 * NEAR, False)])
+def test_columns_hold_for_a_cause_within_a_share_of_its_size(search, off, near):
+    shift = search.runs.origin
+    shift[search.free[0]] = 1.0
+    there = shift.copy()
+    there[search.free[0]] = 1.0 - off
+    search.local = replace(search.local, point=there)
+    assert _near(search.runs, search, shift) == near
+    small = 1e-3 * shift
+    search.local = replace(search.local, point=1e-3 * there)
+    assert _near(search.runs, search, small) == near
+
+
+@pytest.mark.parametrize(("off", "near"), [(0.9 * NEAR, True), (1.1 * NEAR, False)])
+def test_columns_hold_for_a_nuisance_within_a_share_of_its_sd(search, off, near):
+    shift = search.runs.origin
+    shift[search.nuisances[1]] = off * search.runs.sd[search.nuisances[1]]
+    assert _near(search.runs, search, shift) == near
