@@ -9,8 +9,9 @@ import pytest
 from toy import QUICK, SD, Toy, programme
 
 from ves_twin.diagnosis.assess import assess
-from ves_twin.diagnosis.explain import CLOSE, FAR, _starts, explain
+from ves_twin.diagnosis.explain import CLOSE, FAR, _commissioning, _starts, explain
 from ves_twin.diagnosis.null import Thresholds
+from ves_twin.diagnosis.probability import probabilities
 from ves_twin.diagnosis.runs import Runs
 from ves_twin.diagnosis.signature_library import build_bank
 from ves_twin.diagnosis.whitening import whitening_declared
@@ -119,6 +120,34 @@ def test_a_second_cause_is_found_beside_the_best_where_the_bank_proposes_no_pair
     double = explain(looked(TWO), LEVELS, QUICK)
     assert double.adequate
     assert effects(double.best) == {"friction", "ripple"}
+
+
+@pytest.mark.parametrize("rough", [False, True])
+def test_what_a_rough_fit_of_commissioning_errors_leaves_too_much_makes_nothing_likelier(
+    looked, monkeypatch, rough
+):
+    """The model's error is a share of what the cause takes off chi^2, as far as that is sure."""
+    place = "ves_twin.diagnosis.explain"
+    allowed = []
+
+    def noted(fits, allowance, odds):
+        allowed.append(allowance)
+        return probabilities(fits, allowance, odds)
+
+    def left(*given):
+        fit = _commissioning(*given)[0]
+        return replace(fit, chi2=fit.chi2 + 1e4), rough
+
+    monkeypatch.setattr(f"{place}.probabilities", noted)
+    usual = explain(looked(ONE), LEVELS, QUICK, pairs=False)
+    monkeypatch.setattr(f"{place}._commissioning", left)
+    explain(looked(ONE), LEVELS, QUICK, pairs=False)
+    taken = usual.commissioning.chi2 - usual.best.chi2
+    sure = taken if rough else taken + 1e4
+    plain, with_more = allowed
+    assert plain == pytest.approx(QUICK.model_error**2 * taken, rel=1e-6)
+    # the power of the cause is the fall of chi^2 of a linear plant; noise of another level differs
+    assert with_more == pytest.approx(QUICK.model_error**2 * sure, rel=1e-3)
 
 
 def test_what_no_cause_of_the_library_explains_is_not_adequate(looked):

@@ -223,6 +223,17 @@ def weights(begun, monkeypatch):
     return asked
 
 
+def test_the_power_of_causes_is_what_they_take_off_chi2(evidence):
+    """Of a linear plant, whose chi^2 is a parabola in their sizes."""
+    runs = evidence.runs
+    base = linearise(runs, runs.origin)
+    ripple = next(h for h in Toy().hypotheses if h.effect == "ripple")
+    without = refine(evidence, (), runs.origin, base)
+    for causes in ((FRICTION,), (FRICTION, ripple)):
+        fit = refine(evidence, causes, runs.origin, base)
+        assert fit.power == pytest.approx(without.chi2 - fit.chi2, rel=1e-3)
+
+
 def test_far_from_noise_a_step_is_tried_at_two_weights_of_the_priors(begun, weights):
     search, point, jacobian = begun
     prior = search._prior_weight(point)
