@@ -116,18 +116,25 @@ def main() -> None:
         "--cheap", type=float, default=np.inf, metavar="S",
         help="leave out tests of other files above so many processor seconds; then --again",
     )  # fmt: skip
-    parser.add_argument("--again", action="store_true", help="run the survivors once more")
+    parser.add_argument(
+        "--again", nargs="*", metavar="FILE.py:LINE", help="run survivors once more, all or these"
+    )
     parser.add_argument("--report", action="store_true", help="run nothing, print what is known")
     options = parser.parse_args()
     chosen, total = _sample(options.sample)
     done = _done(options.file)
     if not options.report:
-        again = {SURVIVED} if options.again else set[str]()
-        left = [m for m in chosen if done.get(m.identity) in {None, *again}]
+        left = [m for m in chosen if m.identity not in done or _again(m, done, options.again)]
         left = [m for m in left if options.module in m.module]
         _run(left, options.file, options.cheap)
         done = _done(options.file)
     print(_report(chosen, total, done))
+
+
+def _again(mutant: Mutant, done: dict[tuple[str, str], str], places: list[str] | None) -> bool:
+    here = f"{mutant.module}:{mutant.line}"
+    named = places is not None and (not places or any(here.endswith(p) for p in places))
+    return named and done[mutant.identity] == SURVIVED
 
 
 def _sample(count: int) -> tuple[list[Mutant], int]:
