@@ -75,20 +75,6 @@ ROOMS = (
         True,
     ),
     Room(
-        (f"{LOOP}/loop.py",),
-        (
-            "tests/simulator/test_loop.py",
-            "tests/simulator/test_reference.py",
-            "tests/simulator/test_simulator.py",
-            "tests/simulator/test_sensor_in_the_rig.py",
-            "tests/simulator/test_hydraulics.py",
-            "tests/simulator/test_hydraulic_faults.py",
-            "tests/simulator/test_clock.py",
-            "tests/effects/test_timing_effects.py",
-        ),
-        True,
-    ),
-    Room(
         tuple(
             f"{DIAGNOSIS}/{name}.py"
             for name in ("whitening", "search", "refine", "explain", "gain", "assess")
@@ -103,6 +89,20 @@ ROOMS = (
         ),
         False,
         ("ves_twin.simulator.simulator",),
+    ),
+    Room(
+        (f"{LOOP}/loop.py",),
+        (
+            "tests/simulator/test_loop.py",
+            "tests/simulator/test_reference.py",
+            "tests/simulator/test_simulator.py",
+            "tests/simulator/test_sensor_in_the_rig.py",
+            "tests/simulator/test_hydraulics.py",
+            "tests/simulator/test_hydraulic_faults.py",
+            "tests/simulator/test_clock.py",
+            "tests/effects/test_timing_effects.py",
+        ),
+        True,
     ),
 )  # fmt: skip
 
