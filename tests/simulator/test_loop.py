@@ -22,18 +22,29 @@ from ves_twin.simulator.codes import (
 )
 from ves_twin.simulator.noise import NoiseStreams
 from ves_twin.simulator.rig import Rig
+from ves_twin.simulator.signal_bus import SLICES, WIDTH
 
 FAST = np.zeros(12, np.float32)
 SLOW = np.arange(1, SLOW_CHANNELS + 1, dtype=np.float32)
 """A number of its own for each slow channel."""
 
 
-@pytest.fixture
-def rig():
-    scenario = vt.Scenario.load("position_sine")
+COMPUTERS = ("leg.command", "gravity.estimate", "platform.command", "platform.pose")
+"""Signals of the board that others write."""
+
+
+def standing(noise: bool) -> Rig:
+    scenario = vt.Scenario.load("position_sine", {"run.log": "leg"})
     plant = vt.Plant.load(scenario.plant)
     clock = Clock.of(scenario, plant.parameters)
-    made = Rig(plant, clock, scenario.legs, belief_of(scenario), NoiseStreams(0, False))
+    made = Rig(plant, clock, scenario.legs, belief_of(scenario), NoiseStreams(0, noise))
+    made.state["legs"]["command"] = made.parameters["transducer"]["home"]
+    return made
+
+
+@pytest.fixture
+def rig():
+    made = standing(noise=False)
     made.data.qpos[:] = made.model.qpos0
     made.state["servo"]["points"] = np.arange(12.0).reshape(4, 3) ** 2
     made.state["supply"]["manifold"] = 2e7
@@ -155,3 +166,48 @@ def test_a_run_ends_by_what_the_rig_cannot_do(rig, travel, angle, inside, code):
     slides[rig.layout.slide_at[5]] += travel * rig.parameters["limits"]["stroke"][0]
     rig.data.qpos[rig.layout.arm_qpos[2]] = angle
     assert loop._verdict(parts(rig)[0], rig.data.qpos, slides, inside) == code
+
+
+def test_rows_are_logged_by_their_clock_from_the_start_of_the_run_on():
+    rig = standing(noise=False)
+    for name in COMPUTERS:
+        rig.board[name][:] = 77.0
+    rig.tick = -7
+    log = np.zeros((20, 1 + WIDTH))
+    assert rig.run(40, log, 3) == (RUNNING, 3 + 7)
+    assert rig.tick == 33
+    rows = log[3:10]
+    np.testing.assert_allclose(rows[:, 0], 5 * np.arange(7) * rig.clock.tick, rtol=1e-12)
+    assert np.all(log[:3] == 0.0)
+    assert np.all(log[10:] == 0.0)
+    home = rig.parameters["transducer"]["home"][0]
+    lengths = rows[:, 1:][:, SLICES["leg.length"]]
+    assert np.abs(lengths - home).max() < 1e-3
+    assert np.ptp(lengths, axis=0).max() > 0.0
+    for name in COMPUTERS:
+        assert np.all(rig.board[name] == 77.0), name
+
+
+def test_ticks_in_pieces_are_the_same_ticks():
+    """Noise is a matter of the tick alone, however many are asked for at once."""
+    whole, pieces = standing(noise=True), standing(noise=True)
+    logs = [np.zeros((20, 1 + WIDTH)) for _ in range(2)]
+    assert whole.run(90, logs[0], 0) == (RUNNING, 18)
+    logged = 0
+    for count in (13, 1, 20, 56):
+        _, logged = pieces.run(count, logs[1], logged)
+    assert logged == 18
+    np.testing.assert_array_equal(logs[0], logs[1])
+    assert whole.state.tobytes() == pieces.state.tobytes()
+    assert np.ptp(logs[0][:18, 1:][:, SLICES["supply.pressure"]]) > 0.0
+    # the slow noise of the sensor is one number for 16 ticks, of a channel of its own
+    wander = whole.state["sensor"]["wander"][0]
+    assert len(set(wander)) == 6
+
+
+def test_a_run_ends_at_the_tick_that_went_beyond_the_range():
+    rig = standing(noise=False)
+    rig.parameters["sensor"]["range"] = 0.0
+    rig.parameters["sensor"]["offset"] = 1.0
+    assert rig.run(30, np.zeros((20, 1 + WIDTH)), 0) == (WRENCH_OUT_OF_RANGE, 1)
+    assert rig.tick == 1
