@@ -9,7 +9,15 @@ import pytest
 from toy import QUICK, SD, Toy, programme
 
 from ves_twin.diagnosis.assess import assess
-from ves_twin.diagnosis.explain import CLOSE, FAR, _commissioning, _starts, explain
+from ves_twin.diagnosis.explain import (
+    CLOSE,
+    FAR,
+    PAIRS,
+    _commissioning,
+    _job,
+    _starts,
+    explain,
+)
 from ves_twin.diagnosis.null import Thresholds
 from ves_twin.diagnosis.probability import probabilities
 from ves_twin.diagnosis.runs import Runs
@@ -148,6 +156,26 @@ def test_what_a_rough_fit_of_commissioning_errors_leaves_too_much_makes_nothing_
     assert plain == pytest.approx(QUICK.model_error**2 * taken, rel=1e-6)
     # the power of the cause is the fall of chi^2 of a linear plant; noise of another level differs
     assert with_more == pytest.approx(QUICK.model_error**2 * sure, rel=1e-3)
+
+
+def test_pairs_beside_the_best_leave_room_for_those_of_the_bank(looked, monkeypatch):
+    record, tried = looked(TWO), []
+    odd = [s for s in record.suspects if _name(record, s) in {"drift", "lag"}]
+    monkeypatch.setattr("ves_twin.diagnosis.screen.Screen.pairs", lambda *_: [tuple(odd)])
+
+    def noted(evidence, causes, sizes, start):
+        tried.append({cause.effect for cause in causes})
+        return _job(evidence, causes, sizes, start)
+
+    monkeypatch.setattr("ves_twin.diagnosis.explain._job", noted)
+    explain(record, LEVELS, QUICK)
+    pairs = [names for names in tried if len(names) == 2]
+    assert {"drift", "lag"} in pairs
+    assert len(pairs) <= PAIRS
+
+
+def _name(record, suspect):
+    return record.screen.bank.hypotheses[suspect.hypothesis].effect
 
 
 def test_what_no_cause_of_the_library_explains_is_not_adequate(looked):

@@ -212,3 +212,23 @@ def test_noise_is_told_between_the_motion_and_half_the_rate_of_the_grid(share, t
         assert power.max() == pytest.approx(200.0)
     else:
         assert power.max() < 1e-9
+
+
+def test_poses_at_rest_have_noise_without_memory_and_lose_no_row():
+    rest = Runs(Toy(), (replace(programme(), poses=True),), (0, 1))
+    declared = whitening_declared(rest)
+    rows = 1.2 * white(7)
+    z = declared.apply(rows)
+    np.testing.assert_allclose(z.reshape(-1, 2), rows / np.array(SD), rtol=1e-5)
+    assert len(declared.times()[0]) == len(declared.blocks(z)[0]) == len(declared.freedom) / 2
+    own = declared.adapted(z)
+    assert np.all(own.colour == 0.0)
+    assert own.level[0] == pytest.approx([1.2, 1.2], rel=0.09)  # 540 of 800: 3 sd of 3 %
+    drawn = own.apply(own.draw(np.random.default_rng(1), 1.0, 0.4)).reshape(-1, 2)
+    assert np.mean(drawn**2) == pytest.approx(1.0, abs=0.11)  # 3 sd of sqrt(2 / 1600)
+    # one rho of 1 / sqrt(1600) is 0.025
+    assert abs(np.mean(drawn[1:] * drawn[:-1])) < 0.1
+    hole = np.zeros((ROWS, 2), bool)
+    hole[5, 0] = True
+    weights = whitening_declared(replace(rest, holes=(hole,))).weights
+    assert np.count_nonzero(weights == 0.0) == 1

@@ -277,7 +277,8 @@ def judge(desk: FitContext, fits: list[Fit], far: bool = False) -> Explanation:
     runs = first.evidence.runs
     leader = min(fits, key=lambda fit: fit.chi2)
     declared = first.screen.whitening
-    plain = replace(declared, colour=0.0 * declared.colour, level=0.0 * declared.level + 1.0)
+    white, unit = np.zeros_like(declared.colour), np.ones_like(declared.level)
+    plain = replace(declared, colour=white, level=unit)
     own = plain.adapted(plain.apply(bare_residual(first.evidence, leader)))
     evidence = Evidence(runs, first.evidence.measured, own)
     commissioning, rough = _commissioning(desk, evidence, leader, far)
