@@ -224,7 +224,7 @@ def test_poses_at_rest_have_noise_without_memory_and_lose_no_row():
     own = declared.adapted(z)
     assert np.abs(own.colour).max() < 1e-15
     assert own.level[0] == pytest.approx([1.2, 1.2], rel=0.09)  # 540 of 800: 3 sd of 3 %
-    drawn = own.apply(own.draw(np.random.default_rng(1), 1.0, 0.4)).reshape(-1, 2)
+    drawn = declared.apply(declared.draw(np.random.default_rng(1), 1.0, 0.4)).reshape(-1, 2)
     assert np.mean(drawn**2) == pytest.approx(1.0, abs=0.11)  # 3 sd of sqrt(2 / 1600)
     # one rho of 1 / sqrt(1600) is 0.025
     assert abs(np.mean(drawn[1:] * drawn[:-1])) < 0.1
