@@ -130,6 +130,7 @@ def test_the_ends_stay_within_bounds(search):
 
 def test_an_undamped_step_of_a_linear_plant_is_the_whole_way(begun):
     search, point, jacobian = begun
+    assert search.damping == 0.0
     step = search._proposed(point, jacobian, 1.0)
     there = search.at(step.shift, step.delta)
     assert there.chi2 == pytest.approx(step.foretold, rel=1e-3)

@@ -13,6 +13,7 @@ from toy import ROWS, SD, Toy, programme
 from ves_twin.core.errors import InvalidInputError
 from ves_twin.core.recording.recording import Recording, RecordingInfo
 from ves_twin.diagnosis.adequacy import cells, misfit, misfit_floor
+from ves_twin.diagnosis.forward import Excitation
 from ves_twin.diagnosis.grid import AnalysisGrid
 from ves_twin.diagnosis.runs import Runs
 from ves_twin.diagnosis.whitening import (
@@ -187,6 +188,18 @@ def test_the_level_that_a_record_shows_is_of_the_samples_that_count():
         # 400 rows of which two thirds of the spectrum are taken: 3 sd of 4 %
         assert own.level[0] == pytest.approx([1.2, 1.2], rel=0.13)
         assert declared.floor(declared.apply(rows)) == 1.0
+
+
+@pytest.mark.parametrize("colour", [-0.25, 0.0, 0.3])
+def test_the_colour_that_a_long_record_shows_is_its_own(colour):
+    time = 0.01 * np.arange(8000)
+    long = Runs(Toy(), (Excitation("long", time, {"drive.u": np.zeros((8000, 1))}),), (0, 1))
+    declared = whitening_declared(long)
+    z = declared.apply(declared.draw(np.random.default_rng(2), 1.1, colour))
+    own = declared.adapted(z)
+    # two thirds of 8000 samples: 3 sd of 1.4 %, and a step of the grid
+    assert own.colour[0] == pytest.approx([colour] * 2, abs=0.05)
+    assert own.level[0] == pytest.approx([1.1, 1.1], rel=0.04)
 
 
 def test_what_was_adapted_stays_when_it_is_adapted_again():
