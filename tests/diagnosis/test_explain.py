@@ -10,9 +10,12 @@ from toy import QUICK, SD, Toy, programme
 
 from ves_twin.diagnosis.assess import assess
 from ves_twin.diagnosis.explain import (
+    CLEAR,
     CLOSE,
     FAR,
     PAIRS,
+    SLACK,
+    FitContext,
     _commissioning,
     _job,
     _starts,
@@ -20,7 +23,8 @@ from ves_twin.diagnosis.explain import (
 )
 from ves_twin.diagnosis.null import Thresholds
 from ves_twin.diagnosis.probability import probabilities
-from ves_twin.diagnosis.runs import Runs
+from ves_twin.diagnosis.refine import refine
+from ves_twin.diagnosis.runs import Runs, silent
 from ves_twin.diagnosis.signature_library import build_bank
 from ves_twin.diagnosis.whitening import whitening_declared
 
@@ -156,6 +160,40 @@ def test_what_a_rough_fit_of_commissioning_errors_leaves_too_much_makes_nothing_
     assert plain == pytest.approx(QUICK.model_error**2 * taken, rel=1e-6)
     # the power of the cause is the fall of chi^2 of a linear plant; noise of another level differs
     assert with_more == pytest.approx(QUICK.model_error**2 * sure, rel=1e-3)
+
+
+@pytest.mark.parametrize(
+    ("sparse", "short", "rough", "rounds"),
+    [
+        (False, 40.0, False, []),
+        (False, -5.0, False, [QUICK.rounds]),
+        (True, 40.0, False, [0]),
+        (True, 400.0, True, []),
+        (True, -5.0, False, [0, QUICK.rounds]),
+    ],
+)
+def test_commissioning_errors_get_new_columns_where_the_cause_takes_off_little(
+    looked, monkeypatch, sparse, short, rough, rounds
+):
+    """`short`: by how much chi^2 without the cause is beyond what counts as clear."""
+    record, asked = looked({"friction.size": 0.2}), []
+    runs, evidence = record.evidence.runs, record.evidence
+    friction = next(h for h in record.screen.bank.hypotheses if h.effect == "friction")
+    leader = refine(evidence, (friction,), runs.origin, record.screen.bank.base)
+    taken = refine(evidence, (), runs.origin, record.screen.bank.base).chi2 - leader.chi2
+    assert SLACK * leader.chi2 == pytest.approx(160.0, abs=20.0)
+
+    def noted(evidence, fit, count):
+        asked.append(count)
+        return fit
+
+    monkeypatch.setattr("ves_twin.diagnosis.explain._again", noted)
+    level = replace(LEVELS, effect=(taken - short) / CLEAR)
+    desk = FitContext(record, level, replace(QUICK, sparse=sparse), silent)
+    fit, told = _commissioning(desk, evidence, leader, False)
+    assert fit.causes == ()
+    assert (told, asked) == (rough, rounds)
+    assert _commissioning(desk, evidence, leader, True)[1] == sparse
 
 
 def test_pairs_beside_the_best_leave_room_for_those_of_the_bank(looked, monkeypatch):

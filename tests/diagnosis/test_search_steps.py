@@ -56,6 +56,8 @@ def test_a_point_has_chi2_of_its_residual_and_of_the_priors(search):
     shift = runs.origin
     shift[runs.nuisances] += 1.5 * runs.sd[runs.nuisances]
     point = search.at(shift, 0.5)
+    # the toy has no error of integration: the most probable share of its column is none
+    assert point.delta == pytest.approx(0.0, abs=1e-3)
     errors = point.shift[runs.nuisances] / runs.sd[runs.nuisances]
     residual = search.evidence.whitening.apply(search.evidence.measured - runs.one(point.shift))
     assert point.chi2 == pytest.approx(

@@ -19,7 +19,6 @@ from ves_twin.diagnosis.runs import Runs
 from ves_twin.diagnosis.whitening import (
     FEWEST,
     ORDER,
-    SILENT,
     _periodogram,
     whitening_declared,
     whitening_measured,
@@ -129,12 +128,12 @@ def test_a_line_in_the_standstill_is_no_noise():
     np.testing.assert_allclose(added.filters, plain.filters, atol=1e-3)
 
 
-@pytest.mark.parametrize(("share", "told"), [(0.5, False), (1.5, True)])
-def test_a_channel_too_quiet_in_the_standstill_has_its_declared_noise(share, told):
-    noise = white(1, 4000) * [1.0, np.sqrt(share * SILENT)]
+@pytest.mark.parametrize(("share", "told"), [(0.7e-3, False), (1.5e-3, True)])
+def test_a_channel_below_a_thousandth_of_its_declared_power_tells_nothing(share, told):
+    noise = white(1, 4000) * [1.0, np.sqrt(share)]
     found = whitening_measured(toy_runs(), still(noise))
     sd = 1.0 / found.mixing[0, 1, 1]
-    expected = SD[1] * (np.sqrt(share * SILENT) if told else 1.0)
+    expected = SD[1] * (np.sqrt(share) if told else 1.0)
     assert sd == pytest.approx(expected, rel=0.08)  # 4000 rows: 3 sd of 1.1 %, and the mixing
 
 
