@@ -97,6 +97,8 @@ def mutants_of(path: Path, module: str) -> list[Mutant]:
         for kind, new in _changes(node, lambda n: source[slice(*place(n))]):
             span = place(node)
             old = source[slice(*span)]
+            if new == old:
+                continue
             label = f"{path.stem} {function} {kind} {old} {new}"
             seen[label] = seen.get(label, 0) + 1
             key = hashlib.sha256(f"{label} {seen[label]}".encode()).hexdigest()[:16]

@@ -259,6 +259,31 @@ def test_where_no_step_helps_damping_grows_and_the_point_stays(begun, weights, m
     assert search.damping == DAMPING**ATTEMPTS
 
 
+def test_a_descent_ends_at_noise_with_the_priors_own_weight_untried(begun, monkeypatch):
+    search, point, jacobian = begun
+    best = search._step(search._step(point, jacobian), jacobian)
+    taken, step = [], search._step
+    monkeypatch.setattr(search, "_step", lambda *given: taken.append(1) or step(*given))
+    found, _ = search.descend(best, jacobian)
+    assert found.chi2 == pytest.approx(best.chi2, rel=1e-4)
+    assert len(taken) == 1
+    assert search.tempered
+
+
+def test_a_descent_that_stalls_far_from_noise_goes_on_at_the_priors_own_weight(begun, monkeypatch):
+    search, point, jacobian = begun
+    weights = []
+
+    def stalled(point, jacobian):
+        weights.append(search._prior_weight(point))
+        return point
+
+    monkeypatch.setattr(search, "_step", stalled)
+    assert search.descend(point, jacobian)[0] is point
+    assert weights[0] > NONLINEAR_CHI2
+    assert weights[1:] == [1.0]
+
+
 def test_a_small_fall_that_was_foretold_lessens_the_damping(begun):
     search, point, jacobian = begun
     best = search._step(search._step(point, jacobian), jacobian)
