@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from toy import QUICK, SD, Toy, programme
 
-from ves_twin.diagnosis.assess import assess
+from ves_twin.diagnosis.assess import STRANGE, assess
 from ves_twin.diagnosis.explain import (
     CLEAR,
     CLOSE,
@@ -17,6 +17,7 @@ from ves_twin.diagnosis.explain import (
     SLACK,
     FitContext,
     _commissioning,
+    _far,
     _job,
     _starts,
     explain,
@@ -239,6 +240,21 @@ def test_what_no_cause_comes_near_is_given_up_before_pairs_and_second_causes(loo
     assert not explain(looked({}, added=strange), LEVELS, QUICK).far
     assert not explain(looked(ONE), LEVELS, many).far
     assert not explain(looked(TWO), LEVELS, many).far
+
+
+@pytest.mark.parametrize(("left", "far"), [(0.4, False), (0.6, True)])
+def test_what_no_cause_takes_half_of_is_far(looked, left, far):
+    """`left`: share of the chi^2 above noise that the best cause leaves."""
+    time = FED.time[:, None]
+    strange = 3.0 * np.sin(2.0 * np.pi * 9.0 * time) * np.where(time > 4.0, [1.0, -2.0], 0.0)
+    first = looked({}, added=strange)
+    desk = FitContext(first, LEVELS, replace(QUICK, sparse=True), silent)
+    alone = first.commissioning
+    noise = len(alone.residual)
+    best = replace(alone, chi2=noise + left * (alone.chi2 - noise))
+    assert best.chi2 > STRANGE * noise
+    assert _far(desk, [replace(best, chi2=2.0 * best.chi2), best]) == far
+    assert not _far(replace(desk, settings=QUICK), [best])
 
 
 def test_a_machine_of_many_parameters_names_the_same(looked):

@@ -345,8 +345,7 @@ def _second(desk: FitContext, evidence: Evidence, fit: Fit, allowance: float) ->
     """Best score of a further cause beside a fit: by the nominal bank, then by one at the fit."""
     bank = desk.first.screen.bank
     z = residual_about(evidence, fit, bank.base)
-    suspects = Screen(bank, evidence.whitening, fit.free).suspects(z)
-    score = suspects[0].score if suspects else 0.0
+    score = Screen(bank, evidence.whitening, fit.free).suspects(z)[0].score
     if score < desk.thresholds.effect + allowance:
         return score
     return max((s.score for s in suspects_at(desk, evidence, fit)[1]), default=0.0)
