@@ -173,9 +173,8 @@ def _plant_sentence(found: Diagnosis) -> str:
 
 
 def _text(found: Diagnosis, folder: Path) -> str:
-    from ves_twin.core.quantity import shares
     from ves_twin.report.diagnosis.answer import confidence_sentence, next_step, verdict_sentence
-    from ves_twin.report.diagnosis.basis import rests_on
+    from ves_twin.report.diagnosis.basis import rests_on, taken_words
     from ves_twin.report.diagnosis.law import law_sentences
     from ves_twin.report.diagnosis.proved import (
         inseparable_sentences,
@@ -196,11 +195,7 @@ def _text(found: Diagnosis, folder: Path) -> str:
         for name, size in cause.largest.items():
             lines.append(f"size      {name_of(cause)}: {name}, 90 % {interval_words(size)}")
     if verdict.gain is not None and verdict.gain.share is not None:
-        gain = verdict.gain
-        share, low, high = shares(gain.share, gain.low, gain.high)
-        lines.append(
-            f"gain      {share} of the error beyond noise on held-out recordings ({low} to {high})"
-        )
+        lines.append(f"gain      {taken_words(verdict.gain)}")
     if verdict.law is not None:
         said = law_sentences(verdict.law)
         first, *rest = said[2:] if verdict.law.claimed else said

@@ -227,7 +227,7 @@ def test_a_record_is_split_into_stretches_that_share_no_row():
     assert np.all(one.runs.kept | two.runs.kept)
     both = halves_at(one, two, one.runs.origin, PLANT.hypotheses)
     assert len(both.held.own) == 0
-    assert both.regression.half.columns is both.held.columns
+    assert both.regression.half.columns.known is both.held.columns.known
 
 
 def test_a_split_record_proves_what_is_hidden_in_it():
@@ -246,3 +246,13 @@ def test_rows_without_a_measurement_change_no_proof():
     one, two = seen(PLANT, holed), seen(PLANT, recorded(PLANT, {"coulomb@a:size": 0.8}, 22))
     names, _ = found(halves_at(one, two, one.runs.origin, PLANT.hypotheses))
     assert "coulomb@a:size" in names
+
+
+def test_held_out_columns_are_simulated_for_chosen_trials_alone():
+    one, two = (seen(PLANT, recorded(PLANT, {"coulomb@a:size": 0.8}, seed)) for seed in (1, 2))
+    both = halves_at(one, two, one.runs.origin, PLANT.hypotheses)
+    assert not both.held.columns.known
+    proof = prove(both.regression, both.held, [0, 2])
+    assert set(both.held.columns.known) == {0, 2}
+    assert len(both.regression.half.columns.known) == len(both.regression.trials) > 2
+    assert proof.tested == 2

@@ -9,7 +9,8 @@ import numpy as np
 
 from ves_twin.core.types import FloatArray, SingleArray
 from ves_twin.diagnosis.build_up.regression import Half, Regression
-from ves_twin.diagnosis.build_up.trials import Trial, columns_of, trials_at
+from ves_twin.diagnosis.build_up.trial_columns import TrialColumns
+from ves_twin.diagnosis.build_up.trials import Trial, trials_at
 from ves_twin.diagnosis.forward import Hypothesis
 from ves_twin.diagnosis.linearise import Linearisation, linearise
 from ves_twin.diagnosis.preprocess import Dataset
@@ -50,9 +51,9 @@ def halves_at(
     trials, columns = trials_at(runs, point, causes, present, progress)
     there = carried_point(runs, held.runs, point)
     same = held.runs.programmes is runs.programmes
-    others = columns if same else columns_of(held.runs, there, trials, progress)
-    mine = _half(fitted, point, trials, columns, present, same)
-    yours = _half(held, there, trials, others, present, same)
+    known = dict(enumerate(columns))
+    mine = _half(fitted, point, trials, known, present, same, progress)
+    yours = _half(held, there, trials, known if same else {}, present, same, progress)
     return Halves(Regression(mine, trials), yours)
 
 
@@ -87,20 +88,21 @@ def _half(
     seen: Dataset,
     point: FloatArray,
     trials: Sequence[Trial],
-    columns: Sequence[SingleArray],
+    known: dict[int, SingleArray],
     present: Sequence[Trial],
     same: bool,
+    progress: Progress,
 ) -> Half:
     """What is to be explained: measured less predicted, with what is at work put back."""
     runs = seen.runs
     local = linearise(runs, point)
     target = np.asarray(seen.measured - local.prediction, float)
-    at_work = {trial.cause.label: trial for trial in present}
+    columns = TrialColumns(runs, point, trials, local.prediction, progress, known)
+    at_work = [n for n, trial in enumerate(trials) if trial in present]
     moved = np.zeros(len(runs.coordinates), bool)
-    for trial, column in zip(trials, columns, strict=True):
-        if at_work.get(trial.cause.label) == trial:
-            target = target + column.sum(axis=0)
-            moved[runs.indices(trial.cause)] = True
+    for n, column in zip(at_work, columns.of(at_work), strict=True):
+        target = target + column.sum(axis=0)
+        moved[runs.indices(trials[n].cause)] = True
     pull = np.where(moved[runs.nuisances], 0.0, point[runs.nuisances] / runs.sd[runs.nuisances])
     target = np.asarray(target + np.tensordot(pull, local.columns[:-1], axes=1), float)
     return _sorted(seen, local, target, columns, same)
@@ -110,7 +112,7 @@ def _sorted(
     seen: Dataset,
     local: Linearisation,
     target: FloatArray,
-    columns: Sequence[SingleArray],
+    columns: TrialColumns,
     same: bool,
 ) -> Half:
     """Nuisances that both halves share first, then those of single recordings."""

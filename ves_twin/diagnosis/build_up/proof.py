@@ -56,7 +56,7 @@ class Bench:
         """Held-out design (rows, c, k) and target (rows, c), whitened; own nuisances taken off."""
         held, width = self.held, len(self.held.runs.columns)
         whitening = self.own_colour
-        columns = [held.shared, *(held.columns[n] for n in self.fit.chosen)]
+        columns = [held.shared, *held.columns.of(self.fit.chosen)]
         design = whitening.apply(np.concatenate(columns)).T
         scale = np.delete(self.fit.scale, self._own)
         both = np.column_stack([design * scale, whitening.apply(held.target.astype(np.float32))])
@@ -139,7 +139,7 @@ class Bench:
         amplitudes = np.zeros(len(self.fit.scale))
         amplitudes[at] = shares
         amplitudes = np.delete(amplitudes * self.fit.scale, self._own)
-        columns = [self.held.shared, *(self.held.columns[n] for n in self.fit.chosen)]
+        columns = [self.held.shared, *self.held.columns.of(self.fit.chosen)]
         return self.held.target - np.tensordot(amplitudes, np.concatenate(columns), axes=1)
 
     def bare(self, trials: Sequence[int]) -> FloatArray:

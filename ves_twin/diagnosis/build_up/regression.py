@@ -10,6 +10,7 @@ import numpy as np
 
 from ves_twin.core.types import BoolArray, FloatArray, IntArray, SingleArray
 from ves_twin.diagnosis.build_up.discrepancy import discrepancy
+from ves_twin.diagnosis.build_up.trial_columns import TrialColumns
 from ves_twin.diagnosis.build_up.trials import Trial
 from ves_twin.diagnosis.runs import Runs
 from ves_twin.diagnosis.whitening import Whitening
@@ -43,7 +44,7 @@ class Half:
     target: FloatArray
     shared: SingleArray
     own: SingleArray
-    columns: Sequence[SingleArray]
+    columns: TrialColumns
 
     @cached_property
     def kept(self) -> BoolArray:
@@ -109,7 +110,7 @@ class Regression:
     def prior(self) -> list[FloatArray]:
         """Prior sd of the amplitudes of each trial (width,)."""
         found = []
-        for columns in self.half.columns:
+        for columns in self.half.columns.of(range(len(self.trials))):
             share = [self.half.rms(column) / self.level for column in columns]
             size = np.sqrt(np.mean(np.square(share), axis=1))
             found.append(WIDE / np.maximum(size, 1e-9))
@@ -118,7 +119,7 @@ class Regression:
     def design(self, chosen: Sequence[int]) -> tuple[SingleArray, FloatArray]:
         """Columns (k, rows, c) of nuisances and trials, and the prior sd of each."""
         nuisances = self.half.nuisances
-        columns = [nuisances, *(self.half.columns[n] for n in chosen)]
+        columns = [nuisances, *self.half.columns.of(chosen)]
         scale = [np.ones(len(nuisances)), *(self.prior[n] for n in chosen)]
         return np.concatenate(columns), np.concatenate(scale)
 
@@ -188,7 +189,7 @@ class Regression:
         """Chi^2 that each of other trials would take beside a fit, under its discrepancy."""
         columns, scale = self.design(fit.chosen)
         inside = self.whitened(fit.whitening, columns) * scale
-        fresh = np.concatenate([self.half.columns[n] for n in others])
+        fresh = np.concatenate(self.half.columns.of(others))
         weight = np.concatenate([self.prior[n] for n in others])
         outside = self.whitened(fit.whitening, fresh) * weight
         left = fit.whitening.apply(fit.residual.astype(np.float32))

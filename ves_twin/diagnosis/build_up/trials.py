@@ -56,7 +56,11 @@ class Trial:
 
 
 def columns_of(
-    runs: Runs, point: FloatArray, trials: Sequence[Trial], progress: Progress = silent
+    runs: Runs,
+    point: FloatArray,
+    trials: Sequence[Trial],
+    progress: Progress = silent,
+    known: SingleArray | None = None,
 ) -> list[SingleArray]:
     """What each trial adds to the channels about a point: (width, rows, c) each.
 
@@ -68,28 +72,26 @@ def columns_of(
         point: departures (coordinates,).
         trials: whose columns are computed.
         progress: told how far it is.
+        known: channels at the point (rows, c), where they are known already.
     """
-    absent: dict[bytes, int] = {}
-    shifts: list[FloatArray] = []
+    shifts: dict[bytes, FloatArray] = {}
 
-    def place(shift: FloatArray) -> int:
+    def place(shift: FloatArray) -> bytes:
         key = shift.tobytes()
-        if key not in absent:
-            absent[key] = len(shifts)
-            shifts.append(shift)
-        return absent[key]
+        shifts.setdefault(key, shift)
+        return key
 
     pairs = []
     for trial in trials:
         where = runs.indices(trial.cause)
         without = runs.depart(point, where, np.zeros(len(where)))
-        rows = []
-        for sizes in trial.points:
-            there = runs.depart(point, where, np.array(sizes))
-            rows.append((place(there), place(without)))
-        pairs.append(rows)
-    stacks = runs.many(shifts, progress, "what each cause would change")
-    return [np.stack([stacks[a] - stacks[b] for a, b in rows]) for rows in pairs]
+        ends = [runs.depart(point, where, np.array(sizes)) for sizes in trial.points]
+        pairs.append([(place(there), place(without)) for there in ends])
+    stacks = {} if known is None else {point.tobytes(): known}
+    asked = [key for key in shifts if key not in stacks]
+    rows = runs.many([shifts[key] for key in asked], progress, "what each cause would change")
+    stacks |= dict(zip(asked, rows, strict=True))
+    return [np.stack([stacks[a] - stacks[b] for a, b in ends]) for ends in pairs]
 
 
 def trials_at(

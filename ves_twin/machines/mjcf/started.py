@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
+from numpy.polynomial.polynomial import polyfit
 
 from ves_twin.core.recording.recording import Recording
 from ves_twin.core.signals import Role, Signal
@@ -58,6 +59,29 @@ def started(rig: Rig, *groups: Sequence[Recording]) -> tuple[Rig, Groups]:
             for group, those in zip(found, begins, strict=True)
         )
     return rig, found
+
+
+def first_state(column: FloatArray, period: float, corner: float) -> tuple[float, float]:
+    """Position and speed at the first row, of a cubic through the first rows.
+
+    As many rows as tell the speed to 2 pi corner times the noise of one row, which is what a
+    derivative behind a low-pass of that corner is known to at best, and what is declared for it.
+    The low-pass itself has no rows before the first one: behind it, what starts at rest under an
+    acceleration a seems to move already, by about a / (2 pi corner).
+
+    Args:
+        column: positions (n,).
+        period: between rows [s].
+        corner: of the low-pass that positions are differentiated behind [Hz].
+
+    Source: sd of the end slope of a cubic through n rows of noise s over a time T, from the
+    Legendre polynomials: s sqrt(1200 / n) / T.
+    """
+    told = np.sqrt(1200.0) / (2.0 * np.pi * corner * period)
+    count = min(len(column), max(FEWEST, int(np.ceil(told ** (2.0 / 3.0)))))
+    time = period * np.arange(count)
+    position, speed = polyfit(time, column[:count], min(3, count - 1))[:2]
+    return float(position), float(speed)
 
 
 @dataclass(frozen=True)

@@ -17,10 +17,9 @@ from ves_twin.effects.effect import Effect
 from ves_twin.effects.element import Element
 from ves_twin.machines.mjcf.description import Controller, Mode
 from ves_twin.machines.mjcf.imposed import Imposed
-from ves_twin.machines.mjcf.inverse import smoothed
 from ves_twin.machines.mjcf.joint_units import joint_units
 from ves_twin.machines.mjcf.law_loop import CompiledLaws, lawful_rows
-from ves_twin.machines.mjcf.started import start_signal
+from ves_twin.machines.mjcf.started import first_state, start_signal
 from ves_twin.machines.mjcf.work import Work, sensor_rows, variables
 
 CARRIED = 4
@@ -123,9 +122,7 @@ def _measured_start(work: Work, joint: str) -> tuple[float, float]:
         return at, to_si(start.speed, units[1], f"{what}.speed")
     signal, sign = position_signal(work, joint)
     column = sign * work.programme.drive[signal][:, 0]
-    smooth = smoothed(column, work.programme.period, told.drive.smoothing)
-    speed = (smooth[1] - smooth[0]) / work.programme.period
-    return float(column[0]), float(speed)
+    return first_state(column, work.programme.period, told.drive.smoothing)
 
 
 def position_signal(work: Work, joint: str) -> tuple[str, int]:

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from ves_twin.core.quantity import percent, shares
+from ves_twin.core.quantity import percent
 from ves_twin.diagnosis.disagreement import disagree
 from ves_twin.diagnosis.verdict import Cause, Kind, Verdict
+from ves_twin.report.diagnosis.basis import taken_share
 from ves_twin.report.diagnosis.law import worth_sentence
 from ves_twin.report.diagnosis.limits import next_sentences
 from ves_twin.report.diagnosis.words import TOLD, capital, ends_words, name_of, size_words, spoken
@@ -163,7 +164,7 @@ def _doubt(verdict: Verdict) -> str:
         return f"{it} fits these recordings; no other recording has tested it."
     if gain is None or gain.share is None:
         return "The held-out recordings can neither confirm nor refute it."
-    share = "all" if gain.share >= 1.0 else shares(gain.share, gain.low, gain.high)[0]
+    share = taken_share(gain)
     return f"Held-out recordings confirm it: there it takes {share} of the error beyond noise away."
 
 
@@ -196,7 +197,7 @@ def nearest_sentence(verdict: Verdict) -> str:
         names = " with ".join(map(spoken, verdict.suspect.split(" with ")))
         said = f"Nearest, and not accepted: {names}. "
         if verdict.gain is not None and verdict.gain.share is not None and verdict.gain.passed:
-            share = shares(verdict.gain.share)[0]
+            share = taken_share(verdict.gain)
             said += f"It takes {share} of the held-out error away, and more is missing. "
     if left.loud:
         top = left.loud[0]

@@ -3,8 +3,12 @@
 from __future__ import annotations
 
 from ves_twin.core.quantity import shares
+from ves_twin.diagnosis.gain import Gain
 from ves_twin.diagnosis.tolerances import FEWEST
 from ves_twin.diagnosis.verdict import Basis, Verdict
+
+NEARLY_ALL = 0.99
+"""Share from which more digits tell nobody anything."""
 
 GIVEN = {
     ("noise", "measured"): "noise measured at a standstill",
@@ -37,6 +41,26 @@ def _listed(names: list[str]) -> str:
     return f"{', '.join(names[:-1])} and {names[-1]}" if len(names) > 1 else names[0]
 
 
+def taken_share(gain: Gain) -> str:
+    """How much of what is there an extension takes away: no more than all of it."""
+    return _taken(gain)[0]
+
+
+def taken_words(gain: Gain) -> str:
+    """The same, of what, and within which range."""
+    share, low, high = _taken(gain)
+    span = f" ({low} to {high})" if low else ""
+    return f"{share} of the error beyond noise on held-out recordings{span}"
+
+
+def _taken(gain: Gain) -> tuple[str, str, str]:
+    if gain.low is not None and gain.low > NEARLY_ALL:
+        return f"more than {100.0 * NEARLY_ALL:.0f} %", "", ""
+    ends = (None if end is None else min(end, 1.0) for end in (gain.share, gain.low, gain.high))
+    share, low, high = shares(*ends)
+    return share, low, high
+
+
 def gain_sentence(verdict: Verdict) -> str:
     """What the extension is worth on recordings it has not seen."""
     gain = verdict.gain
@@ -52,9 +76,7 @@ def gain_sentence(verdict: Verdict) -> str:
             "Gain: the held-out recordings show no error beyond noise that an extension could take"
             " away; they neither confirm nor refute it."
         )
-    share, low, high = shares(gain.share, gain.low, gain.high)
-    span = f"{low} to {high}"
-    said = f"{share} of the error beyond noise on held-out recordings ({span})"
+    said = taken_words(gain)
     if gain.passed:
         return f"Gain: the extended plant takes away {said}."
     if not gain.by_causes:

@@ -8,9 +8,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 from enum import StrEnum
 
-from ves_twin.core.quantity import digits, shares
+from ves_twin.core.quantity import digits
 from ves_twin.diagnosis.rivals import Standing
 from ves_twin.diagnosis.verdict import Verdict
+from ves_twin.report.diagnosis.basis import taken_share
 
 
 class Pedigree(StrEnum):
@@ -67,7 +68,7 @@ def _validation(verdict: Verdict) -> Factor:
     passed = gain is not None and gain.passed and not verdict.unconfirmed
     external = basis.recordings == "external"
     if external and basis.held_out != "none" and named and passed and gain is not None:
-        share = shares(gain.share, gain.low, gain.high)[0]
+        share = taken_share(gain)
         said = (
             f"On external recordings that were held out, the extended model takes {share} of the"
             " error beyond noise away. Beyond motions like those nothing is shown."

@@ -7,10 +7,11 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ves_twin.core.quantity import digits, quantity, shares
+from ves_twin.core.quantity import digits, quantity
 from ves_twin.core.types import FloatArray
 from ves_twin.diagnosis.law.result import LawFinding, LawRival
 from ves_twin.report.colours import AFTER, MEASURED
+from ves_twin.report.diagnosis.basis import taken_words
 from ves_twin.report.figure import new_figure, svg
 from ves_twin.report.html import Html, bullets, folded, paragraph, table
 
@@ -70,9 +71,7 @@ def worth_sentence(law: LawFinding) -> str:
         return f"It is {odds}. No held-out recording has tried it."
     if gain.share is None:
         return f"It is {odds}. The held-out recordings show nothing that it could improve."
-    share, low, high = shares(gain.share, gain.low, gain.high)
-    taken = f"{share} of the error beyond noise on held-out recordings ({low} to {high})"
-    return f"It takes away {taken}, and is {odds}."
+    return f"It takes away {taken_words(gain)}, and is {odds}."
 
 
 def equals(law: LawFinding) -> list[LawRival]:

@@ -16,7 +16,7 @@ TOLD = 6
 def spoken(label: str) -> str:
     """effect@target as a person says it: "Coulomb friction at leg 3"."""
     effect, _, target = label.partition("@")
-    words = effect.replace("_", " ").replace("coulomb", "Coulomb")
+    words = effect.replace("_", " ").replace("coulomb", "Coulomb").replace("stribeck", "Stribeck")
     places = target.split(".")
     if places[0] == "sensor" and len(places) == 3:  # one axis reads a share of another
         places.insert(2, "from")
