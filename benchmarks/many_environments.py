@@ -23,7 +23,7 @@ import gymnasium as gym
 import mujoco
 import numpy as np
 
-from ves_twin.envs import ENVIRONMENTS
+from ves_twin.envs import RIG_ENVIRONMENTS
 from ves_twin.envs.chunked_vector_env import ChunkedVectorEnv
 from ves_twin.envs.rig_env import CYCLES
 
@@ -155,7 +155,7 @@ def main() -> None:
         f"{'environment':<31}{'plant':<9}{'one/s':>6} {'eight, ChunkedVectorEnv':>19}"
         f"{'eight, Async':>22}{f'bare, {CORES} processes':>23}   ms: one, shared, async"
     )
-    for name in ENVIRONMENTS:
+    for name in RIG_ENVIRONMENTS:
         for plant in given.plants:
             print(measure(name, plant, given.rounds), flush=True)
 

@@ -77,7 +77,10 @@ ROOMS = (
     Room(
         tuple(
             f"{DIAGNOSIS}/{name}.py"
-            for name in ("whitening", "search", "refine", "explain", "gain", "assess")
+            for name in (
+                "whitening", "search", "refine", "explain", "fits", "judge", "pairs", "gain",
+                "assess",
+            )
         ),
         tuple(
             f"tests/diagnosis/test_{name}.py"

@@ -140,6 +140,16 @@ SUITES = {
         AIMS,
         seed=20261123,
     ),
+    "ves2_nights": Blind(
+        "VES II, `fast`, with causes by edits of the model and of recordings",
+        "--machine ves2_fast --none 200 --single 150 --edited 40 --outside 32 --pair 24"
+        " --confusable 24",
+        (
+            *AIMS,
+            Aim("a cause by an edit, detected: exact", 0.85),
+            Aim("a cause by an edit, detected: a wrong name", 0.03, -1),
+        ),
+    ),
 }
 """Cases of each suite. One of VES II takes minutes, so they are few; the pendulum's together take
 about an hour of processor time."""
@@ -156,10 +166,10 @@ evenly in log d from 6 to 40, so rates are not those of faults as they occur.
 """
 
 
-HOURS = ("ves2_fast",)
+HOURS = ("ves2_fast", "ves2_nights")
 """Suites whose cases take minutes each: not in a tenth."""
 
-SORTS = ("none", "single", "outside", "pair", "confusable")
+SORTS = ("none", "single", "outside", "pair", "confusable", "edited")
 
 
 def sized(made: str, share: int) -> list[str]:

@@ -16,6 +16,7 @@ os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 from ves_twin.cli import progress
 from ves_twin.core.compiled import say_that_it_compiles
+from ves_twin.simulator.loop import run_ticks
 
 pytest_plugins = ["costs", "once", "shipped"]
 
@@ -44,7 +45,7 @@ def pytest_addoption(parser: pytest.Parser) -> None:
 def pytest_configure(config: pytest.Config) -> None:
     progress.FIRST = 3600.0  # lines of progress come by the clock, which no test may depend on
     with redirect_stderr(StringIO()):
-        say_that_it_compiles()  # once in a process: here, so that no line depends on caches
+        say_that_it_compiles(run_ticks)  # once: no line depends on caches
     config.stash[FIGURES] = []
 
 

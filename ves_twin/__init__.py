@@ -15,6 +15,7 @@ if TYPE_CHECKING:
     from ves_twin.core.recording.files import load_recording
     from ves_twin.core.recording.recording import Recording
     from ves_twin.machines.compare import compare
+    from ves_twin.machines.design import design
     from ves_twin.machines.diagnose import verdict_on as diagnose
     from ves_twin.machines.machine import Machine
     from ves_twin.machines.plan import plan
@@ -36,6 +37,7 @@ _HOMES = {
     "Simulator": "ves_twin.simulator.simulator",
     "VesTwinError": "ves_twin.core.errors",
     "compare": "ves_twin.machines.compare",
+    "design": "ves_twin.machines.design",
     "diagnose": "ves_twin.machines.diagnose:verdict_on",
     "effects_of": "ves_twin.machines.ves2.effects_of",
     "load_recording": "ves_twin.core.recording.files",
@@ -55,6 +57,7 @@ __all__ = [
     "Simulator",
     "VesTwinError",
     "compare",
+    "design",
     "diagnose",
     "effects_of",
     "load_recording",

@@ -35,6 +35,8 @@ EXAMPLES = {
     "plan": (
         "ves-twin plan --plant pendulum --quick",
         "ves-twin plan --scenario identify_fast --channels leg.length --seconds 15",
+        "ves-twin plan --plant pendulum --add-channel",
+        "ves-twin plan --plant pendulum --design actuator_delay/sensor_delay --seconds 2",
     ),
     "new": ("ves-twin new my_robot.xml lab.csv --out my_robot.toml",),
     "dataset": ("ves-twin dataset VibrationDamping-v0 --episodes 10",),

@@ -16,7 +16,7 @@ from ves_twin.data.import_map import ImportMap
 from ves_twin.diagnosis.verdict import Verdict
 from ves_twin.machines.mjcf.description import KIND, SCHEMA, RigDescription
 from ves_twin.machines.mjcf.experiment import MjcfExperiment
-from ves_twin.procedures.registry import PROCEDURES
+from ves_twin.procedures.registry import PROCEDURES, procedure_class
 from ves_twin.scenario.experiment import Experiment
 from ves_twin.scenario.schema import Scenario
 
@@ -130,8 +130,8 @@ def _procedures() -> dict[str, str]:
         "",
     ]
     pages = {}
-    for name, model in PROCEDURES.items():
-        schema = _written(model.model_json_schema())
+    for name in PROCEDURES:
+        schema = _written(procedure_class(name).model_json_schema())
         text += [f"## {name}", "", f"[JSON schema]({name}.schema.json)", ""]
         text += [schema_tables(schema, level=3, title=False)]
         pages[f"formats/{name}.schema.json"] = json.dumps(schema, indent=1) + "\n"

@@ -53,7 +53,8 @@ def found(monkeypatch, recording):
     rows += np.random.default_rng(0).normal(size=rows.shape) * [0.001, 0.01]
     signals = {"joint.torque": TORQUE, "joint.angle": rows[:, :1], "joint.rate": rows[:, 1:]}
     data = Recording(fed.time, signals, RecordingInfo("measured"))
-    verdict = diagnose(PLANT, [data], settings=Settings(nulls=20))
+    others = [h.effect for h in PLANT.hypotheses if h.effect not in CONSIDERED]
+    verdict = diagnose(PLANT, [data], exclude=others, settings=Settings(nulls=20))
     setpoints = Excitation.of(load_recording(Path(recording)), DRIVE, "next")
     plant = vt.Plant.load("ves2").extended(vt.effects.CoulombFriction("leg.3", level=60.0))
     scenario = vt.Scenario.load("identify_fast")
@@ -62,6 +63,9 @@ def found(monkeypatch, recording):
     monkeypatch.setattr("ves_twin.machines.diagnose.diagnose", lambda *a, **k: result)
     return verdict
 
+
+CONSIDERED = ("coulomb_friction", "viscous_friction")
+"""Files are written of any verdict: two causes are found in a fifth of the time of ten."""
 
 TORQUE = np.sin(2 * np.pi * 0.7 * 0.002 * np.arange(2000))[:, None]
 

@@ -128,7 +128,7 @@ if __name__ == "__main__":
             ["run", "position_sine", "--set", "run.duration=0.1", "--out", "out"],
             marks=pytest.mark.slow,  # it compiles, where no cache is left of an earlier test
         ),
-        pytest.param(["reproduce", "fig-5-2", "--out", "out"], marks=pytest.mark.slow),
+        pytest.param(["reproduce", "fig-5-3", "--out", "out"], marks=pytest.mark.slow),
     ],
     ids=lambda words: words[0],
 )

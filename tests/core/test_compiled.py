@@ -24,6 +24,16 @@ print(digest.hexdigest())
 """
 
 
+SAY = """
+from ves_twin.core.compiled import say_that_it_compiles
+from ves_twin.simulator.loop import run_ticks
+say_that_it_compiles(run_ticks)
+say_that_it_compiles(run_ticks)
+"""
+
+PLACE = "from ves_twin.simulator.loop import run_ticks; print(run_ticks.stats.cache_path)"
+
+
 def copy_of_the_project(target: Path) -> Path:
     skip = shutil.ignore_patterns("__pycache__")
     for name in ("ves_twin", "models", "scenarios"):
@@ -43,9 +53,8 @@ def result(project: Path, cache: Path) -> str:
 def words(project: Path, cache: Path) -> str:
     """What is said before a compilation; nothing where the cache has the loop."""
     environment = {**os.environ, "PYTHONPATH": str(project), "XDG_CACHE_HOME": str(cache)}
-    code = "from ves_twin.core.compiled import say_that_it_compiles as s; s(); s()"
     done = subprocess.run(
-        [sys.executable, "-c", code],
+        [sys.executable, "-c", SAY],
         cwd=project, env=environment, capture_output=True, text=True, check=True,
     )  # fmt: skip
     assert done.stderr.count("\n") <= 1
@@ -54,6 +63,21 @@ def words(project: Path, cache: Path) -> str:
 
 def test_a_compilation_that_takes_a_minute_is_announced_once(tmp_path):
     assert "compiling" in words(PACKAGE.parent, tmp_path / "cache")
+
+
+def test_what_another_copy_or_an_older_file_compiled_does_not_count(tmp_path):
+    project, cache = copy_of_the_project(tmp_path / "project"), tmp_path / "cache"
+    environment = {**os.environ, "PYTHONPATH": str(PACKAGE.parent), "XDG_CACHE_HOME": str(cache)}
+    there = subprocess.run(
+        [sys.executable, "-c", PLACE], env=environment, capture_output=True, text=True, check=True
+    ).stdout.strip()
+    Path(there).mkdir(parents=True, exist_ok=True)
+    index = Path(there) / "loop.run_ticks-162.py311.nbi"
+    index.touch()
+    assert not words(PACKAGE.parent, cache)
+    assert "compiling" in words(project, cache)
+    os.utime(index, (0.0, 0.0))
+    assert "compiling" in words(PACKAGE.parent, cache)
 
 
 @pytest.mark.nightly

@@ -23,8 +23,8 @@ FRICTION = {"friction.size": 0.03}
 
 
 @pytest.fixture(scope="module")
-def settings(tmp_path_factory):
-    return Settings(nulls=60, cache=tmp_path_factory.mktemp("banks"))
+def settings(banks):
+    return Settings(nulls=60, cache=banks)
 
 
 def with_out(data, values):

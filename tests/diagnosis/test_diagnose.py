@@ -22,8 +22,8 @@ from ves_twin.diagnosis.whitening import Whitening
 
 
 @pytest.fixture(scope="module")
-def settings(tmp_path_factory):
-    return Settings(nulls=100, cache=tmp_path_factory.mktemp("banks"))
+def settings(banks):
+    return Settings(nulls=100, cache=banks)
 
 
 SIZES = {"friction": 0.008, "drift": 0.02, "lag": 0.05, "bump": 0.06, "ripple": 0.008}

@@ -9,20 +9,12 @@ import pytest
 from toy import QUICK, SD, Toy, programme
 
 from ves_twin.diagnosis.assess import STRANGE, assess
-from ves_twin.diagnosis.explain import (
-    CLEAR,
-    CLOSE,
-    FAR,
-    PAIRS,
-    SLACK,
-    FitContext,
-    _commissioning,
-    _far,
-    _job,
-    _starts,
-    explain,
-)
+from ves_twin.diagnosis.explain import FAR, _far, explain
+from ves_twin.diagnosis.fit_context import FitContext
+from ves_twin.diagnosis.fits import CLOSE, _starts, job
+from ves_twin.diagnosis.judge import CLEAR, SLACK, _commissioning
 from ves_twin.diagnosis.null import Thresholds
+from ves_twin.diagnosis.pairs import PAIRS
 from ves_twin.diagnosis.probability import probabilities
 from ves_twin.diagnosis.refine import refine
 from ves_twin.diagnosis.runs import Runs, silent
@@ -56,6 +48,7 @@ def effects(fit):
 
 ONE = {"friction.size": 0.05, "plant.slope": 0.03}
 TWO = {"friction.size": 0.1, "ripple.size": 0.1}
+STRAINED = {"friction.size": 0.1, "plant.gain": 1.3}  # 15 sd of what commissioning leaves open
 
 
 def test_one_cause_explains_a_record_of_one(looked):
@@ -96,8 +89,9 @@ def test_those_near_the_likeliest_are_fitted_and_two_at_least(looked):
     assert {effect for fit in (*found.fits, *found.hopeless) for effect in effects(fit)} == names
 
 
-def test_a_fit_begins_at_the_size_of_the_bank_too_where_that_is_another(looked):
-    record = looked(ONE)
+def test_a_fit_begins_at_the_size_of_the_bank_too_where_that_is_another(looked, bank):
+    seen = looked(ONE)
+    record = replace(seen, beside=None)
     suspect = record.suspects[0]
     rows = record.screen.bank.entries(suspect.hypothesis)
     match = record.screen.match(record.z)[rows]
@@ -107,11 +101,14 @@ def test_a_fit_begins_at_the_size_of_the_bank_too_where_that_is_another(looked):
     scaled, other = _starts(record, replace(suspect, sizes=3.0 * own))
     assert np.array_equal(scaled, 3.0 * own)
     assert np.array_equal(other, own)
+    assert seen.beside.causes == (bank.hypotheses[suspect.hypothesis],)
+    (start,) = _starts(seen, replace(suspect, sizes=3.0 * own))  # it was fitted before
+    assert start is seen.beside.sizes
 
 
 def test_two_causes_explain_what_one_does_not(looked):
     record = looked(TWO)
-    single = explain(record, LEVELS, QUICK, pairs=False)
+    single = explain(record, LEVELS, QUICK, together=False)
     assert not single.adequate
     assert len(single.best.causes) == 1
     assert single.alone == ()
@@ -140,7 +137,7 @@ def test_what_a_rough_fit_of_commissioning_errors_leaves_too_much_makes_nothing_
     looked, monkeypatch, rough
 ):
     """The model's error is a share of what the cause takes off chi^2, as far as that is sure."""
-    place = "ves_twin.diagnosis.explain"
+    place = "ves_twin.diagnosis.judge"
     allowed = []
 
     def noted(fits, allowance, odds):
@@ -152,9 +149,9 @@ def test_what_a_rough_fit_of_commissioning_errors_leaves_too_much_makes_nothing_
         return replace(fit, chi2=fit.chi2 + 1e4), rough
 
     monkeypatch.setattr(f"{place}.probabilities", noted)
-    usual = explain(looked(ONE), LEVELS, QUICK, pairs=False)
+    usual = explain(looked(ONE), LEVELS, QUICK, together=False)
     monkeypatch.setattr(f"{place}._commissioning", left)
-    explain(looked(ONE), LEVELS, QUICK, pairs=False)
+    explain(looked(ONE), LEVELS, QUICK, together=False)
     taken = usual.commissioning.chi2 - usual.best.chi2
     sure = taken if rough else taken + 1e4
     plain, with_more = allowed
@@ -188,7 +185,7 @@ def test_commissioning_errors_get_new_columns_where_the_cause_takes_off_little(
         asked.append(count)
         return fit
 
-    monkeypatch.setattr("ves_twin.diagnosis.explain._again", noted)
+    monkeypatch.setattr("ves_twin.diagnosis.judge.again", noted)
     level = replace(LEVELS, effect=(taken - short) / CLEAR)
     desk = FitContext(record, level, replace(QUICK, sparse=sparse), silent)
     fit, told = _commissioning(desk, evidence, leader, False)
@@ -204,9 +201,9 @@ def test_pairs_beside_the_best_leave_room_for_those_of_the_bank(looked, monkeypa
 
     def noted(evidence, causes, sizes, start):
         tried.append({cause.effect for cause in causes})
-        return _job(evidence, causes, sizes, start)
+        return job(evidence, causes, sizes, start)
 
-    monkeypatch.setattr("ves_twin.diagnosis.explain._job", noted)
+    monkeypatch.setattr("ves_twin.diagnosis.pairs.job", noted)
     explain(record, LEVELS, QUICK)
     pairs = [names for names in tried if len(names) == 2]
     assert {"drift", "lag"} in pairs
@@ -228,7 +225,9 @@ def test_what_no_cause_of_the_library_explains_is_not_adequate(looked):
 def test_what_no_cause_comes_near_is_given_up_before_pairs_and_second_causes(looked, monkeypatch):
     time = FED.time[:, None]
     strange = 3.0 * np.sin(2.0 * np.pi * 9.0 * time) * np.where(time > 4.0, [1.0, -2.0], 0.0)
-    monkeypatch.setattr("ves_twin.diagnosis.explain.suspects_at", lambda *_: pytest.fail("looked"))
+    for where in ("judge", "pairs"):
+        name = f"ves_twin.diagnosis.{where}.suspects_at"
+        monkeypatch.setattr(name, lambda *_: pytest.fail("looked"))
     many = replace(QUICK, sparse=True)
     found = explain(looked({}, added=strange), LEVELS, many)
     assert found.far
@@ -267,14 +266,39 @@ def test_a_machine_of_many_parameters_names_the_same(looked):
         assert sparse.best.sizes == pytest.approx(usual.best.sizes, rel=1e-3)
 
 
+def test_where_runs_are_dear_a_strained_pair_comes_before_single_causes_are_weighed(
+    looked, monkeypatch
+):
+    record, dear = looked(STRAINED), replace(QUICK, sparse=True)
+    usual = explain(record, LEVELS, QUICK)
+    monkeypatch.setattr("ves_twin.diagnosis.explain.judge", lambda *_: pytest.fail("weighed"))
+    found = explain(record, LEVELS, dear)
+    assert found.adequate
+    assert effects(found.best) == effects(usual.best) == {"friction", "gain"}
+    order = [cause.effect for cause in usual.best.causes]
+    mine = dict(zip((c.effect for c in found.best.causes), found.best.sizes, strict=True))
+    assert [mine[name] for name in order] == pytest.approx(usual.best.sizes, rel=1e-3)
+    alone = found.alone[0]
+    assert len(alone.causes) == 1
+    assert alone.chi2 > found.best.chi2 + LEVELS.effect
+    monkeypatch.undo()
+    assert len(explain(record, LEVELS, dear, together=False).best.causes) == 1
+
+
+def test_a_second_cause_that_takes_too_little_off_is_no_pair_however_strained(looked):
+    record = looked(STRAINED)
+    high = replace(LEVELS, effect=1e6)
+    assert len(explain(record, high, replace(QUICK, sparse=True)).best.causes) == 1
+
+
 def test_a_cause_that_takes_less_off_than_the_threshold_explains_nothing(looked):
     record = looked(ONE)
     fall = explain(record, LEVELS, QUICK)
     taken = fall.commissioning.chi2 - fall.best.chi2
     high = replace(LEVELS, effect=2.0 * taken)
-    assert not explain(record, high, QUICK, pairs=False).adequate
+    assert not explain(record, high, QUICK, together=False).adequate
     low = replace(LEVELS, effect=1.2 * taken)  # a cause may take LEAST of it
-    assert explain(record, low, QUICK, pairs=False).adequate
+    assert explain(record, low, QUICK, together=False).adequate
 
 
 def test_an_empty_library_explains_nothing():
@@ -300,5 +324,5 @@ def test_no_signatures_are_simulated_anew_where_the_nominal_ones_find_nothing_mo
     assert ("signatures" in told) == (found.second >= LEVELS.effect)
     told.clear()
     low = replace(LEVELS, effect=0.0)
-    explain(looked(ONE), low, QUICK, pairs=False, progress=lambda share, what: told.append(what))
+    explain(looked(ONE), low, QUICK, together=False, progress=lambda share, what: told.append(what))
     assert "signatures" in told

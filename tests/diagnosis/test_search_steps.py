@@ -10,7 +10,7 @@ from toy import SD, Toy, programme
 
 from ves_twin.diagnosis.evidence import Evidence
 from ves_twin.diagnosis.linearise import linearise
-from ves_twin.diagnosis.refine import NEAR, _near, refine
+from ves_twin.diagnosis.refine import NEAR, near, refine
 from ves_twin.diagnosis.runs import Runs
 from ves_twin.diagnosis.search import (
     ATTEMPTS,
@@ -328,21 +328,44 @@ def test_a_surprise_turns_the_columns_that_may_be_off_before_and_behind_the_whit
         np.testing.assert_allclose(whiten(found), columns.T, atol=1e-3 * np.abs(columns).max())
 
 
-@pytest.mark.parametrize(("off", "near"), [(0.9 * 0.2 * NEAR, True), (1.1 * 0.2 * NEAR, False)])
-def test_columns_hold_for_a_cause_within_a_share_of_its_size(search, off, near):
+@pytest.mark.parametrize(("off", "holds"), [(0.9 * 0.2 * NEAR, True), (1.1 * 0.2 * NEAR, False)])
+def test_columns_hold_for_a_cause_within_a_share_of_its_size(search, off, holds):
     shift = search.runs.origin
     shift[search.free[0]] = 1.0
     there = shift.copy()
     there[search.free[0]] = 1.0 - off
     search.local = replace(search.local, point=there)
-    assert _near(search.runs, search, shift) == near
+    assert near(search.local, shift) == holds
     small = 1e-3 * shift
     search.local = replace(search.local, point=1e-3 * there)
-    assert _near(search.runs, search, small) == near
+    assert near(search.local, small) == holds
 
 
-@pytest.mark.parametrize(("off", "near"), [(0.9 * NEAR, True), (1.1 * NEAR, False)])
-def test_columns_hold_for_a_nuisance_within_a_share_of_its_sd(search, off, near):
+@pytest.mark.parametrize(("off", "holds"), [(0.9 * NEAR, True), (1.1 * NEAR, False)])
+def test_columns_hold_for_a_nuisance_within_a_share_of_its_sd(search, off, holds):
     shift = search.runs.origin
     shift[search.nuisances[1]] = off * search.runs.sd[search.nuisances[1]]
-    assert _near(search.runs, search, shift) == near
+    assert near(search.local, shift) == holds
+
+
+def test_a_search_ends_where_its_falls_do_not_come_down_to_what_counts(search, monkeypatch):
+    begin = search.at(search.runs.origin, 0.0)
+
+    def steps(target):
+        taken = []
+
+        def fall(point, jacobian):
+            taken.append(point.chi2)
+            return replace(point, chi2=900.0 + 0.8 * (point.chi2 - 900.0))
+
+        monkeypatch.setattr(search, "_step", fall)
+        search.target = target
+        end, _ = search.descend(replace(begin, chi2=1900.0), np.zeros((0, 0)))
+        return len(taken), end.chi2
+
+    search.tempered = False
+    every, best = steps(np.inf)
+    assert steps(900.0) == (every, best)  # at the pace of the falls it would be reached
+    # ten times the first fall, of 200, reach from 1700 down to -300
+    assert steps(-600.0)[0] == 1
+    assert 1 < steps(0.0)[0] < every

@@ -9,7 +9,7 @@ import pytest
 from toy import GAIN, NUISANCES, Toy, _cause, programme
 
 from ves_twin.diagnosis.forward import Hypothesis, Parameter
-from ves_twin.diagnosis.linearise import linearise, with_bends
+from ves_twin.diagnosis.linearise import linearise, renewed, with_bends
 from ves_twin.diagnosis.rungs import rungs
 from ves_twin.diagnosis.runs import Runs
 from ves_twin.diagnosis.signature_library import build_bank, cached_bank
@@ -80,6 +80,20 @@ def test_like_tolerances_that_are_moved_together_bend_as_they_do_one_by_one(runs
     springs = slice(3, 3 + JOINTS)
     assert np.all(alone.bends[springs] > 0.0)
     assert together.bends[springs] == pytest.approx(alone.bends[springs], rel=0.2)
+
+
+@pytest.mark.parametrize(("share", "anew"), [(0.0, 0), (0.1, 0), (3.0, 1), (10.0, 1 + JOINTS)])
+def test_columns_are_computed_anew_by_how_far_a_fit_has_moved(runs, share, anew):
+    base = with_bends(linearise(runs, runs.origin))
+    point = runs.origin.copy()
+    point[runs.nuisances] = share * runs.sd[runs.nuisances]
+    prediction, before = runs.one(point), count(runs)
+    there = renewed(base, point, prediction)
+    # the point and its refinement are simulated in any case; the gain's own column bends most
+    assert count(runs) - before == 2 + anew
+    exact = linearise(runs, point, forward_step=1.0)
+    if anew > JOINTS:
+        assert there.columns == pytest.approx(exact.columns, abs=1e-3)
 
 
 def test_sizes_that_are_not_simulated_are_scaled_from_the_nearest(runs):

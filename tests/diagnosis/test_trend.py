@@ -155,8 +155,8 @@ def test_two_machines_are_told_apart_and_grouped():
 
 
 @pytest.fixture(scope="module")
-def settings(tmp_path_factory):
-    return Settings(nulls=60, cache=tmp_path_factory.mktemp("banks"), candidates=3)
+def settings(banks):
+    return Settings(nulls=60, cache=banks, candidates=3)
 
 
 def machine(rng):
@@ -278,9 +278,9 @@ def test_one_imperfect_day_hides_no_step_and_takes_the_firm_name_away(settings):
 
 
 @pytest.mark.slow
-def test_unchanged_machines_are_called_changed_as_often_as_stated(settings):
+def test_unchanged_machines_are_called_changed_as_often_as_stated(settings, cases):
     """From recordings to answer, at a rate of 10 % so that there is something to count."""
-    alpha, count = 0.10, 100
+    alpha, count = 0.10, cases(300)
     answers = [
         followed(settings, [0.0] * 4, seed=s, false_alarm=alpha).answer for s in range(count)
     ]

@@ -32,16 +32,17 @@ from ves_twin.machines.mjcf.description import Mode
 from ves_twin.machines.mjcf.forward import MjcfForward
 from ves_twin.machines.mjcf.machine import Rig
 from ves_twin.plant.assembly import assemble
+from ves_twin.simulator.log_faults import logged
 
 PLANT = vt.Plant.load("ves2_pressure")
 MOVING = {
-    "run.duration": 1.6,
-    "run.settle": 1.0,
+    "run.duration": 1.1,
+    "run.settle": 0.4,
     "run.noise": False,
     "platform.motion.fade": 0.3,
     "platform.motion.frequency": [0.9, 1.1, 1.3, 1.0, 1.2, 0.8],
     "platform.motion.amplitude": [0.03, 0.03, 0.03, 0.05, 0.05, 0.06],
-    "arm.moves": [{"start": 0.1, "duration": 1.4, "to": [0.7, 1.0, 0.6]}],
+    "arm.moves": [{"start": 0.1, "duration": 1.0, "to": [0.5, 0.7, 0.45]}],
 }
 QUIET = {
     "transducer.resolution": 0.0,
@@ -61,7 +62,7 @@ FIRST = [(kind, row.targets[0]) for kind in ON_VES2 for row in EFFECTS[kind].row
 
 FLOATING = (
     "beam_horizontal_truth",
-    {"run.duration": 1.6, "run.settle": 1.0, "run.noise": False},
+    {"run.duration": 1.1, "run.settle": 0.4, "run.noise": False},
 )
 SCENES = {
     "filter_edge": ("position_sine", MOVING | {"legs.filter": "feedback"}),
@@ -94,6 +95,10 @@ def sizes(kind: str, target: str, times: float):
         yield magnitude, build_effect(kind, target, {magnitude.name: size})
 
 
+WRITTEN = np.arange(5.0), np.random.default_rng(0).standard_normal((5, 6))
+"""Times and rows of any signal."""
+
+
 @cache
 def block() -> np.ndarray:
     """The loop's numbers, without any effect."""
@@ -101,7 +106,7 @@ def block() -> np.ndarray:
 
 
 def edited(*effects) -> tuple[bytes, ...]:
-    """Everything that effects can change on VES II: table, model, loop, computers' program."""
+    """Everything that effects can change on VES II: table, model, loop, computers' program, log."""
     numbers = {name: PLANT.parameters.array(name).copy() for name in PLANT.parameters}
     loop, computers = block().copy(), {"gravity.age": np.zeros(()), "emulated.mass": np.eye(6)}
     for effect in effects:
@@ -109,7 +114,8 @@ def edited(*effects) -> tuple[bytes, ...]:
         effect.edit_loop(loop[0])
         effect.edit_computers(computers)
     model = assemble(replace(PLANT, effects=effects), 341e-6).to_xml()
-    tables = [value.tobytes() for value in (*numbers.values(), loop, *computers.values())]
+    log = [logged(effects, name, *WRITTEN) for name in ("leg.length", "arm.q", "arm.torque")]
+    tables = [value.tobytes() for value in (*numbers.values(), loop, *computers.values(), *log)]
     return (model.encode(), *tables)
 
 

@@ -16,11 +16,11 @@ from dm_env import StepType, test_utils
 from short_episodes import make_short
 
 from ves_twin.core.errors import InvalidInputError, UnknownNameError
-from ves_twin.envs import ENVIRONMENTS, dm
+from ves_twin.envs import RIG_ENVIRONMENTS, dm
 from ves_twin.envs.picture import NoPictureError, check_off_screen
 from ves_twin.envs.wrappers import RandomRigs
 
-ENV_OF = dict(zip((task for _, task in dm.ALL_TASKS), ENVIRONMENTS, strict=True))
+ENV_OF = dict(zip((task for _, task in dm.ALL_TASKS), RIG_ENVIRONMENTS, strict=True))
 
 
 def loaded(task, random=4, **environment_kwargs):

@@ -21,6 +21,7 @@ WITH_TABLES = [
     "AdmittanceTuning",
     "GravityCompensation",
     "MicrogravityCapture",
+    "DiagnoseAndRetune",
 ]
 
 

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from ves_twin.effects.registry import RENAMED
-from ves_twin.envs import ENVIRONMENTS
+from ves_twin.envs import RIG_ENVIRONMENTS
 from ves_twin.envs.rig_set import RigSet
 from ves_twin.plant.plant import Plant
 
@@ -25,6 +25,9 @@ FROZEN = {
     "VesTwin/VibrationFreeReach-v0": "53be4ab51895f37e",
 }
 """Change a plant, a scenario or a reward, and an id becomes -v1, with a hash of its own."""
+
+RETUNING = "9251bbc8d93beff6"
+"""Of VesTwin/DiagnoseAndRetune-v0."""
 
 RIGS = {
     "train-v0": "28cd4ddf4daa762d",
@@ -61,9 +64,27 @@ def trajectory_hash(identity, plant=None, nudge=0.0):
     return hashlib.sha256(counts.tobytes() + pay.tobytes()).hexdigest()[:16]
 
 
-@pytest.mark.parametrize("identity", sorted(ENVIRONMENTS))
+@pytest.mark.parametrize("identity", sorted(RIG_ENVIRONMENTS))
 def test_the_environment_is_what_its_version_says(identity):
     assert trajectory_hash(identity) == FROZEN[identity], "a new behaviour needs a new version"
+
+
+def retuning_hash():
+    """The same of three trials without a rig; the return is rounded to 1e-5 of a thousand."""
+    env = gym.make("VesTwin/DiagnoseAndRetune-v0", experiments=2).unwrapped
+    rows, gains = [env.reset(seed=0)[0]], []
+    for k in range(3):
+        seen, gain, *_ = env.step(0.3 * np.sin(0.7 * k + np.arange(env.actions.width)))
+        rows.append(seen)
+        gains.append(gain)
+    span = env.observation_space.high - env.observation_space.low
+    counts = np.rint(np.array(rows) / span / GRID).astype(np.int64)
+    pay = np.rint(np.array(gains) / 1e3 / GRID).astype(np.int64)
+    return hashlib.sha256(counts.tobytes() + pay.tobytes()).hexdigest()[:16]
+
+
+def test_retuning_is_what_its_version_says():
+    assert retuning_hash() == RETUNING, "a new behaviour needs a new version"
 
 
 def test_a_changed_plant_is_noticed():

@@ -13,6 +13,8 @@ WORDS = {
     "ppo_one_file": ["--steps", "128", "--envs", "2", "--length", "32"],
 }
 
+WITHOUT = "recipes were not run: the extra 'train' is not installed (pip install '.[train]')"
+
 
 def test_every_recipe_is_tried():
     assert {path.stem for path in RECIPES.glob("*.py")} == set(WORDS)
@@ -21,7 +23,7 @@ def test_every_recipe_is_tried():
 @pytest.mark.slow
 @pytest.mark.parametrize("name", sorted(WORDS))
 def test_a_recipe_runs(name, tmp_path):
-    pytest.importorskip("stable_baselines3")
+    pytest.importorskip("stable_baselines3", reason=WITHOUT)
     words = [sys.executable, str(RECIPES / f"{name}.py"), *WORDS[name]]
     out = ["--out", str(tmp_path / "net.zip")] if name.startswith("sac") else []
     done = subprocess.run([*words, *out], capture_output=True, text=True, timeout=280)

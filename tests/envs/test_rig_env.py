@@ -67,6 +67,17 @@ def test_no_import_is_needed_where_the_name_says_the_module():
     assert "VibrationDamping" in done.stdout
 
 
+def test_a_first_reset_waits_for_no_slow_package():
+    code = """if True:
+        import sys, gymnasium as gym
+        env = gym.make("ves_twin.envs:VesTwin/VibrationDamping-v0", plant="ves2_fast")
+        env.reset(seed=0)
+        print({"scipy.signal", "scipy.stats", "scipy.optimize"} & set(sys.modules))
+    """
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert done.stdout == "set()\n"
+
+
 def test_scaled_observations_are_shares_of_the_same_episode(env):
     scenario = env.briefing().scenario
     scaled = type(env)(plant=env.plant_of({}), scenario=scenario, scaled=True)

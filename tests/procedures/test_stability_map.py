@@ -128,6 +128,7 @@ def test_no_scenario_file_is_read_when_procedures_are_imported():
     code = (
         "import ves_twin.scenario.load as load;"
         "load._read = lambda path: 1 / 0;"
-        "import ves_twin.procedures.registry"
+        "from ves_twin.procedures.registry import PROCEDURES, procedure_class;"
+        "list(map(procedure_class, PROCEDURES))"
     )
     assert subprocess.run([sys.executable, "-c", code], check=False).returncode == 0

@@ -39,8 +39,8 @@ HELD = programme(9)
 
 
 @pytest.fixture(scope="module")
-def settings(tmp_path_factory):
-    return Settings(nulls=60, cache=tmp_path_factory.mktemp("banks"))
+def settings(banks):
+    return Settings(nulls=60, cache=banks)
 
 
 def said(settings, sizes, seed=51, spread=0.0, **options):

@@ -7,7 +7,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from ves_twin.core.errors import InvalidInputError
-from ves_twin.core.units import to_si
+from ves_twin.core.units import FREQUENT, _registry, to_si
 
 
 @pytest.mark.parametrize(
@@ -32,6 +32,13 @@ from ves_twin.core.units import to_si
 )
 def test_a_quantity_is_converted(value, unit, expected):
     assert to_si(value, unit, "x") == pytest.approx(expected, rel=1e-14)
+
+
+@pytest.mark.parametrize(("given_unit", "unit"), [*FREQUENT, ("N", "N"), ("Hz", "Hz")])
+@given(number=st.floats(-1e9, 1e9))
+def test_the_short_way_gives_what_the_unit_library_gives_to_the_last_bit(given_unit, unit, number):
+    slowly = _registry().Quantity(number, given_unit).to(unit).magnitude
+    assert to_si(f"{number!r} {given_unit}", unit, "x") == slowly
 
 
 @pytest.mark.parametrize(

@@ -46,6 +46,12 @@ def once(
     return pickle.loads(path.read_bytes())
 
 
+@pytest.fixture(scope="session")
+def banks() -> Path:
+    """A folder of signature libraries that all tests share, as those of a user's diagnoses do."""
+    return Path(os.environ[FOLDER]) / "banks"
+
+
 def pytest_configure(config: pytest.Config) -> None:
     if not hasattr(config, "workerinput"):
         os.environ[FOLDER] = tempfile.mkdtemp(prefix="ves_twin-tests-")

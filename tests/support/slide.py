@@ -9,10 +9,10 @@ import numpy as np
 
 MODEL = """
 <mujoco model="slide">
-  <option timestep="0.002" integrator="implicitfast"><flag contact="disable"/></option>
+  <option timestep="0.005" integrator="implicitfast"><flag contact="disable"/></option>
   <worldbody>
     <body name="carriage">
-      <joint name="rail" type="slide" axis="1 0 0" damping="10" solreffriction="0.005 1"/>
+      <joint name="rail" type="slide" axis="1 0 0" damping="10" solreffriction="0.01 1"/>
       <geom type="box" size="0.1 0.08 0.04" mass="5"/>
     </body>
   </worldbody>
@@ -127,6 +127,6 @@ def write_day(
             f"{PERIOD * k:.2f},{force:.6f},{data.qpos[0] + 1e-4 * rng.standard_normal():.8f}"
         )
         data.ctrl[0] = force
-        for _ in range(5):
+        for _ in range(2):
             mujoco.mj_step(model, data)
     path.write_text("\n".join(lines))

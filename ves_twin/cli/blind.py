@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 SUMMARY = "hide effects in recordings, answer from the recordings alone, score anybody's answers"
 
-QUICK = {"none": 6, "single": 10, "outside": 4, "pair": 2, "confusable": 0}
+QUICK = {"none": 6, "single": 10, "outside": 4, "pair": 2, "confusable": 0, "edited": 0}
 """Cases of each sort if nothing is said."""
 
 

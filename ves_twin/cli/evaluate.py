@@ -28,6 +28,8 @@ UNITS = {
     "moment_error": "N m",
     "force_error_last": "N",
     "moment_error_last": "N m",
+    "tracking_rms": "mrad",
+    "tracking_peak": "mrad",
     "caught": "share",
     "caught_at": "s",
     "tip_distance": "m",

@@ -55,10 +55,18 @@ def compiled(function: Function) -> Function:
 
 
 @lru_cache(maxsize=1)
-def say_that_it_compiles() -> None:
+def say_that_it_compiles(longest: Callable[..., object]) -> None:
     """Say on stderr what the first run after an installation or an edit waits for.
 
-    The rig's loop is by far the longest to compile, so it stands for all of the cache.
+    Args:
+        longest: the compiled function that takes by far the longest; it stands for the others.
     """
-    if not any(compiled_folder().rglob("loop.run_ticks-*.nbi")):
+    if not _kept(longest):
         print("compiling the inner loop, once: about a minute", file=sys.stderr, flush=True)
+
+
+def _kept(function: Callable[..., object]) -> bool:
+    """Whether the cache holds a function as its file is now; numba goes by the file's time."""
+    source = Path(function.__code__.co_filename)
+    kept = Path(function.stats.cache_path).glob(f"{source.stem}.{function.__name__}-*.nbi")  # type: ignore[attr-defined]
+    return any(index.stat().st_mtime >= source.stat().st_mtime for index in kept)

@@ -40,6 +40,16 @@ def check_unit(unit: str, what: str) -> None:
         raise UnknownNameError(f"unit in {what}", unit, SI_UNITS)
 
 
+FREQUENT = {
+    ("deg", "rad"): math.pi / 180.0,
+    ("mrad", "rad"): 1e-3,
+    ("mm", "m"): 1e-3,
+    ("ms", "s"): 1e-3,
+}
+"""Factors of the conversions that most files ask for, to the last bit those of the unit library,
+whose import takes longer than all else that a file needs."""
+
+
 @lru_cache(maxsize=1)
 def _registry() -> UnitRegistry:
     from pint import UnitRegistry  # slow to import, and most files are plain SI
@@ -97,6 +107,9 @@ def _parse(text: str, unit: str, what: str) -> float:
     # angles have no dimension, so 1 Hz would pass as 1 rad/s
     if bool(_ANGLE.search(given)) != bool(_ANGLE.search(unit)):
         raise wrong
+    factor = 1.0 if given == unit else FREQUENT.get((given, unit))
+    if factor is not None:
+        return number * factor
     try:
         return float(_registry().Quantity(number, given.replace("%", "percent")).to(unit).magnitude)
     except Exception:  # pint raises tokenizer, syntax and attribute errors alike

@@ -14,7 +14,7 @@ from ves_twin.diagnosis.aliases import Lookalike, lookalikes
 from ves_twin.diagnosis.assess import Assessment
 from ves_twin.diagnosis.build_up.result import BuildUp, Proved, Size
 from ves_twin.diagnosis.disagreement import Alone
-from ves_twin.diagnosis.explain import Explanation
+from ves_twin.diagnosis.explanation import Explanation
 from ves_twin.diagnosis.findable import findable_sizes, twins
 from ves_twin.diagnosis.forward import Hypothesis
 from ves_twin.diagnosis.gain import Gain

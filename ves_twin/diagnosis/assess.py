@@ -47,6 +47,7 @@ class Assessment:
         commissioning: fit of commissioning errors alone, or those that were fitted beside the
             likeliest cause, without it; None while it was not needed.
         bends: relative error of what fitted commissioning errors explain.
+        beside: the likeliest cause with them, where it was fitted and leaves noise.
     """
 
     evidence: Evidence
@@ -57,6 +58,7 @@ class Assessment:
     misfit: float
     commissioning: Fit | None
     bends: float = 0.0
+    beside: Fit | None = None
 
     @property
     def score(self) -> float:
@@ -141,7 +143,8 @@ def assess(
                 own = whitening.adapted(whitening.apply(bare_residual(look.evidence, beside)))
                 screen = Screen(bank, own, shaped=shaped)
                 fit = _without_causes(look.evidence, beside)
-                return replace(_look(Evidence(runs, measured, own), screen, fit), bends=bends)
+                look = _look(Evidence(runs, measured, own), screen, fit)
+                return replace(look, bends=bends, beside=beside)
         elif look.told:
             break
     return look

@@ -13,7 +13,9 @@ from ves_twin.diagnosis.assess import pull_limit
 from ves_twin.diagnosis.build_up.build_up import Built, build_up
 from ves_twin.diagnosis.build_up.halves import split
 from ves_twin.diagnosis.build_up.result import BuildUp
-from ves_twin.diagnosis.explain import Explanation, FitContext, explain
+from ves_twin.diagnosis.explain import explain
+from ves_twin.diagnosis.explanation import Explanation
+from ves_twin.diagnosis.fit_context import FitContext
 from ves_twin.diagnosis.fit_job import FEW
 from ves_twin.diagnosis.forecast import forecast
 from ves_twin.diagnosis.forward import Forward

@@ -14,7 +14,9 @@ from ves_twin.diagnosis.both_views import both_views, is_firm
 from ves_twin.diagnosis.decide import HeldOut, decide
 from ves_twin.diagnosis.differential import differential
 from ves_twin.diagnosis.disagreement import Alone, disagreement
-from ves_twin.diagnosis.explain import Explanation, FitContext, explain
+from ves_twin.diagnosis.explain import explain
+from ves_twin.diagnosis.explanation import Explanation
+from ves_twin.diagnosis.fit_context import FitContext
 from ves_twin.diagnosis.forward import Excitation, Forward
 from ves_twin.diagnosis.law.explained import lawful_explanation
 from ves_twin.diagnosis.law.propose import Limits
@@ -212,7 +214,7 @@ class _View:
 
 def _one_is_enough(desk: FitContext) -> bool:
     """Whether a single cause leaves noise."""
-    found = explain(desk.first, desk.thresholds, desk.settings, desk.progress, pairs=False)
+    found = explain(desk.first, desk.thresholds, desk.settings, desk.progress, together=False)
     return found is not None and found.adequate
 
 

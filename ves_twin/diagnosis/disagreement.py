@@ -75,7 +75,7 @@ def disagreement(
         if not first.exceeds(limits.effect, limits.misfit, pull):
             found.append(Alone(name, True, (), ()))
             continue
-        best = explain(first, limits, settings, progress, pairs=False)
+        best = explain(first, limits, settings, progress, together=False)
         if best is None:
             found.append(Alone(name, False, (), ()))
             continue

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+import numpy as np
+
 from ves_twin.core.types import FloatArray
 from ves_twin.diagnosis.evidence import Evidence
 from ves_twin.diagnosis.forward import Hypothesis
@@ -25,6 +27,7 @@ class FitJob:
         local: nuisance columns.
         step_share: of the discretisation column, to begin at.
         rough: for a first impression: no more than FEW steps, ended by ROUGH.
+        target: chi^2 that it must be able to come down to.
     """
 
     evidence: Evidence
@@ -33,11 +36,15 @@ class FitJob:
     local: Linearisation
     step_share: float
     rough: bool = False
+    target: float = np.inf
 
     @staticmethod
-    def again(evidence: Evidence, fit: Fit, local: Linearisation | None = None) -> FitJob:
+    def again(
+        evidence: Evidence, fit: Fit, local: Linearisation | None = None, target: float = np.inf
+    ) -> FitJob:
         """From where a fit ended, under another noise or with other columns."""
-        return FitJob(evidence, fit.causes, fit.shift, local or fit.local, fit.step_share)
+        share, where = fit.step_share, fit.shift
+        return FitJob(evidence, fit.causes, where, local or fit.local, share, target=target)
 
     @staticmethod
     def run(job: FitJob) -> Fit:
@@ -45,4 +52,4 @@ class FitJob:
         at = (job.shift, job.local, 0, job.step_share)
         if job.rough:
             return refine(job.evidence, job.causes, *at, enough=ROUGH, steps=FEW)
-        return refine(job.evidence, job.causes, *at)
+        return refine(job.evidence, job.causes, *at, target=job.target)

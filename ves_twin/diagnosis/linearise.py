@@ -180,13 +180,18 @@ def _shaken(runs: Runs, there: FloatArray, axes: IntArray, rng: np.random.Genera
 def renewed(local: Linearisation, point: FloatArray, prediction: SingleArray) -> Linearisation:
     """At another point: columns that bend on the way there are computed, the others stay.
 
+    What columns bend by is told of a rig drawn within its tolerances; the way is as long as that if
+    its root mean square is one sd, or if predictions change by as much as such rigs differ.
+
     Args:
         local: with columns that held elsewhere.
         point: departures there.
         prediction: channels there.
     """
     runs = local.runs
-    bent = np.flatnonzero(local.bends[:-1] * strangeness(local, prediction) > STIFF)
+    moved = (point - local.point)[runs.nuisances] / runs.sd[runs.nuisances]
+    way = max(float(np.sqrt(np.mean(moved**2))), _strange(local, prediction))
+    bent = np.flatnonzero(local.bends[:-1] * way > STIFF)
     axes = runs.nuisances[bent], runs.sd[runs.nuisances[bent]]
     there = linearise(runs, point, axes=axes, forward_step=FORWARD_STEP)
     columns = local.columns.copy()
@@ -199,10 +204,14 @@ def strangeness(local: Linearisation, prediction: SingleArray) -> float:
 
     A cause that moves the channels by more than commissioning errors do bends columns by more, too.
     """
+    return max(1.0, _strange(local, prediction))
+
+
+def _strange(local: Linearisation, prediction: SingleArray) -> float:
     runs = local.runs
     off = float(_sizes(runs, (prediction - local.prediction)[None])[0])
     usual = float(np.linalg.norm(_sizes(runs, local.columns[:-1])))
-    return max(1.0, off / max(usual, 1e-30))
+    return off / max(usual, 1e-30)
 
 
 def _sizes(runs: Runs, columns: SingleArray) -> FloatArray:

@@ -13,6 +13,7 @@ from ves_twin.diagnosis.linearise import linearise
 from ves_twin.diagnosis.metric import Metric
 from ves_twin.diagnosis.refine import Fit
 from ves_twin.diagnosis.runs import Runs
+from ves_twin.diagnosis.separation import parted
 from ves_twin.diagnosis.whitening import whitening_declared
 
 NUISANCES = 16
@@ -54,7 +55,7 @@ def separations(
         shifts = [_carry(there, fit, runs) for fit in rivals]
         changes = whitening.apply(runs.many(shifts) - base.prediction).T
         gram = changes.T @ metric.project(changes)
-        found.append(Separation(programme, _closest(gram, held)))
+        found.append(Separation(programme, float(np.min(parted(gram, held)))))
     return sorted(found, key=lambda separation: -separation.chi2)
 
 
@@ -93,12 +94,3 @@ def _carry(there: Runs, fit: Fit, runs: Runs) -> FloatArray:
     free = fit.active[: len(fit.sizes)]
     where = np.array([names.index(there.coordinates[i].parameter.name) for i in free], int)
     return runs.depart(runs.origin, where, fit.sizes)
-
-
-def _closest(gram: FloatArray, held: FloatArray) -> float:
-    """The least separation of two rivals, of <s_i, s_j> and D_j^2."""
-    power = np.diag(gram)
-    apart = power[:, None] - 2.0 * gram + power
-    apart = apart - (gram - power) ** 2 / np.maximum(power + held, 1e-12)
-    np.fill_diagonal(apart, np.inf)
-    return float(np.max([np.min(apart), 0.0]))

@@ -58,7 +58,12 @@ class Thresholds:
 
 def noise_floor(bank: SignatureLibrary, alpha: float) -> float:
     """chi^2 of the best of a bank's independent hypotheses that white noise passes with alpha."""
-    return float(chi2.isf(alpha / max(len(bank.hypotheses), 1), 1))
+    return chance_floor(len(bank.hypotheses), alpha)
+
+
+def chance_floor(count: int, alpha: float) -> float:
+    """chi^2 of the best of so many independent causes that white noise passes with alpha."""
+    return float(chi2.isf(alpha / max(count, 1), 1))
 
 
 def null_thresholds(

@@ -121,7 +121,7 @@ def _plan(
     progress: Progress,
 ) -> Plan:
     forward, programme = runs.forward, runs.programmes[0]
-    columns, length = _columns(forward, channels), _length(runs, seconds)
+    columns, length = columns_of(forward, channels), _length(runs, seconds)
 
     def build() -> SignatureLibrary:
         return build_bank(runs, progress=progress, sparse=chosen.sparse)
@@ -161,7 +161,12 @@ def check_channels(forward: Forward, names: Sequence[str]) -> None:
             raise UnknownNameError("channel", name, known)
 
 
-def _columns(forward: Forward, names: Sequence[str]) -> tuple[int, ...]:
+def columns_of(forward: Forward, names: Sequence[str]) -> tuple[int, ...]:
+    """Numbers of the channels of some signals or columns; all if none are given.
+
+    Raises:
+        UnknownNameError: a name that is neither.
+    """
     check_channels(forward, names)
     return tuple(
         c

@@ -11,7 +11,6 @@ from ves_twin.diagnosis.evidence import Evidence
 from ves_twin.diagnosis.forward import Hypothesis
 from ves_twin.diagnosis.linearise import STEP_SD, Linearisation, renewed
 from ves_twin.diagnosis.probe import probe
-from ves_twin.diagnosis.runs import Runs
 from ves_twin.diagnosis.search import FARTHEST, ITERATIONS, RELATIVE_CONVERGENCE, Point, Search
 
 NEAR = 0.3
@@ -85,6 +84,7 @@ def refine(
     probed: bool = False,
     enough: float = RELATIVE_CONVERGENCE,
     steps: int = ITERATIONS,
+    target: float = np.inf,
 ) -> Fit:
     """Fit causes and nuisances with the full forward.
 
@@ -102,6 +102,7 @@ def refine(
         enough: fall of chi^2, of all of it, that is not worth another run.
         steps: at most from one linearisation; fewer than usual are for a first impression, for
             which what the integration step is worth at the fit does not count.
+        target: chi^2 that counts: a search ends where it falls too slowly to come down to it.
     """
     runs = evidence.runs
     free = (
@@ -109,21 +110,22 @@ def refine(
         if causes
         else np.zeros(0, int)
     )
-    search = Search(evidence, free, local, farthest, enough, steps)
+    search = Search(evidence, free, local, farthest, enough, steps, target)
     start = np.clip(shift, search.low, search.high)
     point, jacobian = search.run(search.at(start, step_share))
     whole = steps == ITERATIONS and np.isfinite(point.chi2)
-    if whole and not _near(runs, search, point.shift):
-        search = Search(evidence, free, _stepped(search, point), farthest, enough)
-        point, jacobian = search.run(search.at(point.shift, point.delta))
+    if whole and not near(search.local, point.shift):
+        last, local = search, _stepped(search, point)
+        search = Search(evidence, free, local, farthest, enough, target=target)
+        point, jacobian = search.run(search.at(point.shift, point.delta), last)
     for _ in range(rounds):
-        if _near(runs, search, point.shift):
+        if near(search.local, point.shift):
             break
-        before = point.chi2
+        before, last = point.chi2, search
         turned = replace(search.local, columns=search.turned)
         local = renewed(turned, point.shift, point.prediction)
         search = Search(evidence, free, local, farthest, enough)
-        point, jacobian = search.run(search.at(point.shift, point.delta))
+        point, jacobian = search.run(search.at(point.shift, point.delta), last)
         if before - point.chi2 < WORTH * point.chi2:
             break
     if probed and np.isfinite(point.chi2):
@@ -158,10 +160,11 @@ def _stepped(search: Search, point: Point) -> Linearisation:
     return replace(search.local, columns=columns)
 
 
-def _near(runs: Runs, search: Search, shift: FloatArray) -> bool:
+def near(local: Linearisation, shift: FloatArray) -> bool:
     """Whether a point is where the nuisance columns were computed, as far as they can tell."""
-    moved = np.abs(shift - search.local.point)
-    scale = np.where(runs.sd > 0.0, runs.sd, 0.2 * np.abs(shift) + 1e-12)
+    sd = local.runs.sd
+    moved = np.abs(shift - local.point)
+    scale = np.where(sd > 0.0, sd, 0.2 * np.abs(shift) + 1e-12)
     return bool(np.all(moved <= NEAR * scale))
 
 

@@ -11,7 +11,7 @@ from ves_twin.core.types import FloatArray, IntArray, SingleArray
 from ves_twin.diagnosis.adequacy import Cell, cells
 from ves_twin.diagnosis.assess import Assessment
 from ves_twin.diagnosis.envelope import envelope_sd
-from ves_twin.diagnosis.explain import Explanation
+from ves_twin.diagnosis.explanation import Explanation
 from ves_twin.diagnosis.forward import Channel
 from ves_twin.diagnosis.preprocess import Dataset
 from ves_twin.diagnosis.refine import Fit, bare_residual

@@ -10,7 +10,7 @@ import numpy as np
 
 from ves_twin.diagnosis.adequacy import Cell, cells
 from ves_twin.diagnosis.assess import Assessment
-from ves_twin.diagnosis.explain import Explanation
+from ves_twin.diagnosis.explanation import Explanation
 from ves_twin.diagnosis.forward import Channel
 from ves_twin.diagnosis.refine import Fit
 

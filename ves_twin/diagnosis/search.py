@@ -42,6 +42,9 @@ CHANCE = 25.0
 """Squared change of a prediction [sigma^2] from which the columns learn half as much: a rig that
 sticks and slips answers some 5 sigma off by chance, whatever the move."""
 
+STILL = 10.0
+"""Times its last fall that a search may still fall, where each is nine tenths of the one before."""
+
 DAMPING = 10.0
 """First weight, and growth of the weight, that a step which did not help adds to the priors: a
 strong commissioning error that is a little off its column leaks into weak ones, many sd of them."""
@@ -102,9 +105,10 @@ class Search:
         farthest: float = FARTHEST,
         enough: float = RELATIVE_CONVERGENCE,
         steps: int = ITERATIONS,
+        target: float = np.inf,
     ) -> None:
         runs = evidence.runs
-        self.enough, self.steps = enough, steps
+        self.enough, self.steps, self.target = enough, steps, target
         self.evidence, self.runs, self.free, self.local = evidence, runs, free, local
         self.kept = np.flatnonzero(~np.isin(runs.nuisances, free))
         self.nuisances = runs.nuisances[self.kept]
@@ -155,7 +159,7 @@ class Search:
 
     def jacobian(self, point: Point) -> FloatArray:
         """Columns at a point: free parameters over a quarter of their size, nuisances as given."""
-        columns, raw = [], []
+        raw = []
         for n, i in enumerate(self.free):
             ends = self._ends(point.shift, int(i))
             stacks = [self.runs.one(end) for end in ends]
@@ -164,9 +168,14 @@ class Search:
                     ends[side], stacks[side] = point.shift, point.prediction
             self.unit[n] = 0.5 * (ends[1][i] - ends[0][i]) or 1.0
             raw.append(np.float32(0.5) * (stacks[1] - stacks[0]))
-            columns.append(self.evidence.whitening.apply(raw[-1]))
         self.raw = np.array(raw, np.float32).reshape(-1, *point.prediction.shape)
-        free = np.array(columns).reshape(-1, len(point.residual)).T
+        return self._with_causes()
+
+    def _with_causes(self) -> FloatArray:
+        """Columns of the causes and of the nuisances, whitened."""
+        if not len(self.free):
+            return self.columns.copy()
+        free = self.evidence.whitening.apply(self.raw).T
         self.bends[: len(self.free)] = GUESS * np.linalg.norm(free, axis=0)
         return np.concatenate([free, self.columns], axis=1)
 
@@ -185,12 +194,22 @@ class Search:
         prior[: len(self.free)] = 0.0
         return np.asarray(jacobian.T @ jacobian + np.diag(prior))
 
-    def run(self, point: Point) -> tuple[Point, FloatArray]:
-        """The best point, and the Jacobian there."""
+    def run(self, point: Point, before: Search | None = None) -> tuple[Point, FloatArray]:
+        """The best point, and the Jacobian there.
+
+        Args:
+            point: to begin at.
+            before: the search that ended there, whose columns of the causes are taken over as its
+                runs have turned them; they are computed anew if None.
+        """
         if not np.isfinite(point.chi2):
             return point, np.zeros((0, len(self.unit)))
         self.tempered = True
-        return self.descend(point, self.jacobian(point))
+        if before is None:
+            return self.descend(point, self.jacobian(point))
+        count = len(self.free)
+        self.unit[:count], self.raw = before.unit[:count], before.raw
+        return self.descend(point, self._with_causes())
 
     def descend(self, point: Point, jacobian: FloatArray) -> tuple[Point, FloatArray]:
         """From a point with its Jacobian down to the best one."""
@@ -198,7 +217,8 @@ class Search:
             found = self._step(point, jacobian)
             fall = point.chi2 - found.chi2
             point = found
-            if fall < CONVERGED + self.enough * point.chi2:
+            ended = fall < CONVERGED + self.enough * point.chi2
+            if ended or STILL * fall < point.chi2 - self.target:
                 if not self.tempered or self._prior_weight(point) < NONLINEAR_CHI2:
                     break
                 self.tempered = False

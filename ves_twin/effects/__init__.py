@@ -47,6 +47,12 @@ from ves_twin.effects.programs import (
     ServoGain,
     StaleGravity,
 )
+from ves_twin.effects.recorder import (
+    RecorderCrossTalk,
+    RecorderDelay,
+    RecorderGain,
+    RecorderOffset,
+)
 from ves_twin.effects.sensors import (
     CrossTalk,
     EncoderOffset,
@@ -109,6 +115,10 @@ __all__ = [
     "PayloadMass",
     "PistonLeakage",
     "QuadraticDrag",
+    "RecorderCrossTalk",
+    "RecorderDelay",
+    "RecorderGain",
+    "RecorderOffset",
     "RotorInertia",
     "SensorDelay",
     "SensorDrift",

@@ -1,4 +1,4 @@
-"""Table, Loop and Attribute: the one number that an effect changes, and by which law."""
+"""Table, Loop, Attribute and Log: what an effect changes, and by which law."""
 
 from __future__ import annotations
 
@@ -107,7 +107,14 @@ class Attribute:
         return number if column is None else (number, column)
 
 
-Change = Table | Loop | Attribute
+@dataclass(frozen=True)
+class Log:
+    """A signal as the recorder writes it; the machine itself stays as it is."""
+
+    signal: str
+
+
+Change = Table | Loop | Attribute | Log
 
 DAMPING = Attribute(Element.JOINT, "damping", "dof_damping")
 FRICTION_LOSS = Attribute(Element.JOINT, "frictionloss", "dof_frictionloss")

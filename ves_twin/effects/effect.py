@@ -13,7 +13,7 @@ import numpy as np
 from ves_twin.core.errors import InvalidInputError, UnknownNameError
 from ves_twin.core.types import FloatArray
 from ves_twin.core.units import unit_tail
-from ves_twin.effects.change import Attribute, Loop, Table
+from ves_twin.effects.change import Attribute, Log, Loop, Table
 from ves_twin.effects.element import Element
 from ves_twin.effects.magnitude import Magnitude
 from ves_twin.effects.place import Place
@@ -154,6 +154,12 @@ class Effect(ABC):
         """What it sits on, on machines of an MJCF model."""
         return self.anywhere.element if self.anywhere else None
 
+    @property
+    def log(self) -> str:
+        """The signal of VES II that it changes in the log alone; empty if it is in the rig."""
+        change = self.row_of(self.target).change if self.rows else None
+        return change.signal if isinstance(change, Log) else ""
+
     def sized(self, sizes: Mapping[str, float]) -> Self:
         """Of the same kind on the same target, at other sizes."""
         return type(self)(self.target, **sizes)
@@ -245,7 +251,7 @@ class Effect(ABC):
     def edit_reading(
         self, reading: FloatArray, true: FloatArray, time: FloatArray, place: Place
     ) -> FloatArray:
-        """What is read (n, w) of a signal whose true values are (n, w)."""
+        """What is read, or logged, (n, w) of a signal whose true values are (n, w)."""
         return reading
 
     @property

@@ -16,6 +16,7 @@ from ves_twin.effects import (
     hydraulics,
     joints,
     programs,
+    recorder,
     sensors,
     structure,
     transducers,
@@ -28,7 +29,7 @@ from ves_twin.effects.sensors import CrossTalk
 
 _CATALOGUE = (
     *(transducers, joints, friction, couplings, hydraulics, structure, actuators, bodies),
-    *(sensors, programs),
+    *(sensors, programs, recorder),
 )
 
 RENAMED = {

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.polynomial.legendre import legvander
 
 from ves_twin.core.types import FloatArray
+from ves_twin.effects.added import added
 from ves_twin.effects.change import Law, Loop, Table
 from ves_twin.effects.effect import Effect
 from ves_twin.effects.element import Element
@@ -41,7 +42,7 @@ class SensorGain(Effect):
         self, reading: FloatArray, true: FloatArray, time: FloatArray, place: Place
     ) -> FloatArray:
         """Add its share of the true value."""
-        return _added(reading, self.column, self.gain * true[:, self.column])
+        return added(reading, self.column, self.gain * true[:, self.column])
 
 
 @final
@@ -82,7 +83,7 @@ class CrossTalk(Effect):
     ) -> FloatArray:
         """Add a share of the other column."""
         to, of = (int(number) - 1 for number in self.target.split(".")[-2:])
-        return _added(reading, to, self.share * true[:, of])
+        return added(reading, to, self.share * true[:, of])
 
 
 @final
@@ -100,7 +101,7 @@ class SensorOffset(Effect):
         self, reading: FloatArray, true: FloatArray, time: FloatArray, place: Place
     ) -> FloatArray:
         """Add the offset."""
-        return _added(reading, self.column, self.offset)
+        return added(reading, self.column, self.offset)
 
 
 @final
@@ -170,7 +171,7 @@ class SensorWander(Effect):
         """Add the wander."""
         s = 2.0 * (time - place.begin) / (place.end - place.begin) - 1.0
         weights = np.array([0.0, *self.values.values()])
-        return _added(reading, self.column, legvander(s, len(weights) - 1) @ weights)
+        return added(reading, self.column, legvander(s, len(weights) - 1) @ weights)
 
 
 @final
@@ -238,10 +239,3 @@ class SensorDelay(Effect):
     ) -> FloatArray:
         """What was read a delay ago."""
         return shifted(reading, time, self.delay)
-
-
-def _added(reading: FloatArray, column: int, change: FloatArray | float) -> FloatArray:
-    """A reading (n, w) with something added to one column."""
-    reading = reading.copy()
-    reading[:, column] += change
-    return reading

@@ -1,4 +1,4 @@
-"""envs: the rig as Gymnasium environments; importing this room registers them."""
+"""envs: rig and machines as Gymnasium environments; importing this room registers them."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from ves_twin.envs.gravity_compensation import GravityCompensation
 from ves_twin.envs.reach import VibrationFreeReach
 from ves_twin.envs.tracking import PlatformTracking
 
-ENVIRONMENTS = {
+RIG_ENVIRONMENTS = {
     "VesTwin/VibrationFreeReach-v0": "ves_twin.envs.reach:VibrationFreeReach",
     "VesTwin/VibrationDamping-v0": "ves_twin.envs.damping:VibrationDamping",
     "VesTwin/PlatformTracking-v0": "ves_twin.envs.tracking:PlatformTracking",
@@ -19,13 +19,21 @@ ENVIRONMENTS = {
     "VesTwin/GravityCompensation-v0": "ves_twin.envs.gravity_compensation:GravityCompensation",
     "VesTwin/MicrogravityCapture-v0": "ves_twin.envs.capture:MicrogravityCapture",
 }
-"""Id -> entry point. A change of what an episode does asks for a new version of its id."""
+"""Id -> entry point of those with a rig of VES II."""
+
+ENVIRONMENTS = {
+    **RIG_ENVIRONMENTS,
+    "VesTwin/DiagnoseAndRetune-v0": "ves_twin.envs.diagnose_and_retune:DiagnoseAndRetune",
+}
+"""Id -> entry point; what needs the diagnosis is imported when it is made. A change of what an
+episode does asks for a new version of its id."""
 
 for _id, _entry_point in ENVIRONMENTS.items():
     gym.register(_id, entry_point=_entry_point)
 
 __all__ = [
     "ENVIRONMENTS",
+    "RIG_ENVIRONMENTS",
     "AdmittanceTuning",
     "GravityCompensation",
     "MicrogravityCapture",

@@ -14,7 +14,6 @@ from ves_twin.envs.arm_env import JOINT_UNITS, WRENCH_UNITS, time_left
 from ves_twin.envs.channels import Channel, Channels
 from ves_twin.envs.leg_channels import distance, leg_channels, leg_readings
 from ves_twin.envs.rig_env import CYCLES, RigEnv
-from ves_twin.envs.rig_set import RigSet
 from ves_twin.envs.tuned_legs import RATE_GAIN, TunedLegs
 from ves_twin.plant.plant import Plant
 from ves_twin.scenario.schema import Scenario
@@ -23,9 +22,6 @@ from ves_twin.simulator.build import build_references
 from ves_twin.simulator.recorder import IDEAL, NoSink
 from ves_twin.simulator.signal_bus import SignalBus
 from ves_twin.simulator.simulator import Simulator
-
-HIDDEN = "valves-v0"
-"""Set of the faults that an episode hides."""
 
 SHAKING = 10.0
 """Loss of a force above 5 Hz at its limit, as an emulation error [mm]: what lags and shakes no
@@ -44,6 +40,7 @@ class AdmittanceTuning(RigEnv[TunedLegs]):
 
     SCENARIO: ClassVar[str] = "admittance_tuning"
     WORST: ClassVar[float] = 100.0
+    HIDDEN: ClassVar[str] = "valves-v0"
 
     def check(self, scenario: Scenario) -> None:
         """A zero-g reference to compare with, and a filter to tune.
@@ -74,20 +71,6 @@ class AdmittanceTuning(RigEnv[TunedLegs]):
             time_left(scenario),
         )
         return observed, Channels(*tuning)
-
-    def hidden(self, plant: Plant) -> Plant:
-        """Faults of valves."""
-        return RigSet.load(HIDDEN).draw(plant, self.np_random)
-
-    def draw(self, scenario: Scenario, goal: object) -> tuple[Scenario, object]:
-        """Nothing beyond the faults.
-
-        Raises:
-            InvalidInputError: a goal.
-        """
-        if goal is not None:
-            raise InvalidInputError("goal", goal, "none; the scenario says what is emulated")
-        return scenario, None
 
     def build(self, plant: Plant, scenario: Scenario) -> tuple[Simulator, TunedLegs]:
         """A simulator whose leg loops the environment tunes."""

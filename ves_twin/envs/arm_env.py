@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import abc
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -43,7 +42,7 @@ POSE_LIMIT = np.array([0.5, 0.5, 0.5, 0.8, 0.8, 0.8])
 """Beyond what the legs' travel of 0.25 m allows [m, rad]."""
 
 
-class ArmEnv(RigEnv[CommandedArm], abc.ABC):
+class ArmEnv(RigEnv[CommandedArm]):
     """The arm's joint rates are commanded; the platform emulates a flexible base beneath it."""
 
     def check(self, scenario: Scenario) -> None:

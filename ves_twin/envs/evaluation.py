@@ -6,6 +6,7 @@ from collections import Counter
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import asdict, dataclass
+from typing import Any
 
 import gymnasium as gym
 import numpy as np
@@ -23,7 +24,7 @@ from ves_twin.core.workers import Workers
 from ves_twin.envs import ENVIRONMENTS
 from ves_twin.envs.baselines import BASELINES
 from ves_twin.envs.policy import Policy
-from ves_twin.envs.rig_env import rig_env
+from ves_twin.envs.task_env import task_env
 from ves_twin.envs.wrappers import RandomRigs
 
 RESAMPLES = 2000
@@ -172,6 +173,22 @@ def policy_class(text: str) -> type[Policy]:
     raise UnknownNameError("policy", text, BASELINES)
 
 
+def built(policy: type[Policy], env: gym.Env[Any, Any]) -> Policy:
+    """A policy for an environment of this room.
+
+    Raises:
+        VesTwinError: one that does not fit.
+    """
+    briefing = task_env(env).briefing()
+    try:
+        return policy.build(briefing)
+    except VesTwinError:
+        raise
+    except Exception as error:
+        what = f"policy {policy.__name__} cannot be built from a {type(briefing).__name__}"
+        raise ControllerError(f"{what}: {type(error).__name__}: {one_line(error)}") from error
+
+
 def interquartile_mean(values: FloatArray) -> Figure:
     """Mean of the middle half, and its percentile bootstrap interval of 95 % (seeded).
 
@@ -228,7 +245,7 @@ def named(policy: Policy, time: float) -> Iterator[None]:
 def _episode(job: tuple[Trial, int]) -> Episode:
     trial, seed = job
     env = gym.make(environment_id(trial.environment), plant=trial.plant, disable_env_checker=True)
-    policy = policy_class(trial.policy).build(rig_env(env).briefing())
+    policy = built(policy_class(trial.policy), env)
     if trial.rigs != NO_RIGS:
         env = RandomRigs(env, trial.rigs)
     try:

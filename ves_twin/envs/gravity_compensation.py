@@ -19,16 +19,12 @@ from ves_twin.envs.arm_env import (
 from ves_twin.envs.channels import Channel, Channels
 from ves_twin.envs.corrected_gravity import CorrectedGravity
 from ves_twin.envs.rig_env import RigEnv
-from ves_twin.envs.rig_set import RigSet
 from ves_twin.plant.plant import Plant
 from ves_twin.scenario.schema import Scenario
 from ves_twin.simulator.recorder import NoSink
 from ves_twin.simulator.signal_bus import SignalBus
 from ves_twin.simulator.simulator import Simulator
 from ves_twin.simulator.truth_port import GravityTruth
-
-HIDDEN = "payloads-v0"
-"""Set of what an episode hides."""
 
 CORRECTION = np.array([50.0, 50.0, 50.0, 60.0, 60.0, 60.0])
 """Correction of a share of 1 [N, N m]; 4 kg at a stretched arm weigh 39 N with 40 N m."""
@@ -49,6 +45,7 @@ class GravityCompensation(RigEnv[CorrectedGravity]):
 
     SCENARIO: ClassVar[str] = "gravity_compensation"
     WORST: ClassVar[float] = 20.0
+    HIDDEN: ClassVar[str] = "payloads-v0"
 
     def check(self, scenario: Scenario) -> None:
         """Gravity is estimated, and no zeroing hides it.
@@ -82,20 +79,6 @@ class GravityCompensation(RigEnv[CorrectedGravity]):
             time_left(scenario),
         )
         return observed, Channels(correction)
-
-    def hidden(self, plant: Plant) -> Plant:
-        """A tool."""
-        return RigSet.load(HIDDEN).draw(plant, self.np_random)
-
-    def draw(self, scenario: Scenario, goal: object) -> tuple[Scenario, object]:
-        """Nothing beyond the tool.
-
-        Raises:
-            InvalidInputError: a goal.
-        """
-        if goal is not None:
-            raise InvalidInputError("goal", goal, "none; the weight is the rig's")
-        return scenario, None
 
     def build(self, plant: Plant, scenario: Scenario) -> tuple[Simulator, CorrectedGravity]:
         """A simulator whose estimate the environment corrects."""

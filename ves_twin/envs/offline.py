@@ -15,9 +15,9 @@ from ves_twin.core.errors import InvalidInputError, UnknownNameError, VesTwinErr
 from ves_twin.core.json_text import json_text
 from ves_twin.core.types import FloatArray
 from ves_twin.envs.baselines import EXPERTS
-from ves_twin.envs.evaluation import NO_RIGS, environment_id, named, policy_class
+from ves_twin.envs.evaluation import NO_RIGS, built, environment_id, named, policy_class
 from ves_twin.envs.policy import Policy
-from ves_twin.envs.rig_env import rig_env
+from ves_twin.envs.task_env import task_env
 from ves_twin.envs.wrappers import RandomRigs
 
 try:
@@ -107,7 +107,7 @@ def record_dataset(
     )
     if record.rigs != NO_RIGS:
         env = RandomRigs(env, record.rigs)
-    policy = made.build(rig_env(env).briefing())
+    policy = built(made, env)
     buffers, told = [], []
     try:
         for count, seed in enumerate(seeds, 1):
@@ -133,7 +133,7 @@ def record_dataset(
 
 def _play(env: gym.Env[Any, Any], policy: Policy, kind: str, seed: int) -> EpisodeBuffer:
     """One episode; policies see readings in their units, whatever the environment shows."""
-    inner, rng = rig_env(env), np.random.default_rng([seed, STREAM])
+    inner, rng = task_env(env), np.random.default_rng([seed, STREAM])
     rows, actions, gains = [env.reset(seed=seed)[0]], [], []
     with named(policy, 0.0):
         policy.begin(inner.reading)
@@ -167,8 +167,7 @@ def _kind_of(kind: str, action: FloatArray, rng: np.random.Generator) -> FloatAr
 
 def _effects(env: gym.Env[Any, Any]) -> str:
     """What was wrong with the rig of the episode, as JSON."""
-    found = rig_env(env).sim.plant.effects
-    return json_text([{"kind": e.kind, "target": e.target, **e.values} for e in found])
+    return json_text(task_env(env).faults)
 
 
 def _check_free(name: str) -> None:

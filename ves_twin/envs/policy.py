@@ -5,7 +5,7 @@ from __future__ import annotations
 import abc
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from ves_twin.core.types import FloatArray
 from ves_twin.envs.channels import Channels
@@ -15,6 +15,8 @@ from ves_twin.scenario.schema import Scenario
 
 if TYPE_CHECKING:
     from control import StateSpace
+
+    from ves_twin.envs.joint_task import JointTask
 
 
 @dataclass(frozen=True)
@@ -42,13 +44,34 @@ class TaskSpec:
     prior: Callable[[], StateSpace]
 
 
+@dataclass(frozen=True)
+class TrialSpec:
+    """The same for `DiagnoseAndRetune`.
+
+    Attributes:
+        observations: columns of a trial's recording.
+        actions: columns of the controller and of the test; zeros are the believed machine's own.
+        task: the believed machine, its simulation under a controller, recordings of trials.
+        trials: in an episode; the last is scored.
+    """
+
+    observations: Channels
+    actions: Channels
+    task: JointTask
+    trials: int
+
+
 class Policy(abc.ABC):
     """Decides an action from an observation; one object serves many episodes in turn."""
 
     @classmethod
     @abc.abstractmethod
-    def build(cls, briefing: TaskSpec) -> Policy:
-        """A policy for an environment; raises InvalidInputError where it does not fit."""
+    def build(cls, briefing: Any) -> Policy:
+        """A policy for an environment, by its `briefing()`: a TaskSpec, or a TrialSpec.
+
+        Raises:
+            InvalidInputError: an environment that it does not fit.
+        """
 
     @abc.abstractmethod
     def begin(self, observation: FloatArray) -> None:

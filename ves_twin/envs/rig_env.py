@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import abc
-import math
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any, ClassVar, Generic
 
@@ -11,13 +10,15 @@ import gymnasium as gym
 import numpy as np
 
 from ves_twin.core.errors import InvalidInputError, UnknownNameError
-from ves_twin.core.types import FloatArray, SingleArray
+from ves_twin.core.types import FloatArray
 from ves_twin.envs.channels import Channels
 from ves_twin.envs.costs import Costs, Limits
 from ves_twin.envs.given import given_plant, given_scenario
 from ves_twin.envs.picture import Picture
 from ves_twin.envs.policy import TaskSpec
+from ves_twin.envs.rig_set import RigSet
 from ves_twin.envs.settled_rigs import Hand, SettledRig, SettledRigs
+from ves_twin.envs.task_env import Observation, TaskEnv
 from ves_twin.envs.true_state import Place, read_state, state_place, true_state
 from ves_twin.mechanics.emulated import EmulatedSystem
 from ves_twin.plant.plant import Plant
@@ -38,28 +39,19 @@ OPTIONS = ("goal", "plant", "scenario")
 """What `reset` understands."""
 
 
-Observation = FloatArray | SingleArray
-
-
-class RigEnv(gym.Env[Any, FloatArray], abc.ABC, Generic[Hand]):
+class RigEnv(TaskEnv, Generic[Hand]):
     """One rig under one task; a step is CYCLES admittance cycles.
 
-    Actions are shares of a scale, -1 to 1. A finite action beyond that is clipped and `info` says
-    so; one that is not finite, or of another shape, is refused before anything moves.
-    Observations are what the computers of the laboratory read, never truth.
+    Observations are what the computers of the laboratory read.
 
     Attributes:
-        observations: the table of the observation's columns.
-        actions: the table of the action's columns; bounds are the scale.
-        reading: the last observation in the units of `observations` (m,), scaled or not.
         sink: where the rows of the next episodes go; None for nowhere.
 
     Args:
         plant: the world; the scenario's own if left out.
         scenario: the task's own if left out.
         render_mode: "rgb_array", "human" or None.
-        scaled: observations as shares of their bounds, -1 to 1, in single precision like the
-            actions; what networks take. In physical units and double precision otherwise.
+        scaled: observations as shares of their bounds, in single precision; see `TaskEnv`.
 
     Raises:
         VesTwinError: a plant or scenario that cannot be used.
@@ -72,10 +64,9 @@ class RigEnv(gym.Env[Any, FloatArray], abc.ABC, Generic[Hand]):
     SCENARIO: ClassVar[str]
     WORST: ClassVar[float]
     """Loss per second [loss/s] that what is left of an episode counts as after a safety stop."""
+    HIDDEN: ClassVar[str] = ""
+    """Set of rigs that an episode's is drawn from; none if empty."""
 
-    observations: Channels
-    actions: Channels
-    reading: FloatArray
     _costs: Costs
     _place: Place
     _readings: tuple[FloatArray, FloatArray]
@@ -93,14 +84,7 @@ class RigEnv(gym.Env[Any, FloatArray], abc.ABC, Generic[Hand]):
         self._scenario = given_scenario(scenario or self.SCENARIO)
         self._plant = given_plant(plant or self._scenario.plant)
         self.check(self._scenario)
-        self.observations, self.actions = self.channels(self._scenario)
-        self._scaled = scaled
-        self.observation_space = (
-            _shares(self.observations.width, np.float32)
-            if scaled
-            else gym.spaces.Box(self.observations.low, self.observations.high, dtype=np.float64)
-        )
-        self.action_space = _shares(self.actions.width, np.float32 if scaled else np.float64)
+        super().__init__(*self.channels(self._scenario), scaled)
         self.sink: Sink | None = None
         self._rigs: SettledRigs[Hand] = SettledRigs()
         self._rig: SettledRig[Hand] | None = None
@@ -118,10 +102,6 @@ class RigEnv(gym.Env[Any, FloatArray], abc.ABC, Generic[Hand]):
     @abc.abstractmethod
     def build(self, plant: Plant, scenario: Scenario) -> tuple[Simulator, Hand]:
         """A simulator, and what an action commands in it."""
-
-    @abc.abstractmethod
-    def draw(self, scenario: Scenario, goal: object) -> tuple[Scenario, object]:
-        """Scenario and goal of an episode, drawn where `goal` is None, by `np_random` alone."""
 
     @abc.abstractmethod
     def start(self, goal: Any) -> None:
@@ -162,11 +142,21 @@ class RigEnv(gym.Env[Any, FloatArray], abc.ABC, Generic[Hand]):
         raise InvalidInputError(type(self).__name__, "no linear prior", "a task that moves the rig")
 
     def hidden(self, plant: Plant) -> Plant:
-        """A plant with what the task hides in it, drawn by `np_random` alone; as it is by default.
+        """A plant with what the task hides in it, drawn by `np_random` alone.
 
         Called for plants without effects: whoever gives a rig with faults has hidden his own.
         """
-        return plant
+        return RigSet.load(self.HIDDEN).draw(plant, self.np_random) if self.HIDDEN else plant
+
+    def draw(self, scenario: Scenario, goal: object) -> tuple[Scenario, object]:
+        """Scenario and goal of an episode, drawn where `goal` is None, by `np_random` alone.
+
+        Raises:
+            InvalidInputError: a goal that the task has none of.
+        """
+        if goal is not None:
+            raise InvalidInputError("goal", goal, "none; scenario and rig say all of this task")
+        return scenario, None
 
     def briefing(self) -> TaskSpec:
         """What a policy may know before it begins: tables, times, beliefs, the linear model."""
@@ -181,6 +171,11 @@ class RigEnv(gym.Env[Any, FloatArray], abc.ABC, Generic[Hand]):
             emulated=None if emulated is None else EmulatedSystem.load(emulated),
             prior=self.prior,
         )
+
+    @property
+    def faults(self) -> list[dict[str, Any]]:
+        """Effects of the plant."""
+        return [{"kind": e.kind, "target": e.target, **e.values} for e in self.sim.plant.effects]
 
     @property
     def span(self) -> float:
@@ -249,14 +244,9 @@ class RigEnv(gym.Env[Any, FloatArray], abc.ABC, Generic[Hand]):
         """
         if self._over or self._rig is None:
             raise InvalidInputError("step", "an episode that is over", "reset before it")
-        given = np.asarray(action, float)
-        shares = given.tolist()
-        if given.shape != self.action_space.shape or not all(map(math.isfinite, shares)):
-            what = f"{self.actions.width} finite numbers from -1 to 1"
-            raise InvalidInputError("action", np.asarray(action).tolist(), what)
-        inside = [min(max(share, -1.0), 1.0) for share in shares]
+        wanted, clipped = self.physical(action)
         sim = self._rig.sim
-        self.command(np.array(inside) * self.actions.high, self._cycle * CYCLES)
+        self.command(wanted, self._cycle * CYCLES)
         lost = self._run_cycles(sim) * self._cycle
         self._steps += 1
         terminated = sim.outcome is not None
@@ -269,7 +259,7 @@ class RigEnv(gym.Env[Any, FloatArray], abc.ABC, Generic[Hand]):
         self._return -= lost
         if self.render_mode == "human":
             self.render()
-        info = self._info(clipped=inside != shares)
+        info = self._info(clipped)
         if self._over:
             info["metrics"] = {"return": self._return, **self.metrics()}
         return self._observe(), -lost, terminated, truncated, info
@@ -346,8 +336,7 @@ class RigEnv(gym.Env[Any, FloatArray], abc.ABC, Generic[Hand]):
         board = self.sim.rig.board
         if self.sim.outcome is not Outcome.DIVERGED:
             self._board_pose = self._geometry.pose(board["leg.length"], self._board_pose)
-        self.reading = self.observations.vector(self.readings(board))
-        return self.observations.shares(self.reading) if self._scaled else self.reading.copy()
+        return self.observed(self.readings(board))
 
     def _info(self, clipped: bool) -> dict[str, Any]:
         sim = self.sim
@@ -371,17 +360,14 @@ class RigEnv(gym.Env[Any, FloatArray], abc.ABC, Generic[Hand]):
         return self._rig
 
 
-def _shares(width: int, dtype: type[np.float32 | np.float64]) -> Any:
-    return gym.spaces.Box(-1.0, 1.0, (width,), dtype)
-
-
 def rig_env(env: gym.Env[Any, Any]) -> RigEnv[Any]:
-    """The environment of this room under any wrappers.
+    """The environment with a rig of VES II under any wrappers.
 
     Raises:
         InvalidInputError: an environment of another kind.
     """
     inner = env.unwrapped
     if not isinstance(inner, RigEnv):
-        raise InvalidInputError("environment", type(inner).__name__, "one of ves_twin.envs")
+        expected = "one of ves_twin.envs with a rig of VES II"
+        raise InvalidInputError("environment", type(inner).__name__, expected)
     return inner

@@ -12,6 +12,7 @@ from ves_twin.core.recording.recording import Recording
 from ves_twin.core.signals import Signal
 from ves_twin.data.quality.check import Check
 from ves_twin.data.suspicions import Range
+from ves_twin.diagnosis.design import DesignSpace
 from ves_twin.diagnosis.forward import Excitation, Forward
 from ves_twin.diagnosis.refusal import refusal
 from ves_twin.diagnosis.settings import Settings
@@ -217,12 +218,24 @@ class Machine(ABC):
         """
 
     @abstractmethod
+    def design_space(self, seconds: float) -> DesignSpace:
+        """Excitations of a length [s] within the machine's limits, from which one is designed.
+
+        Raises:
+            InvalidInputError: inputs that cannot be bounded.
+        """
+
+    @abstractmethod
     def save_excitation(self, excitation: Excitation, folder: Path) -> None:
         """Write it as `SETPOINTS`, and as `SCENARIO` where the machine runs scenarios.
 
         Raises:
             FileAccessError: not writable.
         """
+
+    def further(self) -> Forward:
+        """The machine with every channel that it could have, its own first, in their order."""
+        return self.forward
 
     def drawing(self) -> Drawing | None:
         """Its bodies, for pictures; None where its recordings do not say where they are."""

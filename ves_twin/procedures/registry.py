@@ -2,51 +2,43 @@
 
 from __future__ import annotations
 
+import importlib
 from collections.abc import Mapping
+from typing import cast
 
 from pydantic import ValidationError
 
 from ves_twin.core.errors import UnknownNameError
-from ves_twin.procedures.calibrate_plant import CalibratePlant
-from ves_twin.procedures.calibrate_poses import CalibratePoses
-from ves_twin.procedures.coupling_map_paths import CouplingMapPaths
-from ves_twin.procedures.emulation_error_budget import EmulationErrorBudget
-from ves_twin.procedures.frequency_response import FrequencyResponseTest
-from ves_twin.procedures.frozen_droop import FrozenDroop
-from ves_twin.procedures.gravity_sensitivity import GravitySensitivity
-from ves_twin.procedures.learning_method import LearningMethod
-from ves_twin.procedures.methods_agreement import MethodsAgreement
-from ves_twin.procedures.positioning_error import PositioningErrorTest
-from ves_twin.procedures.pped_release import PpedRelease
-from ves_twin.procedures.pped_release_emulated import PpedReleaseEmulated
 from ves_twin.procedures.procedure import Procedure
-from ves_twin.procedures.sensor_drift import SensorDrift
-from ves_twin.procedures.showcase import Showcase
-from ves_twin.procedures.showcase_droop import DroopShowcase
-from ves_twin.procedures.stability_map import StabilityMap
-from ves_twin.procedures.verify_gravity import VerifyGravity
 from ves_twin.scenario.load import refusal, scenario_content
 
-PROCEDURES: dict[str, type[Procedure]] = {
-    "coupling_map_paths": CouplingMapPaths,
-    "pped_release": PpedRelease,
-    "pped_release_emulated": PpedReleaseEmulated,
-    "frequency_response": FrequencyResponseTest,
-    "positioning_error": PositioningErrorTest,
-    "calibrate_poses": CalibratePoses,
-    "frozen_droop": FrozenDroop,
-    "gravity_sensitivity": GravitySensitivity,
-    "emulation_error_budget": EmulationErrorBudget,
-    "learning_method": LearningMethod,
-    "methods_agreement": MethodsAgreement,
-    "sensor_drift": SensorDrift,
-    "showcase": Showcase,
-    "showcase_droop": DroopShowcase,
-    "verify_gravity": VerifyGravity,
-    "calibrate_plant": CalibratePlant,
-    "stability_map": StabilityMap,
+PROCEDURES = {
+    "coupling_map_paths": "CouplingMapPaths",
+    "pped_release": "PpedRelease",
+    "pped_release_emulated": "PpedReleaseEmulated",
+    "frequency_response": "FrequencyResponseTest",
+    "positioning_error": "PositioningErrorTest",
+    "calibrate_poses": "CalibratePoses",
+    "frozen_droop": "FrozenDroop",
+    "gravity_sensitivity": "GravitySensitivity",
+    "emulation_error_budget": "EmulationErrorBudget",
+    "learning_method": "LearningMethod",
+    "methods_agreement": "MethodsAgreement",
+    "sensor_drift": "SensorDrift",
+    "showcase": "Showcase",
+    "showcase_droop": "DroopShowcase",
+    "verify_gravity": "VerifyGravity",
+    "calibrate_plant": "CalibratePlant",
+    "stability_map": "StabilityMap",
 }
-"""Value of `procedure` in a file -> class."""
+"""Value of `procedure` in a file, its module too -> class; imported where one is asked for, since
+together they import half of the twin."""
+
+
+def procedure_class(kind: str) -> type[Procedure]:
+    """The class behind a value of `procedure`."""
+    module = importlib.import_module(f"ves_twin.procedures.{kind}")
+    return cast("type[Procedure]", getattr(module, PROCEDURES[kind]))
 
 
 def load_procedure(
@@ -69,7 +61,7 @@ def load_procedure(
         return None
     if not isinstance(kind, str) or kind not in PROCEDURES:
         raise UnknownNameError(f"procedure in {where}", str(kind), PROCEDURES)
-    model = PROCEDURES[kind]
+    model = procedure_class(kind)
     try:
         return model.model_validate(content)
     except ValidationError as error:

@@ -14,6 +14,7 @@ from ves_twin.core.signals import SIGNALS
 from ves_twin.core.types import FloatArray, IntArray
 from ves_twin.mechanics.kinematics.stewart import StewartGeometry, pose_jacobian, track_poses
 from ves_twin.simulator.clock import Clock
+from ves_twin.simulator.log_faults import LogFaults, LogTail
 from ves_twin.simulator.reference import ZeroGravityReference
 from ves_twin.simulator.signal_bus import SLICES, WIDTH
 
@@ -83,6 +84,7 @@ class RecorderSnapshot(ReadOnly):
     ticks: IntArray
     first_rows: IntArray
     references: Mapping[str, FloatArray]
+    tail: LogTail
     kept: int
 
 
@@ -96,6 +98,7 @@ class Recorder:
         references: name of the signal -> reference, empty where there is nothing to emulate.
         sink: where rows go.
         absent: signals that the rig does not have.
+        faults: what the log makes of the rows.
     """
 
     def __init__(
@@ -106,11 +109,13 @@ class Recorder:
         references: Mapping[str, ZeroGravityReference],
         sink: Sink,
         absent: Set[str] = frozenset(),
+        faults: LogFaults | None = None,
     ) -> None:
         self._clock = clock
         self._geometry = geometry
         self._references = dict(references)
         self.sink = sink
+        self._faults = faults or LogFaults(())
         self._cycle = clock.admittance * clock.tick
         capacity = int(BUFFER_SECONDS / self._cycle) + 1
         self.log = np.zeros((capacity * (clock.admittance // clock.log + 2), WIDTH + 1))
@@ -172,7 +177,8 @@ class Recorder:
         for name, reference in self._references.items():
             self._add_reference(rows, time, name, reference, ticks, points)
         if len(time):
-            self.sink.write(time, {name: rows[:, SLICES[name]] for name in self.names})
+            signals = {name: rows[:, SLICES[name]] for name in self.names}
+            self.sink.write(time, self._faults.logged(time, signals))
 
     def collect(self) -> tuple[FloatArray, dict[str, FloatArray]]:
         """All rows that are kept in memory: time [s] (n,) and every signal (n, width).
@@ -197,6 +203,7 @@ class Recorder:
             ticks=self._ticks.copy(),
             first_rows=self._first_rows.copy(),
             references={name: r.snapshot() for name, r in self._references.items()},
+            tail=self._faults.tail,
             kept=len(self.sink.parts) if isinstance(self.sink, MemorySink) else 0,
         )
 
@@ -205,6 +212,7 @@ class Recorder:
         self._at = snapshot.at.copy()
         self.log[: self._at.rows] = snapshot.log
         self._points[:] = snapshot.points
+        self._faults.tail = snapshot.tail
         self._ticks[:], self._first_rows[:] = snapshot.ticks, snapshot.first_rows
         for name, state in snapshot.references.items():
             self._references[name].restore(state)

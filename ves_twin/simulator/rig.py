@@ -62,7 +62,7 @@ class Rig:
         self, plant: Plant, clock: Clock, legs: Legs, belief: Belief, noise: NoiseStreams
     ) -> None:
         log_engine()
-        say_that_it_compiles()
+        say_that_it_compiles(run_ticks)
         self.plant = plant
         self.clock = clock
         self.model = compile_model(assemble(plant, clock.tick / clock.substeps))

@@ -25,6 +25,7 @@ from ves_twin.simulator.build import (
 from ves_twin.simulator.clock import Clock, overrun
 from ves_twin.simulator.codes import RUNNING
 from ves_twin.simulator.computers import ComputersSnapshot
+from ves_twin.simulator.log_faults import LogFaults
 from ves_twin.simulator.noise import NoiseStreams
 from ves_twin.simulator.operator import Operator, OperatorSnapshot
 from ves_twin.simulator.outcome import OUTCOME_OF_CODE, Outcome
@@ -107,6 +108,7 @@ class Simulator:
             build_references(scenario, self.plant, self.rig.parameters["servo"]),
             MemorySink() if sink is None else sink,
             self.plant.fidelity.absent_signals,
+            LogFaults(self.plant.effects),
         )
         self._settle()
         if controller is not None:

@@ -98,6 +98,8 @@ def draw_truths(
                 first = _cause(clear, detectability, PAIR_DETECTABILITY, rng)
                 rest = [h for h in clear if h.effect != first.effect]
                 causes = (first, _cause(rest, detectability, PAIR_DETECTABILITY, rng))
+            case Hidden.EDITED:
+                kind, size, causes = _edited(machine, detectability, rng)
             case Hidden.OUTSIDE if rng.random() < 0.25:  # leave one out
                 causes = (_cause(library, detectability, PAIR_DETECTABILITY, rng),)
             case Hidden.OUTSIDE:
@@ -105,6 +107,22 @@ def draw_truths(
                 size = _log_uniform(*machine.outside[kind], rng)
         truths.append(Truth(case, Hidden(sort), causes, kind, size, spread))
     return truths
+
+
+def _edited(
+    machine: BlindMachine, detectability: Detectability, rng: np.random.Generator
+) -> tuple[str, float, tuple[HiddenCause, ...]]:
+    if not machine.edits:
+        raise InvalidInputError("edits to hide", "none", "a machine that is edited")
+    kind = str(rng.choice(sorted(machine.edits)))
+    edit = machine.edits[kind]
+    size = _log_uniform(edit.low, edit.high, rng)
+    runs, (label, _, _) = detectability.base.runs, edit.parameter.partition(":")
+    names = [axis.parameter.name for axis in runs.coordinates]
+    shift = runs.depart(runs.origin, np.array([names.index(edit.parameter)]), np.array([size]))
+    effect, _, target = label.partition("@")
+    d = detectability.linear(shift)
+    return kind, size, (HiddenCause(effect, target, {edit.parameter: size}, d),)
 
 
 def _cause(

@@ -20,7 +20,8 @@ class BlindRig:
 
     Attributes:
         values: parameter -> value, commissioning errors and hidden effects together.
-        outside: kind of effect that the library lacks; empty if none.
+        outside: kind of effect that the library lacks, or an edit that makes one of it; empty if
+            none.
         size: of that.
         deployed: keys of the scenario that the rig's programs have otherwise than it says.
         background: further kinds that the library lacks, with their sizes.
@@ -39,6 +40,20 @@ class BlindRig:
         return self.background.get(kind, 0.0) + (self.size if kind == self.outside else 0.0)
 
 
+@dataclass(frozen=True)
+class Edit:
+    """A cause of the library as no class of effect makes it: by an edit of a model or a recording.
+
+    Attributes:
+        parameter: of the library, that departs by the size: "coulomb_friction@arm.q2:level".
+        low, high: smallest and largest size.
+    """
+
+    parameter: str
+    low: float
+    high: float
+
+
 class BlindMachine(ABC):
     """What a generator needs of a machine."""
 
@@ -51,6 +66,11 @@ class BlindMachine(ABC):
     @abstractmethod
     def outside(self) -> Mapping[str, tuple[float, float]]:
         """Kinds outside the library -> smallest and largest size."""
+
+    @property
+    def edits(self) -> Mapping[str, Edit]:
+        """Causes of the library that an edit makes, by its name; none unless it says so."""
+        return {}
 
     @property
     @abstractmethod

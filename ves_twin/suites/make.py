@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Callable, Mapping
 from dataclasses import replace
 from pathlib import Path
@@ -21,7 +22,7 @@ from ves_twin.suites.machines import machine_of
 from ves_twin.suites.pinned import pinned_recipe
 from ves_twin.suites.recipe import Recipe
 from ves_twin.suites.save_bare import save_bare
-from ves_twin.suites.seal import new_key, seal
+from ves_twin.suites.seal import new_key, seal, unseal
 from ves_twin.suites.suite import (
     BASELINE,
     FILE,
@@ -35,6 +36,9 @@ from ves_twin.suites.suite import (
 from ves_twin.suites.truth import Hidden, Truth
 
 Progress = Callable[[float, str], None]
+
+DRAWN = "drawn.sealed"
+"""What the cases hide, before they are recorded."""
 
 DRIFT = 0.3
 """Commissioning sd by which a rig changes between its baseline and the case, of its spread."""
@@ -72,7 +76,7 @@ def make_suite(
     )
     save_bare(standstill, folder / STANDSTILL)
     _commission(machine, recipe, folder)
-    truths = _truths(machine, recipe, progress, workers)
+    truths = _kept(folder, key, lambda: _truths(machine, recipe, progress, workers))
     for n, truth in enumerate(truths):
         progress(n / len(truths), "recordings")
         sealed = folder / truth.case / "truth.sealed"
@@ -103,6 +107,18 @@ def _key(folder: Path, key_file: Path) -> str:
     except OSError as error:
         raise FileAccessError(f"cannot write {error.filename}: {error.strerror}") from None
     return key
+
+
+def _kept(folder: Path, key: str, draw: Callable[[], list[Truth]]) -> list[Truth]:
+    """What was drawn before the suite was interrupted: sizes in sigma take many runs."""
+    path = folder / DRAWN
+    if path.is_file():
+        texts = json.loads(unseal(path.read_bytes(), key, str(path)))
+        return [Truth.from_json(text) for text in texts]
+    truths = draw()
+    with whole_file(path) as partial:
+        partial.write_bytes(seal(json.dumps([truth.to_json() for truth in truths]), key))
+    return truths
 
 
 def _commission(machine: BlindMachine, recipe: Recipe, folder: Path) -> None:
@@ -163,7 +179,7 @@ def hide(
         deployed: keys of the scenario that its programs have otherwise.
     """
     nominal, values = {p.name: p.nominal for p in machine.forward.parameters}, dict(usual)
-    for cause in truth.causes:
+    for cause in truth.causes if truth.hidden is not Hidden.EDITED else ():
         for name, departure in cause.departures.items():
             values[name] = values.get(name, nominal[name]) + departure
     kind, size = truth.outside, truth.outside_size

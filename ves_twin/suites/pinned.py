@@ -42,6 +42,8 @@ def pinned_recipe(recipe: Recipe, folder: Path, key: str) -> Recipe:
     except OSError as error:
         raise FileAccessError(f"cannot read {path}: {error.strerror}") from None
     asked = asdict(recipe) | ({"seed": begun["seed"]} if recipe.seed is None else {})
+    for recipes in (asked, begun):  # a sort that came later is not asked for by an earlier one
+        recipes["counts"] = {sort: count for sort, count in recipes["counts"].items() if count}
     other = [name for name in asked if asked[name] != begun[name]]
     if other:
         what = f"{folder}: {', '.join(other)}"

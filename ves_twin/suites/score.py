@@ -130,6 +130,7 @@ def _rows_of_others(both: Sequence[Pair]) -> dict[str, Rate]:
     kinds = [pair for pair in outside if pair[0].outside]
     left_out = [pair for pair in outside if not pair[0].outside]
     pairs = [(t, a) for t, a in both if t.hidden is Hidden.PAIR and t.d >= CLEAR]
+    edited = [(t, a) for t, a in both if t.hidden is Hidden.EDITED and a.verdict != "nothing"]
     group = [(t, a) for t, a in both if t.hidden is Hidden.CONFUSABLE and a.verdict != "nothing"]
     return {
         "a kind that the library lacks, detected: abstains": Rate.over(kinds, _abstains),
@@ -138,6 +139,9 @@ def _rows_of_others(both: Sequence[Pair]) -> dict[str, Rate]:
         f"pairs, both d >= {CLEAR:g}: both right": Rate.over(pairs, _right),
         f"pairs, both d >= {CLEAR:g}: a wrong name": Rate.over(pairs, _wrong),
         "confusable and detected: truth among the causes": Rate.over(group, _holds),
+        "a cause by an edit, detected: exact": Rate.over(edited, _right),
+        "a cause by an edit, detected: a wrong name": Rate.over(edited, _wrong),
+        "a cause by an edit: 90 % intervals that hold its size": _coverage(edited),
     }
 
 

@@ -15,6 +15,7 @@ class Hidden(StrEnum):
 
     outside: a kind that the library lacks, or one of the library that the diagnosis must exclude.
     confusable: one of a group that a programme hardly tells apart.
+    edited: a cause of the library that no class of effect made.
     """
 
     NONE = "none"
@@ -22,6 +23,7 @@ class Hidden(StrEnum):
     PAIR = "pair"
     OUTSIDE = "outside"
     CONFUSABLE = "confusable"
+    EDITED = "edited"
 
 
 @dataclass(frozen=True)
@@ -59,7 +61,7 @@ class Truth:
         case: name of the case.
         hidden: which sort.
         causes: effects of the library.
-        outside: kind outside the library and its size; empty if none.
+        outside: kind outside the library, or the edit that makes the cause; empty if none.
         outside_size: in the kind's unit.
         spread: commissioning errors, in declared sd.
         values: of every parameter that was drawn or hidden; empty until it is recorded.

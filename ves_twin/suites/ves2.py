@@ -10,6 +10,7 @@ from typing import final
 import mujoco
 import numpy as np
 from scipy.signal import lfilter
+from scipy.spatial.transform import Rotation
 
 from ves_twin.core.errors import InvalidInputError
 from ves_twin.core.recording.recording import Recording
@@ -23,7 +24,7 @@ from ves_twin.scenario.schema import Scenario
 from ves_twin.simulator.recorder import MemorySink
 from ves_twin.simulator.simulate import recording_info
 from ves_twin.simulator.simulator import Simulator
-from ves_twin.suites.machine import BlindMachine, BlindRig
+from ves_twin.suites.machine import BlindMachine, BlindRig, Edit
 
 SECONDS = 10.0
 """Length of a record [s]."""
@@ -44,16 +45,32 @@ OUTSIDE = {
     "sensor_line": (0.5, 8.0),
     "sensor_square": (0.01, 0.2),
     "sensor_hysteresis": (0.5, 8.0),
-    "stale_lengths": (1.0, 4.0),
     "gear_ripple": (0.3, 5.0),
     "arm_stop": (20.0, 400.0),
     "platform_drag": (200.0, 5000.0),
     "clock_skew": (2e-4, 3e-3),
+    "clipped_channel": (0.3, 0.9),
+    "encoder_slip": (2e-3, 3e-2),
 }
 """Kinds that the library lacks: a step of the sensor's Fz [N], a line of 11.3 Hz on it [N], its
-square law at full scale [1], its hysteresis [N]; one transducer some cycles late; ripple of the q2
-gear [N m]; a soft stop within the range of q2 [N m/rad]; square-law drag on the platform
-[N s^2/m^2]; the arm's clock running fast [1]."""
+square law at full scale [1], its hysteresis [N]; ripple of the q2 gear [N m]; a soft stop within
+the range of q2 [N m/rad]; square-law drag on the platform [N s^2/m^2]; the arm's clock running fast
+[1]; Fz cut off at a share of its largest [1]; the encoder of q3 slipping half way [rad]."""
+
+LATE_CLOCK = "late_sensor_clock"
+
+EDITS = {
+    "payload_off_centre": Edit("mass_centre@arm.link3.y:shift", 0.01, 0.08),
+    "leaning_gravity": Edit("base_tilt@rig:roll", 1e-3, 2e-2),
+    "friction_loss": Edit("coulomb_friction@arm.q2:level", 2.0, 20.0),
+    LATE_CLOCK: Edit("sensor_delay@sensor:delay", 2e-3, 1.5e-2),
+    "crossed_wires": Edit("cross_talk@sensor.mx.fz:share", 5e-3, 5e-2),
+    "logged_length": Edit("recorder_offset@leg.length.3:offset", 4e-4, 5e-3),
+    "late_length": Edit("recorder_delay@leg.length.4:delay", 5e-3, 4e-2),
+    "logged_angle": Edit("recorder_offset@arm.q.2:offset", 1e-3, 1e-2),
+}
+"""What makes causes of the library here, without a class of effect: edits of the compiled model
+(centre of mass of the last link along its y, gravity, friction loss of q2) and of the recording."""
 
 
 @final
@@ -76,6 +93,11 @@ class BlindVes2(BlindMachine):
     def outside(self) -> Mapping[str, tuple[float, float]]:
         """Edits of what was recorded, of the compiled model, and forces of its own."""
         return OUTSIDE
+
+    @property
+    def edits(self) -> Mapping[str, Edit]:
+        """Of the compiled model, and of what was recorded."""
+        return EDITS
 
     @property
     def confusable(self) -> tuple[str, ...]:
@@ -102,16 +124,14 @@ class BlindVes2(BlindMachine):
         plant = plant.with_values(
             {name: self.plant.parameters.array(name) * rng.uniform(*LEVELS) for name in NOISES}
         )
-        sim = Simulator(
-            plant,
-            self._programme(programme, {"run.substeps": 2, **rig.deployed}),
-            int(rng.integers(2**31)),
-            MemorySink(),
-        )
+        log = {"run.log": "tick"} if rig.outside == LATE_CLOCK else {}
+        scenario = self._programme(programme, {"run.substeps": 2, **rig.deployed, **log})
+        sim = _Edited(rig, plant, scenario, int(rng.integers(2**31)))
         sim.model.opt.integrator = mujoco.mjtIntegrator.mjINT_IMPLICIT
-        _edit(sim, rig)
         _run(sim, rig, rng)
         rows = _collected(sim, self._programme(programme, {"run.substeps": 2}))
+        if log:
+            rows = _sampled_late(rows, sim.rig.clock.admittance, rig.size)
         signals = {name: np.array(values) for name, values in rows.signals.items()}
         signals["sensor.wrench"] += offsets
         _edit_signals(signals, rows.time, rig, rng, self.plant)
@@ -137,12 +157,32 @@ class BlindVes2(BlindMachine):
         return Scenario.load("identify_fast", changes | dict(more or {}))
 
 
-def _edit(sim: Simulator, rig: BlindRig) -> None:
-    if rig.outside == "arm_stop":
-        joint = sim.model.joint("arm/q2").id
-        sim.model.jnt_limited[joint] = 1
-        sim.model.jnt_range[joint] = (np.deg2rad(35.0), np.deg2rad(170.0))
-        sim.model.jnt_solref[joint] = (-rig.size, -0.1 * rig.size)
+class _Edited(Simulator):
+    """With edits of the compiled model, in place before the rig settles."""
+
+    def __init__(self, hidden: BlindRig, plant: Plant, scenario: Scenario, seed: int) -> None:
+        self._hidden = hidden
+        super().__init__(plant, scenario, seed, MemorySink())
+
+    def _settle(self) -> None:
+        _edit(self.model, self._hidden)
+        super()._settle()
+
+
+def _edit(model: mujoco.MjModel, rig: BlindRig) -> None:
+    match rig.outside:
+        case "arm_stop":
+            joint = model.joint("arm/q2").id
+            model.jnt_limited[joint] = 1
+            model.jnt_range[joint] = (np.deg2rad(35.0), np.deg2rad(170.0))
+            model.jnt_solref[joint] = (-rig.size, -0.1 * rig.size)
+        case "payload_off_centre":
+            model.body_ipos[model.body("arm/link3").id, 1] += rig.size
+        case "leaning_gravity":
+            turn = Rotation.from_rotvec([-rig.size, 0.0, 0.0])
+            model.opt.gravity[:] = turn.apply(model.opt.gravity)
+        case "friction_loss":
+            model.dof_frictionloss[model.joint("arm/q2").dofadr[0]] += rig.size
 
 
 def _run(sim: Simulator, rig: BlindRig, rng: np.random.Generator) -> None:
@@ -156,6 +196,8 @@ def _run(sim: Simulator, rig: BlindRig, rng: np.random.Generator) -> None:
     for k in range(count):
         if sim.done:
             break
+        if rig.outside == "encoder_slip" and k == count // 2:
+            sim.rig.parameters[0]["drive"]["encoder_offset"][2] += rig.size
         force = pushes[k]
         if rig.outside == "platform_drag":
             velocity = sim.data.qvel[sim.rig.layout.platform_dof :][:3]
@@ -177,6 +219,16 @@ def _collected(sim: Simulator, written: Scenario) -> Recording:
     return Recording(time, measured, info)
 
 
+def _sampled_late(rows: Recording, every: int, delay: float) -> Recording:
+    """Every so many rows, with the wrench as it was a delay before each of them."""
+    time = rows.time[::every]
+    late = [np.interp(time - delay, rows.time, column) for column in rows["sensor.wrench"].T]
+    signals = {name: values[::every] for name, values in rows.signals.items()}
+    signals["sensor.wrench"] = np.stack(late, axis=1)
+    info = replace(rows.info, period=every * rows.info.period)
+    return Recording(time, signals, info)
+
+
 def _edit_signals(
     signals: dict[str, FloatArray],
     time: FloatArray,
@@ -185,25 +237,46 @@ def _edit_signals(
     plant: Plant,
 ) -> None:
     """What edits of the record make of it, in place."""
-    wrench = signals["sensor.wrench"]
+    size = rig.size
+    _edit_wrench(signals["sensor.wrench"], time, rig, rng, plant)
+    match rig.outside:
+        case "logged_length":
+            signals["leg.length"][:, 2] += size
+        case "late_length":
+            lengths = signals["leg.length"]
+            lengths[:, 3:4] = _late(lengths[:, 3:4], time, size)
+        case "logged_angle":
+            signals["arm.q"][:, 1] += size
+        case "gear_ripple":
+            signals["arm.torque"][:, 1] += size * np.sin(60.0 * signals["arm.q"][:, 1])
+        case "clock_skew":
+            for name in ("arm.q", "arm.torque"):
+                signals[name] = _skewed(signals[name], time, size)
+
+
+def _edit_wrench(
+    wrench: FloatArray, time: FloatArray, rig: BlindRig, rng: np.random.Generator, plant: Plant
+) -> None:
     fz, size = wrench[:, 2], rig.size
+    ranges = plant.parameters.array("sensor.range")
     match rig.outside:
         case "sensor_offset_step":
             fz += size * (time > time[-1] * rng.uniform(0.3, 0.7))
         case "sensor_line":
             fz += size * np.sin(2.0 * np.pi * 11.3 * time)
         case "sensor_square":
-            fz += size * fz**2 / float(plant.parameters.array("sensor.range")[2])
+            fz += size * fz**2 / float(ranges[2])
         case "sensor_hysteresis":
             fz += size * np.sign(np.gradient(lfilter([0.2], [1.0, -0.8], fz)))
-        case "stale_lengths":
-            lengths, late = signals["leg.length"], round(size)
-            lengths[late:, 3] = lengths[:-late, 3].copy()
-        case "gear_ripple":
-            signals["arm.torque"][:, 1] += size * np.sin(60.0 * signals["arm.q"][:, 1])
-        case "clock_skew":
-            for name in ("arm.q", "arm.torque"):
-                signals[name] = _skewed(signals[name], time, size)
+        case "clipped_channel":
+            limit = size * np.max(np.abs(fz))
+            np.clip(fz, -limit, limit, out=fz)
+        case "crossed_wires":
+            wrench[:, 3] += size * ranges[3] / ranges[2] * fz
+
+
+def _late(values: FloatArray, time: FloatArray, delay: float) -> FloatArray:
+    return np.stack([np.interp(time - delay, time, column) for column in values.T], axis=1)
 
 
 def _skewed(values: FloatArray, time: FloatArray, skew: float) -> FloatArray:

@@ -20,8 +20,9 @@ from ves_twin.diagnosis.residuals.noise import NoiseSource
 from ves_twin.diagnosis.settings import Settings
 from ves_twin.machines.machine import SETPOINTS, Machine, Material, Named
 from ves_twin.machines.mjcf.description import Mode
-from ves_twin.machines.mjcf.excitations import BANDS, BORNE, offered, write_inputs
+from ves_twin.machines.mjcf.excitations import BANDS, offered, write_inputs
 from ves_twin.machines.mjcf.forward import MjcfForward
+from ves_twin.machines.mjcf.inputs import BORNE
 from ves_twin.machines.tolerance import Tolerance
 from ves_twin.report.comparison.page import comparison_page
 
@@ -151,8 +152,8 @@ def test_what_is_offered_keeps_typical_travel_and_speed_and_reads_back(machine, 
         )
 
 
-def test_a_plan_of_an_mjcf_machine_says_what_an_excitation_could_find(machine):
-    settings = Settings(nulls=20)
+def test_a_plan_of_an_mjcf_machine_says_what_an_excitation_could_find(tmp_path):
+    machine, settings = Machine.load(str(slide.write_files(tmp_path))), Settings(nulls=20)
     plan = vt.plan(machine, "multisine", quick=True, settings=settings)
     assert plan.programme == "multisine"
     assert {p.effect for p in plan.prospects if p.smallest is not None} >= {"coulomb_friction"}

@@ -71,8 +71,8 @@ def blind_record(seed, hidden=None, outside="", size=0.0):
 
 
 @pytest.fixture(scope="module")
-def settings(tmp_path_factory):
-    return Settings(nulls=60, cache=tmp_path_factory.mktemp("banks"))
+def settings(banks):
+    return Settings(nulls=60, cache=banks)
 
 
 @pytest.mark.parametrize("refined", [False, True])

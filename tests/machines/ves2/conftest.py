@@ -9,11 +9,15 @@ from once import once
 import ves_twin as vt
 from ves_twin.effects.registry import build_effect
 
+FAST = "ves2_pressure_fast"
+
 CHANGES = {
+    "plant": FAST,
     "run.duration": 8.0,
     "arm.moves": [{"start": 0.5, "duration": 3.0, "to": [0.8, 0.4, 0.3]}],
 }
-"""Eight seconds of the quick programme: every leg and joint moves."""
+"""Eight seconds of the quick programme: every leg and joint moves. Legs without bodies suffice:
+tests/cli/test_compare_command.py compares with them."""
 
 
 @pytest.fixture(scope="session")
@@ -32,7 +36,7 @@ def faulty(scenario):
 
     def run(kind: str, target: str, seed: int = 4, **sizes: float) -> vt.Recording:
         effect = build_effect(kind, target, sizes)
-        plant = vt.Plant.load("ves2_pressure").extended(effect)
+        plant = vt.Plant.load(FAST).extended(effect)
         return once(vt.simulate, scenario, plant, seed)
 
     return run

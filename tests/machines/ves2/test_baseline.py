@@ -12,8 +12,8 @@ from ves_twin.suites.machine import BlindRig
 
 
 @pytest.fixture(scope="module")
-def settings(tmp_path_factory):
-    return Settings(nulls=40, cache=tmp_path_factory.mktemp("banks"))
+def settings(banks):
+    return Settings(nulls=40, cache=banks)
 
 
 def record(seed, programme="train", hidden=None):

@@ -16,6 +16,8 @@ from ves_twin.report.comparison.page import comparison_page
 from ves_twin.report.comparison.words import gap_sentence, place_sentence, trust_sentence
 from ves_twin.scenario.experiment import Experiment
 
+FAST = "ves2_pressure_fast"
+
 
 def one(recording, **options):
     return compare([Named("run", recording)], **options).recordings[0]
@@ -161,7 +163,8 @@ def test_before_and_after_differ_where_the_rig_changed(healthy, sticky, scenario
 
 @pytest.mark.slow
 def test_another_programme_is_compared_by_what_the_plant_leaves_of_each(healthy):
-    changes = {"run.duration": 8.0, "platform.motion.amplitude": [0.02, 0.02, 0.02, 0.0, 0.0, 0.0]}
+    amplitude = [0.02, 0.02, 0.02, 0.0, 0.0, 0.0]
+    changes = {"plant": FAST, "run.duration": 8.0, "platform.motion.amplitude": amplitude}
     other = vt.simulate(vt.Scenario.load("identify_fast", changes), seed=5)
     result = compare([Named("a", healthy)], against=Named("b", other)).recordings[0]
     assert result.basis is Basis.RESIDUAL
@@ -203,7 +206,7 @@ def test_a_recording_that_begins_in_motion_forgets_its_start(healthy):
 def test_an_undeclared_payload_is_seen_and_a_declared_one_is_not(scenario):
     from ves_twin.plant.known_weight import hang_weight
 
-    run = vt.simulate(scenario, hang_weight(vt.Plant.load("ves2_pressure"), 1.0), seed=6)
+    run = vt.simulate(scenario, hang_weight(vt.Plant.load(FAST), 1.0), seed=6)
     assert one(run).beyond_noise
     assert one(run, experiment=Experiment(payload=1.0)).beyond_noise == ()
 

@@ -12,8 +12,10 @@ from ves_twin.core.recording.recording import Recording
 from ves_twin.data.quality.check import Grade
 from ves_twin.effects.magnitude import Sign
 from ves_twin.effects.registry import EFFECTS, build_effect
+from ves_twin.machines.load import machine_of, named
+from ves_twin.machines.machine import Material
 from ves_twin.machines.ves2.inputs import prepare_inputs
-from ves_twin.machines.ves2.leg_program_check import check_leg_program
+from ves_twin.machines.ves2.leg_program_check import check_leg_program, misread_legs
 
 PLANT = vt.Plant.load("ves2_pressure_fast")
 BELIEVED = PLANT.parameters.number("hydraulics.full_speed")
@@ -27,6 +29,7 @@ FIRST = [
     for kind in EFFECTS
     if kind not in ELSEWHERE
     for row in EFFECTS[kind].rows
+    if not EFFECTS[kind](row.targets[0]).log
 ]
 
 
@@ -52,6 +55,7 @@ def test_a_log_as_the_program_read_it_passes(place):
     assert check(recording).grade is Grade.PASSED
     wrong = check(logged(recording, 1, 4, by=-1e-3))
     assert wrong.grade is Grade.FAILED
+    assert misread_legs([wrong, check(recording)]) == (2, 5)
     assert wrong.message.startswith("leg.length.2 by -1.00 mm, leg.length.5 by -1.00 mm is off")
 
 
@@ -59,8 +63,34 @@ def test_an_offset_in_the_log_alone_is_refused_and_named_in_place_of_a_valve_nul
     """It was once named `valve_null`, firmly."""
     recording = run()
     prepare_inputs([recording], PLANT, "recording")
+    both = [recording, logged(recording, 2, by=2.5e-3)]
     with pytest.raises(VesTwinError, match=r"recording 2: leg.length.3 by \+2.50 mm"):
-        prepare_inputs([recording, logged(recording, 2, by=2.5e-3)], PLANT, "recording")
+        prepare_inputs(both, PLANT, "recording")
+    (flaw,) = prepare_inputs(both, PLANT, "recording", misread=True).flaws
+    assert flaw.message.startswith("recording 2: leg.length.3 by +2.50 mm")
+
+
+@pytest.mark.parametrize(
+    ("kind", "target", "sizes", "legs"),
+    [
+        ("recorder_gain", "leg.length.4", {"gain": 2e-3}, (4,)),
+        ("recorder_delay", "leg.length.5", {"delay": 0.012}, (5,)),
+        ("recorder_cross_talk", "leg.length.2.1", {"share": 1e-3}, (2,)),
+        ("recorder_delay", "arm.q", {"delay": 0.02}, ()),
+    ],
+)
+def test_other_faults_of_the_log_are_told_by_leg_too(kind, target, sizes, legs):
+    assert misread_legs([check(run(build_effect(kind, target, sizes)))]) == legs
+
+
+def test_a_machine_suspects_the_log_of_what_is_diagnosed_and_refuses_it_of_a_baseline():
+    sound = run()
+    off = logged(sound, 2, by=2.5e-3)
+    machine = machine_of(PLANT)
+    given = Material(named([off], "recording"))
+    assert machine.prepare(given).machine.misread == (3,)
+    with pytest.raises(VesTwinError, match=r"baseline recording 1: leg.length.3"):
+        machine.prepare(replace(given, baseline=named([off], "baseline recording")))
 
 
 def test_an_offset_of_a_fiftieth_of_a_millimetre_is_borne_and_a_third_is_not():

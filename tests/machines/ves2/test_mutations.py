@@ -75,8 +75,8 @@ ABSTAINS = "a kind that the library lacks, detected: abstains"
 
 
 @pytest.fixture(scope="module")
-def settings(tmp_path_factory):
-    return Settings(nulls=40, cache=tmp_path_factory.mktemp("banks"))
+def settings(banks):
+    return Settings(nulls=40, cache=banks)
 
 
 @pytest.fixture(scope="module")

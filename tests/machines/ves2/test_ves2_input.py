@@ -18,7 +18,7 @@ from ves_twin.simulator.replay import replay_scenario
 
 @pytest.fixture(scope="module")
 def plant():
-    return vt.Plant.load("ves2_pressure")
+    return vt.Plant.load("ves2_pressure_fast")
 
 
 @pytest.fixture(scope="module")

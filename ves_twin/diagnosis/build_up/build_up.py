@@ -20,7 +20,8 @@ from ves_twin.diagnosis.build_up.select import Selector
 from ves_twin.diagnosis.build_up.sizes import half_widths
 from ves_twin.diagnosis.build_up.trials import Trial
 from ves_twin.diagnosis.evidence import Evidence
-from ves_twin.diagnosis.explain import Explanation, FitContext
+from ves_twin.diagnosis.explanation import Explanation
+from ves_twin.diagnosis.fit_context import FitContext
 from ves_twin.diagnosis.linearise import linearise
 from ves_twin.diagnosis.preprocess import Dataset
 from ves_twin.diagnosis.refine import Fit, bare_residual, refine

@@ -7,7 +7,7 @@ from time import perf_counter
 
 from ves_twin.diagnosis.assess import Assessment
 from ves_twin.diagnosis.evidence import Evidence
-from ves_twin.diagnosis.explain import Explanation
+from ves_twin.diagnosis.explanation import Explanation
 from ves_twin.diagnosis.gain import Gain
 from ves_twin.diagnosis.law.finding import law_finding
 from ves_twin.diagnosis.law.place import LawForward

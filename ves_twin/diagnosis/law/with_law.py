@@ -10,43 +10,34 @@ import numpy as np
 
 from ves_twin.core.errors import InvalidInputError
 from ves_twin.core.types import FloatArray
-from ves_twin.diagnosis.forward import Channel, Excitation, Hypothesis, Parameter
+from ves_twin.diagnosis.forward import Excitation, Hypothesis, Parameter
+from ves_twin.diagnosis.forward_wrapper import ForwardWrapper
 from ves_twin.diagnosis.law.candidate import Candidate
 from ves_twin.diagnosis.law.place import LawForward
 
 
 @dataclass(frozen=True)
-class WithLaw:
+class WithLaw(ForwardWrapper):
     """A `Forward`: the numbers of laws are parameters of the plant, and each law is a cause.
 
     Attributes:
-        plant: the plant.
+        forward: the plant.
         candidates: laws with open numbers; none is the plant itself.
     """
 
-    plant: LawForward
+    forward: LawForward
     candidates: tuple[Candidate, ...] = ()
 
     @property
     def identity(self) -> str:
         """See `Forward`."""
-        return " with ".join([self.plant.identity, *(one.label for one in self.candidates)])
-
-    @property
-    def drive(self) -> tuple[str, ...]:
-        """See `Forward`."""
-        return self.plant.drive
-
-    @property
-    def channels(self) -> tuple[Channel, ...]:
-        """See `Forward`."""
-        return self.plant.channels
+        return " with ".join([self.forward.identity, *(one.label for one in self.candidates)])
 
     @cached_property
     def parameters(self) -> tuple[Parameter, ...]:
         """Of the plant, and the numbers of the laws."""
         own = (p for one in self.candidates for p in one.parameters)
-        return (*self.plant.parameters, *own)
+        return (*self.forward.parameters, *own)
 
     def __post_init__(self) -> None:
         names = [p.name for p in self.parameters]
@@ -66,4 +57,4 @@ class WithLaw:
             one.law(np.array([values.get(p.name, p.nominal) for p in one.parameters]))
             for one in self.candidates
         ]
-        return self.plant.simulate(programme, values, refined, laws)
+        return self.forward.simulate(programme, values, refined, laws)

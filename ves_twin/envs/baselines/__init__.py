@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+from ves_twin.envs.baselines.believed_retuning import BelievedRetuning
 from ves_twin.envs.baselines.chase import Chase
+from ves_twin.envs.baselines.diagnosed_retuning import DiagnosedRetuning
+from ves_twin.envs.baselines.fitted_retuning import FittedRetuning
 from ves_twin.envs.baselines.fixed_tuning import FixedTuning
 from ves_twin.envs.baselines.hot_spot_path import HotSpotPath
 from ves_twin.envs.baselines.inertial_damper import InertialDamper
@@ -31,6 +34,9 @@ BASELINES: dict[str, type[Policy]] = {
     "fixed_tuning": FixedTuning,
     "residual_filter": ResidualFilter,
     "chase": Chase,
+    "believed_retuning": BelievedRetuning,
+    "diagnosed_retuning": DiagnosedRetuning,
+    "fitted_retuning": FittedRetuning,
 }
 """Name on the command line -> policy."""
 
@@ -41,5 +47,6 @@ EXPERTS = {
     "VesTwin/AdmittanceTuning-v0": "fixed_tuning",
     "VesTwin/GravityCompensation-v0": "residual_filter",
     "VesTwin/MicrogravityCapture-v0": "chase",
+    "VesTwin/DiagnoseAndRetune-v0": "diagnosed_retuning",
 }
 """Environment -> the baseline with the best score of docs/environments.md that needs no network."""

@@ -33,7 +33,7 @@ class InertialDamper(Policy):
     """
 
     def __init__(self, briefing: TaskSpec) -> None:
-        if briefing.emulated is None or "arm.rate" not in briefing.actions.slices:
+        if "arm.rate" not in briefing.actions.slices or briefing.emulated is None:
             what = "VesTwin/VibrationDamping-v0"
             raise InvalidInputError("InertialDamper", "no arm on an emulated base", what)
         self._known = briefing

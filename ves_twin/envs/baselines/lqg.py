@@ -32,7 +32,8 @@ class Lqg(Policy):
     def __init__(self, briefing: TaskSpec) -> None:
         from control import sample_system  # slow to import
 
-        if briefing.emulated is None or not np.any(briefing.emulated.stiffness):
+        arm = "arm.rate" in briefing.actions.slices
+        if not (arm and briefing.emulated and np.any(briefing.emulated.stiffness)):
             raise InvalidInputError("Lqg", "no elastic base", "VesTwin/VibrationDamping-v0")
         self._known = briefing
         prior = briefing.prior()

@@ -36,7 +36,7 @@ class Pped(Policy):
     @classmethod
     def build(cls, briefing: TaskSpec) -> Pped:
         """For an environment of the arm on a base."""
-        if briefing.emulated is None:
+        if "arm.rate" not in briefing.actions.slices or briefing.emulated is None:
             raise InvalidInputError("Pped", "no emulated base", "VesTwin/VibrationDamping-v0")
         return cls(briefing)
 

@@ -11,7 +11,7 @@ import numpy as np
 from dm_control.rl import control
 
 from ves_twin.core.errors import InvalidInputError, UnknownNameError
-from ves_twin.envs import ENVIRONMENTS
+from ves_twin.envs import RIG_ENVIRONMENTS
 from ves_twin.envs.dm.rig_physics import RigPhysics
 from ves_twin.envs.dm.rig_task import RigTask
 from ves_twin.envs.rig_env import rig_env
@@ -28,7 +28,7 @@ def _task(identity: str) -> str:
     return re.sub(r"(?<=[a-z])(?=[A-Z])", "_", name).lower()
 
 
-_IDS = {_task(identity): identity for identity in ENVIRONMENTS}
+_IDS = {_task(identity): identity for identity in RIG_ENVIRONMENTS}
 
 ALL_TASKS = tuple((DOMAIN, task) for task in _IDS)
 """(domain, task), as dm_control.suite has them."""

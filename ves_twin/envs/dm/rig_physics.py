@@ -11,7 +11,8 @@ from dm_control.mujoco import wrapper
 
 from ves_twin.core.errors import InvalidInputError
 from ves_twin.core.types import FloatArray
-from ves_twin.envs.rig_env import Observation, rig_env
+from ves_twin.envs.rig_env import rig_env
+from ves_twin.envs.task_env import Observation
 
 
 @final

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import csv
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
 from io import StringIO
 from pathlib import Path
 
@@ -12,13 +11,12 @@ import numpy as np
 
 from ves_twin.core.recording.recording import Recording
 from ves_twin.core.types import FloatArray
-from ves_twin.core.units import to_si
 from ves_twin.core.whole_file import write_whole
 from ves_twin.diagnosis.forward import Excitation
 from ves_twin.machines.machine import SETPOINTS
-from ves_twin.machines.mjcf.description import Mode, Span
+from ves_twin.machines.mjcf.description import Mode
 from ves_twin.machines.mjcf.forward import MjcfForward
-from ves_twin.machines.mjcf.joint_units import joint_units
+from ves_twin.machines.mjcf.inputs import Input, inputs_of, strain
 
 SECONDS = 10.0
 """Length of an excitation [s]."""
@@ -42,29 +40,8 @@ BANDS: Mapping[str, tuple[float, float]] = {
 HIGHEST = 0.4
 """No tone is above this share of the analysis rate."""
 
-BORNE = 1.5
-"""Times typical speed and travel that a joint may reach: what is typical is not the most."""
-
 HALVINGS = 6
 """Times that an effort is halved until its motion keeps within travel and speed."""
-
-
-@dataclass(frozen=True)
-class _Input:
-    """What is fed in at a joint, an effort or a position: its typical sizes, where it rests."""
-
-    signal: str
-    joint: str
-    commanded: bool
-    effort: float
-    speed: float
-    travel: float
-    rest: float
-
-    @property
-    def corner(self) -> float:
-        """Frequency [Hz] of the sine that has both typical travel and typical speed."""
-        return self.speed / (np.pi * self.travel)
 
 
 def offered(
@@ -83,7 +60,7 @@ def offered(
     Returns:
         None where a joint has no typical sizes, cannot be watched, or is neither hinge nor slide.
     """
-    inputs = _inputs(forward, like)
+    inputs = inputs_of(forward, like)
     rate = forward.rig.description.rate
     if not inputs or forward.rig.description.clock.poses:
         return ()
@@ -92,7 +69,7 @@ def offered(
         period = float(like.time[-1] - like.time[0]) / (len(like) - 1)
     time = np.asarray(period * np.arange(round(seconds / period)), float)
     made = (
-        _borne(forward, Excitation(name, time, _drive(forward, rows, like), rate=rate), inputs)
+        _borne(forward, Excitation(name, time, drive_of(forward, rows, like), rate=rate), inputs)
         for name, rows in _menu(inputs, time, rate)
     )
     return tuple(one for one in made if one is not None)
@@ -117,49 +94,8 @@ def write_inputs(forward: MjcfForward, excitation: Excitation, folder: Path) -> 
     write_whole(folder / SETPOINTS, text.getvalue())
 
 
-def _inputs(forward: MjcfForward, like: Recording | None) -> list[_Input]:
-    """One for each signal fed in; none at all where one of them cannot be bounded."""
-    told, model = forward.rig.description, forward.rig.model
-    places = {
-        Mode.MOTION: [(s, j) for j, s in told.drive.joints.items()],
-        Mode.CONTROL: [(s, forward.joint_of(a)) for a, s in told.drive.actuators.items()],
-        Mode.REFERENCE: [(c.reference, c.joint) for c in told.controllers.values()],
-    }[forward.mode]
-    moved = told.drive.joints if forward.mode is Mode.MOTION else forward.imposed
-    found = []
-    for signal, joint in [*places, *((s, j) for j, s in forward.imposed.items())]:
-        if not joint:
-            return []
-        effort, speed, travel = _sizes(forward, joint)
-        commanded = forward.mode is Mode.CONTROL and joint not in moved
-        needed = (effort, speed, travel) if commanded else (speed, travel)
-        watched = joint in moved or forward.position_of(joint) in forward.compared
-        if min(needed) <= 0.0 or not watched or len(told.signals[signal].columns) != 1:
-            return []
-        first = float(model.qpos0[model.jnt_qposadr[model.joint(joint).id]])
-        known = forward.position_of(joint)
-        if like is not None and known in like.signals:
-            first = float(like[known][0, 0])
-        rest = 0.0 if commanded else first
-        found.append(_Input(signal, joint, commanded, effort, speed, travel, rest))
-    return found
-
-
-def _sizes(forward: MjcfForward, joint: str) -> tuple[float, float, float]:
-    """Typical effort, speed and travel of a joint, SI; zero where the file says none."""
-    span = forward.rig.description.typical.joint.get(joint, Span())
-    place, speed = joint_units(forward.rig.model, joint)
-    units = ("N*m" if place == "rad" else "N", speed, place)
-    given = (span.effort, span.speed, span.travel)
-    pairs = zip(given, units, strict=True)
-    effort, fastest, travel = (
-        to_si(value, unit, f"typical.joint.{joint}") for value, unit in pairs
-    )
-    return effort, fastest, travel
-
-
 def _menu(
-    inputs: list[_Input], time: FloatArray, rate: float
+    inputs: list[Input], time: FloatArray, rate: float
 ) -> Iterator[tuple[str, dict[str, FloatArray]]]:
     """Name and rows (n, 1) by signal."""
     still = {one.signal: np.full((len(time), 1), one.rest) for one in inputs}
@@ -169,11 +105,7 @@ def _menu(
         for one in inputs:
             band = np.minimum([low * one.corner, high * one.corner], HIGHEST * rate)
             shape = _multisine(time, (float(band[0]), float(band[1])), rng)
-            size = one.effort
-            if not one.commanded:
-                fastest = float(np.max(np.abs(np.gradient(shape, time))))
-                size = min(0.5 * one.travel, one.speed / fastest)
-            rows[one.signal] = still[one.signal] + size * shape[:, None]
+            rows[one.signal] = one.rows(shape, time)
         yield name, rows
         if len(inputs) > 1:
             for one in inputs:
@@ -189,7 +121,7 @@ def _multisine(time: FloatArray, band: tuple[float, float], rng: np.random.Gener
     return np.asarray(shape / np.max(np.abs(shape)))
 
 
-def _drive(
+def drive_of(
     forward: MjcfForward, rows: Mapping[str, FloatArray], like: Recording | None
 ) -> dict[str, FloatArray]:
     """What is fed in, and the start of each joint whose start is measured, held."""
@@ -205,7 +137,7 @@ def _drive(
 
 
 def _borne(
-    forward: MjcfForward, excitation: Excitation, inputs: Sequence[_Input]
+    forward: MjcfForward, excitation: Excitation, inputs: Sequence[Input]
 ) -> Excitation | None:
     """The excitation as large as the nominal machine bears it; None if it bears it at no size."""
     if forward.mode is Mode.MOTION:
@@ -213,24 +145,8 @@ def _borne(
     drive = dict(excitation.drive)
     for _ in range(HALVINGS):
         made = Excitation(excitation.name, excitation.time, drive, rate=excitation.rate)
-        if _bears(forward, made):
+        if strain(forward, made) <= 1.0:
             return made
         for one in inputs:
             drive[one.signal] = one.rest + 0.5 * (drive[one.signal] - one.rest)
     return None
-
-
-def _bears(forward: MjcfForward, excitation: Excitation) -> bool:
-    """Whether every joint with typical sizes keeps them."""
-    names = [channel.name for channel in forward.channels]
-    moved = forward.simulate(excitation, {})
-    for joint in forward.rig.description.typical.joint:
-        known = forward.position_of(joint)
-        _, speed, travel = _sizes(forward, joint)
-        if known in names and speed > 0.0 and travel > 0.0:
-            path = moved[:, names.index(known)]
-            fastest = np.max(np.abs(np.gradient(path, excitation.time)))
-            widest = np.max(np.abs(path - path[0]))
-            if not (widest <= BORNE * travel and fastest <= BORNE * speed):  # NaN: no
-                return False
-    return bool(np.all(np.isfinite(moved)))

@@ -26,6 +26,7 @@ from ves_twin.machines.mjcf.law_table import FACTORS as LAW_FACTORS
 from ves_twin.machines.mjcf.law_table import LawTable
 from ves_twin.machines.mjcf.load_description import load_description
 from ves_twin.machines.mjcf.places import anywhere, place_of
+from ves_twin.machines.mjcf.probe import Probe
 from ves_twin.machines.mjcf.stiff_friction import stiff_friction
 from ves_twin.machines.mjcf.unfolded import unfolded
 
@@ -82,12 +83,14 @@ class Rig:
         folder: that the model's path starts from.
         file: name or path it was loaded by.
         payloads: known point masses on it, each a body, a mass [kg] and a place in the body [m].
+        probes: sensors beside those of the model file.
     """
 
     description: RigDescription
     folder: Path
     file: str = ""
     payloads: tuple[tuple[str, float, tuple[float, float, float]], ...] = ()
+    probes: tuple[Probe, ...] = ()
 
     @staticmethod
     def load(name_or_path: str) -> Rig:
@@ -121,7 +124,8 @@ class Rig:
             raise FileAccessError(f"model file '{path}' of rig {self.description.name} is missing")
         log_engine()
         try:
-            model = self._loaded(path) if self.payloads else mujoco.MjModel.from_xml_path(str(path))
+            edited = self.payloads or self.probes
+            model = self._loaded(path) if edited else mujoco.MjModel.from_xml_path(str(path))
         except (ValueError, mujoco.FatalError) as error:
             raise InvalidInputError(str(path), one_line(error), "a MuJoCo model") from None
         stiff_friction(model)
@@ -221,7 +225,12 @@ class Rig:
     @cached_property
     def identity(self) -> str:
         """Hash of both files' content and of MuJoCo's version."""
-        parts = (self.description.model_dump_json(), mujoco.__version__, *self.payloads)
+        parts = (
+            self.description.model_dump_json(),
+            mujoco.__version__,
+            *self.payloads,
+            *self.probes,
+        )
         digest = hashlib.sha256(repr(parts).encode())
         digest.update((self.folder / self.description.model).read_bytes())
         return digest.hexdigest()[:16]
@@ -239,8 +248,10 @@ class Rig:
         _ = self.hypotheses, self.parameters
 
     def _loaded(self, path: Path) -> mujoco.MjModel:
-        """The model with its payloads: bodies without a joint and without extent."""
+        """The model with its payloads, bodies without a joint and without extent, and probes."""
         spec = mujoco.MjSpec.from_file(str(path))
+        for probe in self.probes:
+            probe.add(spec)
         for name, mass, place in self.payloads:
             body = spec.body(name)
             if body is None or name == "world":

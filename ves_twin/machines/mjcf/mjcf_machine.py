@@ -16,6 +16,7 @@ from ves_twin.data.quality.check import Check
 from ves_twin.data.quality.gate import quality_gate
 from ves_twin.data.suspicions import Range
 from ves_twin.diagnosis.forward import Excitation
+from ves_twin.diagnosis.preprocess import FEWEST_ROWS
 from ves_twin.diagnosis.settings import Settings
 from ves_twin.diagnosis.verdict import Verdict
 from ves_twin.effects.registry import causes_anywhere
@@ -25,11 +26,13 @@ from ves_twin.machines.drawing import Drawing
 from ves_twin.machines.machine import Machine, Material, Named, Prepared
 from ves_twin.machines.mjcf.applied import applied
 from ves_twin.machines.mjcf.case import mjcf_cases
+from ves_twin.machines.mjcf.design_space import MjcfDesignSpace
 from ves_twin.machines.mjcf.drawn import drawn
 from ves_twin.machines.mjcf.excitations import SECONDS, offered, write_inputs
 from ves_twin.machines.mjcf.experiment import MjcfExperiment
 from ves_twin.machines.mjcf.extend import extended, write_rig
 from ves_twin.machines.mjcf.forward import MjcfForward
+from ves_twin.machines.mjcf.further import with_further
 from ves_twin.machines.mjcf.interleaved_split import alternate
 from ves_twin.machines.mjcf.machine import Rig
 from ves_twin.machines.mjcf.plausible import check_plausible
@@ -41,6 +44,9 @@ from ves_twin.scenario.experiment_file import BY_NUMBERS, ExperimentFile
 
 SORTS = ("measured", "held_out", "commissioning", "baseline")
 """Recordings of `Material` that begin somewhere."""
+
+LONGEST = 600.0
+"""Length of a design at most [s], as of a machine's own multisine."""
 
 WORTH_A_PROCESS = 0.3
 """Time of one prediction [s] from which other processes, which take seconds to begin, pay."""
@@ -178,11 +184,28 @@ class MjcfMachine(Machine):
             return self, Excitation.of(self.read(name), self.forward.drive, name, told.rate)
         menu = {one.name: one for one in offered(self.forward, None, max(seconds or 0.0, SECONDS))}
         if not menu:
-            came = "nothing that is within typical effort, speed and travel of its joints"
-            raise InvalidInputError(f"excitations of {self.name}", came, "a recording to go by")
+            raise self._unbounded()
         if name and name not in menu:
             raise UnknownNameError("excitation", name, menu)
         return self, menu[name or next(iter(menu))]
+
+    def design_space(self, seconds: float) -> MjcfDesignSpace:
+        """Multisines, and starts of the joints that may be let go."""
+        least = 1.2 * FEWEST_ROWS / self.rig.description.rate
+        if not least <= seconds <= LONGEST:
+            raise InvalidInputError("seconds", seconds, f"{least:.3g} to {LONGEST:g}")
+        space = MjcfDesignSpace.of(self.forward, seconds)
+        if space is None:
+            raise self._unbounded()
+        return space
+
+    def _unbounded(self) -> InvalidInputError:
+        came = "nothing that is within typical effort, speed and travel of its joints"
+        return InvalidInputError(f"excitations of {self.name}", came, "a recording to go by")
+
+    def further(self) -> MjcfForward:
+        """With sensors of position, speed, effort, force and acceleration."""
+        return with_further(self.forward)
 
     def save_excitation(self, excitation: Excitation, folder: Path) -> None:
         """Columns as the machine's file names and scales them."""

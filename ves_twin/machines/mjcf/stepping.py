@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Protocol
 
 import mujoco
 import numpy as np
@@ -65,7 +66,19 @@ class Motion:
         }
 
 
-def motion_of_drive(work: Work, mode: Mode, refined: bool = False) -> Motion:
+class Loop(Protocol):
+    """A program that commands one actuator, row by row."""
+
+    actuator: int
+    """Number in the model."""
+
+    def command(self, row: int, data: mujoco.MjData) -> float:
+        """Its command from a row on, by the true state there."""
+
+
+def motion_of_drive(
+    work: Work, mode: Mode, refined: bool = False, programs: Sequence[Loop] = ()
+) -> Motion:
     """What the rig's description compares, by forward simulation.
 
     Row k holds the state at t_k; its command acts from then on. The model's step is the whole part
@@ -75,6 +88,7 @@ def motion_of_drive(work: Work, mode: Mode, refined: bool = False) -> Motion:
         work: what is simulated.
         mode: CONTROL feeds recorded commands, REFERENCE set-points of the controllers.
         refined: with half the step.
+        programs: in place of commands or of the file's controllers.
 
     Returns:
         The motion; NaN throughout where it diverged and MuJoCo had to start it anew.
@@ -84,11 +98,15 @@ def motion_of_drive(work: Work, mode: Mode, refined: bool = False) -> Motion:
     steps = max(1, round(period / model.opt.timestep)) * (2 if refined else 1)
     model.opt.timestep = period / steps
     state = _start(work)
-    closed, drive = mode is Mode.REFERENCE, work.rig.description.drive
+    drive = work.rig.description.drive
+    closed = mode is Mode.REFERENCE or bool(programs)
     if not (closed or drive.imposed or drive.locked or _resisted(work)):
         path, sensed, commands = _open(work, state, steps)
     else:
-        path, sensed, commands = _stepped(work, state, steps, closed)
+        told = work.rig.description.controllers
+        own = [_Pd(work, name, c) for name, c in told.items()] if mode is Mode.REFERENCE else []
+        loops = (programs or own) if closed else None
+        path, sensed, commands = _stepped(work, state, steps, loops)
     if _failed(state):
         path, sensed = np.full_like(path, np.nan), np.full_like(sensed, np.nan)
         commands = np.full_like(commands, np.nan)
@@ -101,7 +119,8 @@ def _failed(data: mujoco.MjData) -> bool:
 
 def _start(work: Work) -> mujoco.MjData:
     """State of the first row."""
-    data = mujoco.MjData(work.model)
+    data = work.data
+    mujoco.mj_resetData(work.model, data)
     for joint in work.rig.description.start:
         at = work.model.joint(joint)
         position, speed = _measured_start(work, joint)
@@ -211,12 +230,11 @@ class _Pd:
 
 
 def _stepped(
-    work: Work, data: mujoco.MjData, steps: int, closed: bool
+    work: Work, data: mujoco.MjData, steps: int, loops: Sequence[Loop] | None
 ) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Row by row, with controllers and with efforts that follow the speed."""
+    """Row by row, with controllers, or commands for None, and efforts that follow the speed."""
     model, rows = work.model, len(work.programme.time)
-    told = work.rig.description
-    loops = [_Pd(work, name, c) for name, c in told.controllers.items()] if closed else []
+    closed = loops is not None
     asked = np.zeros((rows, model.nu)) if closed else _commands(work)
     resisted = [
         (name, int(model.joint(name).dofadr[0]), int(model.joint(name).qposadr[0]))
@@ -231,7 +249,7 @@ def _stepped(
     for k in range(rows):
         imposed.move(data, k * steps)
         path[k, : model.nq], path[k, model.nq :] = data.qpos, data.qvel
-        for loop in loops:
+        for loop in loops or ():
             asked[k, loop.actuator] = loop.command(k, data)
         data.ctrl[:] = reach.at(asked[k], k) if closed else asked[k]
         for n in range(steps):

@@ -5,6 +5,7 @@ from __future__ import annotations
 import copy
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 
 import mujoco
 import numpy as np
@@ -57,11 +58,17 @@ class Work:
         model = copy.copy(rig.model)
         for effect, _ in effects:
             effect.edit_model(model)
-        if effects:
-            mujoco.mj_setConst(model, mujoco.MjData(model))
         factors = [(told, values.get(told.name, 0.0)) for told in rig.promoted]
         named = (told.scaled(factor).law for told, factor in factors if factor != 0.0)
-        return Work(rig, programme, model, effects, values, (*rig.laws, *named, *laws))
+        work = Work(rig, programme, model, effects, values, (*rig.laws, *named, *laws))
+        if effects:
+            mujoco.mj_setConst(model, work.data)
+        return work
+
+    @cached_property
+    def data(self) -> mujoco.MjData:
+        """Of the model; made once, since that takes longer than a hundred steps."""
+        return mujoco.MjData(self.model)
 
     def at(self, element: Element, name: str) -> list[tuple[Effect, Place]]:
         """Effects on one target."""

@@ -8,7 +8,8 @@ from pathlib import Path
 
 import numpy as np
 
-from ves_twin.core.errors import FileAccessError
+from ves_twin.core.errors import EndedEarlyError, FileAccessError, UnreachableError
+from ves_twin.core.recording.recording import Recording
 from ves_twin.core.signals import SIGNALS
 from ves_twin.diagnosis.forward import Excitation
 from ves_twin.machines.ves2.forward import DRIVE
@@ -53,19 +54,37 @@ def offered_programmes(plant: Plant, scenario: Scenario) -> tuple[Excitation, ..
         plant: the nominal rig.
         scenario: of the recording: its rates and leg settings are kept.
     """
-    fastest = SPEED_SHARE * float(np.min(plant.parameters.array("hydraulics.full_speed")))
     found = []
     for name, (base, changes) in MENU.items():
-        given = Scenario.load(base, {**changes, "run.duration": SECONDS})
-        rate = given.platform.model_copy(update={"rate": scenario.platform.rate})
-        planned = given.model_copy(update={"platform": rate, "legs": scenario.legs})
-        recording = simulate(planned, plant=plant)
-        if recording.info.outcome != Outcome.COMPLETED:
-            continue
-        speed = np.diff(recording["leg.command"], axis=0) / np.diff(recording.time)[:, None]
-        if np.abs(speed).max() < fastest:
-            found.append(Excitation.of(recording, DRIVE, name))
+        run = carried_out(plant, scenario, base, {**changes, "run.duration": SECONDS})
+        if run is not None:
+            found.append(Excitation.of(run, DRIVE, name))
     return tuple(found)
+
+
+def carried_out(
+    plant: Plant, scenario: Scenario, base: str, changes: Mapping[str, object]
+) -> Recording | None:
+    """The run of a programme; None where a limit of stroke, rod speed or sensor ends it.
+
+    Args:
+        plant: the nominal rig.
+        scenario: its rates and leg settings are kept.
+        base: scenario that is run.
+        changes: of it.
+    """
+    given = Scenario.load(base, changes)
+    rate = given.platform.model_copy(update={"rate": scenario.platform.rate})
+    planned = given.model_copy(update={"platform": rate, "legs": scenario.legs})
+    try:
+        recording = simulate(planned, plant=plant)
+    except (EndedEarlyError, UnreachableError):
+        return None
+    if recording.info.outcome != Outcome.COMPLETED:
+        return None
+    fastest = SPEED_SHARE * float(np.min(plant.parameters.array("hydraulics.full_speed")))
+    speed = np.diff(recording["leg.command"], axis=0) / np.diff(recording.time)[:, None]
+    return recording if np.abs(speed).max() < fastest else None
 
 
 def write_setpoints(programme: Excitation, path: Path) -> None:

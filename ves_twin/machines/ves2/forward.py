@@ -5,7 +5,7 @@ from __future__ import annotations
 import hashlib
 from collections import OrderedDict
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -23,6 +23,7 @@ from ves_twin.machines.ves2.library import (
     idle_kinds,
     offset_parameters,
     parameters_of,
+    ruled_out,
     table_parameters,
     wander_parameters,
     with_departures,
@@ -32,14 +33,20 @@ from ves_twin.machines.ves2.slow_noise import MODES, slow_modes
 from ves_twin.plant.known_weight import hang_weight
 from ves_twin.plant.plant import Plant
 from ves_twin.scenario.schema import Scenario
+from ves_twin.simulator.log_faults import logged
 from ves_twin.simulator.predict import predict
 from ves_twin.simulator.simulate import versions
 
 DRIVE = ("leg.command", "arm.command", "gravity.estimate")
 COMPARED = ("leg.length", "sensor.wrench", "arm.q", "arm.torque", "supply.pressure")
 
-WRENCH = slice(6, 12)
-"""Columns of the sensor's wrench among the compared ones."""
+COLUMNS = {
+    name: slice(end - SIGNALS[name].width, end)
+    for name, end in zip(COMPARED, np.cumsum([SIGNALS[n].width for n in COMPARED]), strict=True)
+}
+"""Of each signal among the compared ones."""
+
+WRENCH = COLUMNS["sensor.wrench"]
 
 FORCES = ("sensor.wrench", "arm.torque")
 SETTLING = 1.0
@@ -62,6 +69,7 @@ class RigForward:
         plant: the nominal rig.
         scenario: rates, leg gains and where the arm starts.
         exclude: kinds of effects that are left out of the library.
+        misread: legs, from 1, whose logged lengths are not what the leg program read.
         loaded: whether every programme says what hangs on the arm.
     """
 
@@ -69,6 +77,7 @@ class RigForward:
     scenario: Scenario
     exclude: frozenset[str] = frozenset()
     loaded: bool = False
+    misread: tuple[int, ...] = ()
 
     @cached_property
     def identity(self) -> str:
@@ -116,8 +125,13 @@ class RigForward:
 
     @cached_property
     def hypotheses(self) -> tuple[Hypothesis, ...]:
-        """Every effect on every target that it can have."""
-        return hypotheses_of(self.plant, self.exclude | idle_kinds(self.scenario))
+        """Every effect on every target that it can have.
+
+        A length that is off in the log alone looks like a valve's null: which of the two it is
+        the valve's own commands tell (`check_leg_program`), and the other is left out.
+        """
+        every = hypotheses_of(self.plant, self.exclude | idle_kinds(self.scenario))
+        return tuple(h for h in every if not ruled_out(h.effect, h.target, self.misread))
 
     def simulate(
         self, programme: Excitation, values: Mapping[str, float], refined: bool = False
@@ -125,18 +139,22 @@ class RigForward:
         """Channels (n, channels) that a rig with these values measures, without noise.
 
         Gain, cross-talk and mounting of the sensor are laid over a run without them, which is kept:
-        a third of the commissioning tolerances are of that kind, and cost no run of their own.
+        a third of the commissioning tolerances are of that kind, and cost no run of their own. So
+        are faults of the recorder.
         """
         load = load_in(programme)
         rig = hang_weight(self._smooth, load) if load else self._smooth
         plant, offsets = with_departures(rig, values)
-        hardware = plant
+        sensed = plant
         if self.scenario.gravity.file is None:  # else the reading is calibrated, too
-            hardware, _ = with_departures(rig, without_sensor_kinds(values))
+            sensed, _ = with_departures(rig, without_sensor_kinds(values))
+        hardware = replace(sensed, effects=tuple(e for e in sensed.effects if not e.log))
         rows = self._kept.run(hardware, programme, self._rates(refined)).copy()
-        if hardware is not plant:
+        for name, columns in COLUMNS.items():
+            rows[:, columns] = logged(plant.effects, name, programme.time, rows[:, columns])
+        if sensed is not plant:
             at_rest = programme.drive["gravity.estimate"][0] * float(self.scenario.gravity.zero)
-            change = SensorChange.between(hardware, plant)
+            change = SensorChange.between(sensed, plant)
             rows[:, WRENCH] = change.apply(rows[:, WRENCH], at_rest)
         rows[:, WRENCH] += offsets + self._wander(programme, values)
         return rows

@@ -40,7 +40,11 @@ class Inputs:
 
 
 def prepare_inputs(
-    recordings: Sequence[Recording], plant: Plant, word: str, scenario: Scenario | None = None
+    recordings: Sequence[Recording],
+    plant: Plant,
+    word: str,
+    scenario: Scenario | None = None,
+    misread: bool = False,
 ) -> Inputs:
     """Put recordings through the quality gate and on an even clock.
 
@@ -52,9 +56,12 @@ def prepare_inputs(
         plant: whose arm the force sensor carries.
         word: what they are called in messages, for instance "recording".
         scenario: how the leg program was set; as each recording says if None.
+        misread: whether lengths may be other ones in the log than the leg program read; the flaws
+            then tell which.
 
     Raises:
-        VesTwinError: columns that look swapped, turned, in other units or in another frame.
+        VesTwinError: columns that look swapped, turned, in other units or in another frame, or
+            lengths that the leg program did not read.
         UnknownNameError: a set-point that is not recorded.
         InvalidInputError: set-points that are missing for too long.
     """
@@ -70,7 +77,8 @@ def prepare_inputs(
         if known and not wrong:  # else it would say the same in other words
             legs = replay_scenario(recording, scenario).legs
             program = check_leg_program(recording, legs, full_speed)
-            wrong = [program] if program.grade is Grade.FAILED else []
+            off = [program] if program.grade is Grade.FAILED else []
+            failed, wrong = ((*failed, *off), []) if misread else (failed, off)
         if wrong:
             raise VesTwinError(f"{name}: {'; '.join(check.message for check in wrong)}")
         flaws += [replace(check, message=f"{name}: {check.message}") for check in failed]

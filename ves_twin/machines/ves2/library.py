@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Collection, Iterator, Mapping
 
 import numpy as np
 
@@ -10,7 +10,9 @@ from ves_twin.control.leg_loop import FilterPlace
 from ves_twin.core.types import FloatArray
 from ves_twin.diagnosis.forward import Hypothesis, Parameter
 from ves_twin.effects.effect import Effect
+from ves_twin.effects.hydraulics import ValveNull
 from ves_twin.effects.magnitude import Magnitude, Sign
+from ves_twin.effects.recorder import LENGTHS
 from ves_twin.effects.registry import EFFECTS, build_effect
 from ves_twin.machines.ves2.slow_noise import MODES
 from ves_twin.plant.fidelity import ABSENT_EFFECTS, Fidelity
@@ -63,6 +65,19 @@ def idle_kinds(scenario: Scenario) -> frozenset[str]:
     """Kinds that act on a part that a scenario does not use."""
     filtered = scenario.legs.filter is not FilterPlace.NONE
     return frozenset() if filtered else frozenset({"filter_edge"})
+
+
+def ruled_out(effect: str, target: str, misread: Collection[int]) -> bool:
+    """Whether the valves' own commands speak against a cause.
+
+    Args:
+        effect: of the cause.
+        target: of the cause.
+        misread: legs, from 1, whose logged lengths are not what the leg program read.
+    """
+    if EFFECTS[effect].row_of(target).change == LENGTHS:
+        return int(target.split(".")[2]) not in misread
+    return effect == ValveNull.kind and int(target.split(".")[1]) in misread
 
 
 def parameters_of(plant: Plant) -> tuple[Parameter, ...]:

@@ -28,6 +28,7 @@ from ves_twin.machines.machine import Machine, Material, Named, Prepared
 from ves_twin.machines.ves2.applied import applied
 from ves_twin.machines.ves2.case import ves2_case
 from ves_twin.machines.ves2.declared_load import LOAD, loads_of
+from ves_twin.machines.ves2.design_space import LEAST, MOST, Ves2DesignSpace
 from ves_twin.machines.ves2.drawn import drawn
 from ves_twin.machines.ves2.effects_of import effects_of
 from ves_twin.machines.ves2.excitations import offered_programmes
@@ -35,6 +36,7 @@ from ves_twin.machines.ves2.filter_place import EFFECT as FILTER_PLACE
 from ves_twin.machines.ves2.filter_place import WithFilterPlaces
 from ves_twin.machines.ves2.forward import DRIVE, RigForward
 from ves_twin.machines.ves2.inputs import SORTS, check_settings, one_step, prepare_inputs
+from ves_twin.machines.ves2.leg_program_check import misread_legs
 from ves_twin.machines.ves2.next_scenario import write_next_experiment
 from ves_twin.plant.plant import Plant
 from ves_twin.plant.signal_ranges import signal_ranges
@@ -45,6 +47,9 @@ from ves_twin.scenario.schema import Scenario
 from ves_twin.simulator.outcome import Outcome
 from ves_twin.simulator.replay import replay_scenario
 from ves_twin.simulator.simulate import simulate
+
+DIAGNOSED = frozenset({"measured", "held_out"})
+"""Sorts of recordings whose recorder may be at fault; what others say of the rig must be true."""
 
 USUAL = "identify_fast"
 """Scenario that is planned where nobody names one."""
@@ -58,6 +63,7 @@ class Ves2Machine(Machine):
         plant: the nominal rig; None: the one that recordings, or their experiment, name.
         scenario: rates, leg gains and start; None: those of the recordings.
         loaded: whether every recording says what hangs on the arm.
+        misread: legs, from 1, whose logged lengths are not what the leg program read.
         mapping: which column of a lab file is which signal; None: recordings of ours.
         folder: of recordings that are not found by their path.
     """
@@ -65,6 +71,7 @@ class Ves2Machine(Machine):
     plant: Plant | None = None
     scenario: Scenario | None = None
     loaded: bool = False
+    misread: tuple[int, ...] = ()
     mapping: ImportMap | None = None
     folder: str | None = None
 
@@ -98,7 +105,9 @@ class Ves2Machine(Machine):
         """With the places where the leg program may filter."""
         if self.scenario is None:
             raise InvalidInputError("VES II", "no rates and gains", "a recording, or an experiment")
-        return WithFilterPlaces(RigForward(self._rig, self.scenario, loaded=self.loaded))
+        return WithFilterPlaces(
+            RigForward(self._rig, self.scenario, loaded=self.loaded, misread=self.misread)
+        )
 
     def read(self, source: str) -> Recording:
         """A recording of ours, or a lab file by the map."""
@@ -131,7 +140,7 @@ class Ves2Machine(Machine):
         flaws: list[Check] = []
         for sort, word in SORTS.items():
             own = [one.recording for one in getattr(material, sort)]
-            made = prepare_inputs(own, plant, word, scenario)
+            made = prepare_inputs(own, plant, word, scenario, misread=sort in DIAGNOSED)
             material = material.with_sort(sort, made.recordings)
             flaws += made.flaws
         setting = one_step(replay_scenario(material.measured[0].recording, scenario))
@@ -142,7 +151,8 @@ class Ves2Machine(Machine):
             for sort in SORTS:
                 carried = tuple(one.recording for one in getattr(material, sort))
                 material = material.with_sort(sort, loads_of(carried))
-        machine = replace(self, plant=plant, scenario=setting, loaded=loaded)
+        misread = misread_legs(flaws)
+        machine = replace(self, plant=plant, scenario=setting, loaded=loaded, misread=misread)
         return Prepared(machine, material, tuple(flaws))
 
     def cases(self, given: Named, experiment: ExperimentFile | None = None) -> tuple[Case, ...]:
@@ -203,6 +213,12 @@ class Ves2Machine(Machine):
             raise InvalidInputError(what, recording.info.outcome, "a run that is completed")
         fed = replace(self, plant=plant, scenario=one_step(replay_scenario(recording)))
         return fed, Excitation.of(recording, DRIVE, scenario.name)
+
+    def design_space(self, seconds: float) -> Ves2DesignSpace:
+        """Multisines of the platform with moves of the arm, at the rates of this machine."""
+        if not LEAST <= seconds <= MOST:
+            raise InvalidInputError("seconds", seconds, f"{LEAST:g} to {MOST:g}")
+        return Ves2DesignSpace(self._rig, self.scenario or Scenario.load(USUAL), seconds)
 
     def drawing(self) -> Drawing:
         """By leg lengths and joint angles."""

@@ -1,0 +1,146 @@
+"""judge: what fits are worth: noise as the best leaves it, rivals weighed, the rest tested."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from ves_twin.diagnosis.adequacy import cells, misfit
+from ves_twin.diagnosis.assess import pull_limit
+from ves_twin.diagnosis.evidence import Evidence
+from ves_twin.diagnosis.explanation import Explanation
+from ves_twin.diagnosis.fit_context import FitContext
+from ves_twin.diagnosis.fit_job import FitJob
+from ves_twin.diagnosis.fits import again, is_near, refined, start_of, within_reach
+from ves_twin.diagnosis.forward import Hypothesis
+from ves_twin.diagnosis.linearise import renewed
+from ves_twin.diagnosis.probability import probabilities
+from ves_twin.diagnosis.refine import Fit, bare_residual, residual_about
+from ves_twin.diagnosis.screen import Candidate, Screen
+from ves_twin.diagnosis.signature_library import build_bank
+
+LEAST = 0.7
+"""Part of the threshold that a cause must take off chi^2; a fit changes the screen's value."""
+
+CLEAR = 3.0
+"""Times the threshold that a cause must take off chi^2 to outweigh a better fit without it."""
+
+SHORTLIST = 16
+"""Further causes that are simulated anew at a fit: all of a small library, a tenth of VES II's,
+where what the nominal bank puts behind sixteen others does not come first at the fit."""
+
+SLACK = 0.1
+"""Share of chi^2 that a rough fit may still fall."""
+
+WORSE_START = 2.0
+"""Times the chi^2 of a fit from elsewhere from which one that has ended is not gone on with."""
+
+
+def judge(desk: FitContext, fits: list[Fit], far: bool = False) -> Explanation:
+    """Whiten by what the best fit leaves, fit again, weigh the rivals, test what is left.
+
+    Args:
+        desk: the record before any cause.
+        fits: under the first whitening.
+        far: whether all are so far off that they are weighed roughly, and no other is looked for.
+    """
+    first, settings = desk.first, desk.settings
+    runs = first.evidence.runs
+    leader = min(fits, key=lambda fit: fit.chi2)
+    declared = first.screen.whitening
+    white, unit = np.zeros_like(declared.colour), np.ones_like(declared.level)
+    plain = replace(declared, colour=white, level=unit)
+    own = plain.adapted(plain.apply(bare_residual(first.evidence, leader)))
+    evidence = Evidence(runs, first.evidence.measured, own)
+    commissioning, rough = _commissioning(desk, evidence, leader, far)
+    ranked = _ranked(desk, evidence, leader, [fit for fit in fits if is_near(fit, leader)], far)
+    best = ranked[0]
+    taken = max(commissioning.chi2 - best.chi2, 0.0)
+    sure = min(taken, best.power) if rough else taken
+    doubt = settings.model_error * np.sqrt(sure / max(taken, 1e-30))
+    allowance = doubt**2 * taken
+    chosen, weights = probabilities(ranked, allowance, settings.odds)
+    before = cells(own, commissioning.residual)
+    after = cells(own, chosen[0].residual)
+    score = misfit(after, before, float(doubt))
+    beside = allowance + first.allowance
+    second = None if far else _second(desk, evidence, chosen[0], beside)
+    limit = desk.thresholds.effect + beside
+    fall = commissioning.chi2 - chosen[0].chi2 - (taken - sure)
+    strained = chosen[0].pull > pull_limit(first.screen.bank, settings.alpha)
+    enough = fall > LEAST * desk.thresholds.effect and not strained and second is not None
+    return Explanation(
+        evidence=evidence,
+        commissioning=commissioning,
+        fits=tuple(ranked),
+        chosen=tuple(chosen),
+        weights=tuple(weights),
+        adequate=enough and score < desk.thresholds.misfit and (second or 0.0) < limit,
+        score=score,
+        second=second,
+        allowance=float(allowance),
+        before=tuple(before),
+        after=tuple(after),
+    )
+
+
+def _ranked(
+    desk: FitContext, evidence: Evidence, leader: Fit, fits: list[Fit], rough: bool
+) -> list[Fit]:
+    """Fits under another noise by rising chi^2, the leader's first: it says what counts."""
+    what = "weighing rivals"
+    best = refined([replace(FitJob.again(evidence, leader), rough=rough)], desk, what)[0]
+    target = within_reach(best, desk)
+    rivals = [FitJob.again(evidence, fit, target=target) for fit in fits if fit is not leader]
+    ranked = [best, *refined([replace(job, rough=rough) for job in rivals], desk, what)]
+    return sorted(ranked, key=lambda fit: fit.chi2)
+
+
+def _commissioning(
+    desk: FitContext, evidence: Evidence, leader: Fit, far: bool
+) -> tuple[Fit, bool]:
+    """The best fit without a cause, from the first look and beside the leader; whether it is rough.
+
+    Beside the leader: what it moves, where commissioning may have moved it too, stays. Columns are
+    computed anew only where the cause takes off little.
+    """
+    first, runs = desk.first, evidence.runs
+    shift, begin = np.where(runs.sd > 0.0, leader.shift, 0.0), start_of(first)
+    sparse, last = desk.settings.sparse, first.commissioning
+    job = FitJob(evidence, (), shift, leader.local, leader.step_share, sparse)
+    best = refined([job], desk, "commissioning errors alone")[0]
+    if not sparse or last is None or last.chi2 < WORSE_START * best.chi2:
+        job = FitJob(evidence, (), begin.shift, begin.local, begin.step_share, sparse)
+        alone = refined([job], desk, "commissioning errors alone")[0]
+        best = min(best, alone, key=lambda fit: fit.chi2)
+    clear = leader.chi2 + CLEAR * desk.thresholds.effect
+    if sparse and (far or best.chi2 > clear + SLACK * leader.chi2):
+        return best, True
+    best = again(evidence, best, 0) if sparse else best
+    return (best if best.chi2 > clear else again(evidence, best, desk.settings.rounds)), False
+
+
+def _second(desk: FitContext, evidence: Evidence, fit: Fit, allowance: float) -> float:
+    """Best score of a further cause beside a fit: by the nominal bank, then by one at the fit."""
+    bank = desk.first.screen.bank
+    z = residual_about(evidence, fit, bank.base)
+    score = Screen(bank, evidence.whitening, fit.free).suspects(z)[0].score
+    if score < desk.thresholds.effect + allowance:
+        return score
+    return max((s.score for s in suspects_at(desk, evidence, fit)[1]), default=0.0)
+
+
+def suspects_at(
+    desk: FitContext, evidence: Evidence, fit: Fit
+) -> tuple[tuple[Hypothesis, ...], list[Candidate]]:
+    """Further causes as a bank linearised at a fit sees them: the likeliest by the nominal bank."""
+    bank = desk.first.screen.bank
+    about = residual_about(evidence, fit, bank.base)
+    likely = Screen(bank, evidence.whitening, fit.free).suspects(about)
+    others = [bank.hypotheses[s.hypothesis] for s in likely]
+    rest = tuple(h for h in others if h not in fit.causes)[:SHORTLIST]
+    base = renewed(fit.local, fit.shift, fit.prediction)
+    local = build_bank(evidence.runs, fit.shift, rest, desk.progress, base, desk.settings.sparse)
+    z = residual_about(evidence, fit, local.base)
+    return rest, Screen(local, evidence.whitening, fit.free).suspects(z)

@@ -1,0 +1,146 @@
+"""pairs, strained_pair: two causes together, where no single one leaves noise."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from ves_twin.core.types import FloatArray
+from ves_twin.diagnosis.assess import STRANGE, pull_limit
+from ves_twin.diagnosis.evidence import Evidence
+from ves_twin.diagnosis.explanation import Explanation
+from ves_twin.diagnosis.fit_context import FitContext
+from ves_twin.diagnosis.fits import Start, job, refined, settled
+from ves_twin.diagnosis.forward import Hypothesis
+from ves_twin.diagnosis.judge import judge, suspects_at
+from ves_twin.diagnosis.refine import Fit, refine, residual_about
+from ves_twin.diagnosis.screen import Screen
+
+PAIRS = 6
+"""Pairs of causes that are fitted with the full forward."""
+
+HALF = 0.5
+"""Share of what a second cause must take off, below which rough fits show that it will not."""
+
+Proposal = tuple[tuple[Hypothesis, ...], list[FloatArray]]
+"""Causes, and a size of each to begin at."""
+
+
+def pairs(desk: FitContext, single: Explanation) -> Explanation | None:
+    """Pairs from the bank in closed form, and second causes beside the two best single ones.
+
+    Args:
+        desk: the record before any cause.
+        single: what single causes make of it.
+
+    Returns:
+        Two causes that leave noise and take more off than one; None if there are none.
+    """
+    proposed: list[Proposal] = []
+    for fit in single.fits[:2]:
+        rest, suspects = suspects_at(desk, single.evidence, fit)
+        for suspect in suspects[: PAIRS // 3]:
+            if suspect.score > 0.0:
+                causes = (*fit.causes, rest[suspect.hypothesis])
+                proposed.append((causes, [fit.sizes, suspect.sizes]))
+    fits = _fitted(desk, single.evidence, [*proposed, *_screened(desk)], single.best)
+    if not fits:
+        return None
+    double = judge(desk, settled(single.evidence, fits, desk))
+    return _better(desk, double, single.best.chi2, (*single.fits, *single.hopeless))
+
+
+def strained_pair(desk: FitContext, fits: Sequence[Fit]) -> Explanation | None:
+    """The likeliest cause with the one whose commissioning error it strains, if that is a cause.
+
+    A record of both is near noise with the louder one alone, which the other's tolerance makes up
+    for; columns and rivals of single causes would tell that at the cost of a diagnosis.
+
+    Args:
+        desk: the record before any cause.
+        fits: rough ones of single causes.
+
+    Returns:
+        As `pairs`; None also where the first cause alone turns out to need no such error.
+    """
+    first, leader = desk.first, min(fits, key=lambda fit: fit.chi2)
+    evidence, bank = first.evidence, first.screen.bank
+    limit = pull_limit(bank, desk.settings.alpha)
+    other = _strained(desk, leader) if leader.pull > limit else None
+    if other is None or leader.chi2 > STRANGE * len(leader.residual):
+        return None
+    causes = (*leader.causes, other)
+    proposed: list[Proposal] = [
+        (causes, [leader.sizes, leader.shift[evidence.runs.indices(other)]])
+    ]
+    about = residual_about(evidence, leader, bank.base)
+    for suspect in Screen(bank, evidence.whitening, leader.free).suspects(about)[: PAIRS // 3]:
+        beside = bank.hypotheses[suspect.hypothesis]
+        if beside not in causes:
+            proposed.append(((*leader.causes, beside), [leader.sizes, suspect.sizes]))
+    tried = _fitted(desk, evidence, proposed, leader)
+    least = desk.thresholds.effect + desk.settings.model_error**2 * leader.power
+    if leader.chi2 - min(fit.chi2 for fit in tried) < HALF * least:
+        return None
+    double = judge(desk, settled(evidence, tried, desk, tried[0]))
+    best = double.best
+    shift = np.where(evidence.runs.sd > 0.0, best.shift, 0.0)
+    kept = evidence.runs.indices(leader.causes[0])
+    shift[kept] = best.shift[kept]
+    alone = refine(double.evidence, leader.causes, shift, best.local, 0, best.step_share)
+    if not (double.adequate and alone.pull > limit):
+        return None
+    others = (fit for fit in fits if fit is not leader)
+    return _better(desk, double, alone.chi2, (alone, *others))
+
+
+def _strained(desk: FitContext, fit: Fit) -> Hypothesis | None:
+    """The cause whose commissioning error a fit strains most; None if that is of no cause."""
+    runs = desk.first.evidence.runs
+    errors = np.setdiff1d(fit.active[len(fit.sizes) :], fit.active[: len(fit.sizes)])
+    worst = errors[np.argmax(np.abs(fit.shift[errors]) / runs.sd[errors])]
+    name = runs.coordinates[worst].parameter.name
+    found = (h for h in desk.first.screen.bank.hypotheses if h.parameters == (name,))
+    return next(found, None)
+
+
+def _screened(desk: FitContext) -> list[Proposal]:
+    """Pairs by the screen."""
+    first, library = desk.first, desk.first.screen.bank.hypotheses
+    return [
+        ((library[one.hypothesis], library[two.hypothesis]), [one.sizes, two.sizes])
+        for one, two in first.screen.pairs(first.z, PAIRS)
+    ]
+
+
+def _fitted(
+    desk: FitContext, evidence: Evidence, proposed: Sequence[Proposal], single: Fit
+) -> list[Fit]:
+    """The first PAIRS that differ, roughly, from the commissioning errors beside a single cause."""
+    starts: dict[frozenset[str], Proposal] = {}
+    for causes, sizes in proposed:
+        starts.setdefault(frozenset(h.label for h in causes), (causes, sizes))
+    errors = single.shift.copy()
+    errors[single.active[: len(single.sizes)]] = 0.0
+    begin = Start(errors, single.local, single.step_share)
+    jobs = [job(evidence, *start, begin) for start in list(starts.values())[:PAIRS]]
+    return refined(jobs, desk, "fitting pairs of causes")
+
+
+def _better(
+    desk: FitContext, double: Explanation, alone: float, fits: tuple[Fit, ...]
+) -> Explanation | None:
+    """A pair that leaves noise, if it takes more off than a second cause must.
+
+    Args:
+        desk: thresholds.
+        double: the pair.
+        alone: chi^2 of the best single cause.
+        fits: of single causes.
+    """
+    least = desk.thresholds.effect + double.allowance
+    if not (double.adequate and alone - double.best.chi2 > least):
+        return None
+    return replace(double, alone=fits)
