@@ -51,6 +51,8 @@ class Mutant:
         new: what stands there instead.
         span: characters of the file that are replaced.
         key: of the change, whatever lines stand around its function.
+        around: hash of the function or the statement of the module that it stands in.
+        first: first line of that function, its decorators counted; 0 of a statement.
     """
 
     module: str
@@ -61,6 +63,13 @@ class Mutant:
     new: str
     span: tuple[int, int]
     key: str
+    around: str
+    first: int
+
+    @property
+    def identity(self) -> tuple[str, str]:
+        """What an outcome is of."""
+        return self.key, self.around
 
     def text(self, source: str) -> str:
         """The file with the change."""
@@ -82,17 +91,39 @@ def mutants_of(path: Path, module: str) -> list[Mutant]:
 
     found: list[Mutant] = []
     seen: dict[str, int] = {}
-    for function, node in _nodes(ast.parse(source), ""):
+    tree = ast.parse(source)
+    holders = list(_holders(tree))
+    for function, node in _nodes(tree, ""):
         for kind, new in _changes(node, lambda n: source[slice(*place(n))]):
             span = place(node)
             old = source[slice(*span)]
+            if new == old:
+                continue
             label = f"{path.stem} {function} {kind} {old} {new}"
             seen[label] = seen.get(label, 0) + 1
             key = hashlib.sha256(f"{label} {seen[label]}".encode()).hexdigest()[:16]
-            change = Mutant(module, function, kind, node.lineno, old, new, span, key)
+            holder = next(h for h in holders if h.lineno <= node.lineno <= h.end_lineno)
+            around = hashlib.sha256(source[slice(*place(holder))].encode()).hexdigest()[:16]
+            first = _first(holder)
+            change = Mutant(module, function, kind, node.lineno, old, new, span, key, around, first)
             ast.parse(change.text(source))
             found.append(change)
     return found
+
+
+def _holders(tree: ast.AST) -> Iterator[ast.stmt]:
+    """Statements of a module and of its classes; a decorator belongs to no holder."""
+    for statement in tree.body:
+        if isinstance(statement, ast.ClassDef):
+            yield from _holders(statement)
+        else:
+            yield statement
+
+
+def _first(holder: ast.stmt) -> int:
+    if not isinstance(holder, ast.FunctionDef):
+        return 0
+    return min(node.lineno for node in (holder, *holder.decorator_list))
 
 
 def _nodes(node: ast.AST, function: str, result: str = "") -> Iterator[tuple[str, ast.AST]]:

@@ -6,25 +6,28 @@
 
 A mutant is one small wrong change (`mutants.py`). Each is written into a copy of the project, and
 the tests that cover its module are run there until one fails. The sample is fixed: the mutants
-whose hash with SEED is smallest, so that edits elsewhere do not change it. Compiled code is cached
-in a folder of the mutant's own, so that none runs the code of another.
+whose hash with SEED is smallest, so that edits elsewhere do not change it. An outcome holds while
+the function, or the statement of the module, that the mutant stands in is the same to the letter.
+Compiled code is cached by its sources, so that none runs the code of another.
 """
 
 from __future__ import annotations
 
 import argparse
+import compileall
+import csv
 import hashlib
 import json
 import os
+import py_compile
 import shutil
-import signal
 import subprocess
 import sys
 import tempfile
-import time
 from dataclasses import asdict, dataclass
 from pathlib import Path
 
+import numpy as np
 from mutants import Mutant, mutants_of
 
 ROOT = Path(__file__).resolve().parents[1]
@@ -33,8 +36,11 @@ SAMPLE = 320
 
 KILLED, TIMEOUT, SURVIVED = "killed", "timeout", "survived"
 
-SLACK = 60.0
-"""Seconds beyond four times the tests' usual time after which a mutant counts as hung."""
+LONGEST = 1800.0
+"""Processor seconds that tests may take without a mutant."""
+
+SLACK = 20.0
+"""Processor seconds beyond four times the tests' usual time after which a mutant counts as hung."""
 
 COPIED = ("ves_twin", "tests", "models", "scenarios", "pyproject.toml", "benchmarks")
 
@@ -47,11 +53,13 @@ class Room:
         modules: files below the root.
         tests: run until the first that fails; a file named as the module comes before them.
         compiled: whether the modules hold compiled code, whose cache a mutant then has alone.
+        loaded: what is imported once for all mutants: it imports none of the modules.
     """
 
     modules: tuple[str, ...]
     tests: tuple[str, ...]
     compiled: bool
+    loaded: tuple[str, ...] = ()
 
 
 PHYSICS, LOOP, DIAGNOSIS = "ves_twin/plant/physics", "ves_twin/simulator", "ves_twin/diagnosis"
@@ -63,26 +71,16 @@ ROOMS = (
                 "chambers", "cylinder", "delay", "force_sensor", "supply", "transducer", "valve",
             )
         ),
-        ("tests/plant/physics",),
-        True,
-    ),
-    Room(
-        (f"{LOOP}/loop.py",),
-        (
-            "tests/simulator/test_reference.py",
-            "tests/simulator/test_simulator.py",
-            "tests/simulator/test_sensor_in_the_rig.py",
-            "tests/simulator/test_hydraulics.py",
-            "tests/simulator/test_hydraulic_faults.py",
-            "tests/simulator/test_clock.py",
-            "tests/effects/test_timing_effects.py",
-        ),
+        ("tests/plant/physics", "tests/simulator/test_loop.py"),
         True,
     ),
     Room(
         tuple(
             f"{DIAGNOSIS}/{name}.py"
-            for name in ("whitening", "search", "refine", "explain", "gain", "assess")
+            for name in (
+                "whitening", "search", "refine", "explain", "fits", "judge", "pairs", "gain",
+                "assess",
+            )
         ),
         tuple(
             f"tests/diagnosis/test_{name}.py"
@@ -93,6 +91,21 @@ ROOMS = (
             )
         ),
         False,
+        ("ves_twin.simulator.simulator",),
+    ),
+    Room(
+        (f"{LOOP}/loop.py",),
+        (
+            "tests/simulator/test_loop.py",
+            "tests/simulator/test_reference.py",
+            "tests/simulator/test_simulator.py",
+            "tests/simulator/test_sensor_in_the_rig.py",
+            "tests/simulator/test_hydraulics.py",
+            "tests/simulator/test_hydraulic_faults.py",
+            "tests/simulator/test_clock.py",
+            "tests/effects/test_timing_effects.py",
+        ),
+        True,
     ),
 )  # fmt: skip
 
@@ -102,18 +115,29 @@ def main() -> None:
     parser.add_argument("file", type=Path, help="results, a JSON line for each mutant")
     parser.add_argument("--sample", type=int, default=SAMPLE, help="mutants of all")
     parser.add_argument("--module", default="", help="only those with this in their path")
-    parser.add_argument("--again", action="store_true", help="run the survivors once more")
+    parser.add_argument(
+        "--cheap", type=float, default=np.inf, metavar="S",
+        help="leave out tests above so many processor seconds but those of the module's own file",
+    )  # fmt: skip
+    parser.add_argument(
+        "--again", nargs="*", metavar="FILE.py:LINE", help="run survivors once more, all or these"
+    )
     parser.add_argument("--report", action="store_true", help="run nothing, print what is known")
     options = parser.parse_args()
     chosen, total = _sample(options.sample)
     done = _done(options.file)
     if not options.report:
-        again = {SURVIVED} if options.again else set()
-        left = [m for m in chosen if m.key not in done or done[m.key] in again]
+        left = [m for m in chosen if m.identity not in done or _again(m, done, options.again)]
         left = [m for m in left if options.module in m.module]
-        _run(left, options.file)
+        _run(left, options.file, options.cheap)
         done = _done(options.file)
     print(_report(chosen, total, done))
+
+
+def _again(mutant: Mutant, done: dict[tuple[str, str], str], places: list[str] | None) -> bool:
+    here = f"{mutant.module}:{mutant.line}"
+    named = places is not None and (not places or any(here.endswith(p) for p in places))
+    return named and done[mutant.identity] == SURVIVED
 
 
 def _sample(count: int) -> tuple[list[Mutant], int]:
@@ -122,35 +146,38 @@ def _sample(count: int) -> tuple[list[Mutant], int]:
     return every[:count], len(every)
 
 
-def _done(file: Path) -> dict[str, str]:
+def _done(file: Path) -> dict[tuple[str, str], str]:
+    """Outcome of each mutant, by its key and the text of what it stands in."""
     if not file.exists():
         return {}
     rows = [json.loads(line) for line in file.read_text(encoding="utf-8").splitlines()]
-    return {row["key"]: row["outcome"] for row in rows}
+    return {(row["key"], row["around"]): row["outcome"] for row in rows if "around" in row}
 
 
-def _run(left: list[Mutant], file: Path) -> None:
+def _run(left: list[Mutant], file: Path, cheap: float) -> None:
     file.parent.mkdir(parents=True, exist_ok=True)
     with tempfile.TemporaryDirectory(prefix="mutation-") as folder:
         copy = _copy(Path(folder) / "project")
-        usual: dict[Room, float] = {}
-        for number, mutant in enumerate(left, 1):
-            room = next(r for r in ROOMS if mutant.module in r.modules)
-            if room not in usual:
-                outcome, usual[room] = _tested(copy, room, "", None)
-                if outcome != SURVIVED:
-                    sys.exit(f"the tests of {room.modules[0]} fail without a mutant: {outcome}")
-            target = copy / mutant.module
-            source = target.read_text(encoding="utf-8")
-            target.write_text(mutant.text(source), encoding="utf-8")
-            limit = 4.0 * usual[room] + SLACK
-            outcome, seconds = _tested(copy, room, mutant.module, limit)
-            target.write_text(source, encoding="utf-8")
-            row = {**asdict(mutant), "outcome": outcome, "seconds": round(seconds, 1)}
-            with file.open("a", encoding="utf-8") as rows:
-                rows.write(json.dumps(row) + "\n")
-            words = f"{outcome:9} {mutant.module}:{mutant.line} {mutant.new!r}"
-            print(f"{number}/{len(left)} {seconds:5.0f} s {words}", file=sys.stderr, flush=True)
+        for room in ROOMS:
+            here = [m for m in left if m.module in room.modules]
+            if here:
+                with Bench(copy, room, cheap) as bench:
+                    _run_room(here, bench, file)
+
+
+def _run_room(left: list[Mutant], bench: Bench, file: Path) -> None:
+    bench.measure()
+    for number, mutant in enumerate(left, 1):
+        target = bench.copy / mutant.module
+        source = target.read_text(encoding="utf-8")
+        target.write_text(mutant.text(source), encoding="utf-8")
+        outcome, seconds = bench.tested(mutant)
+        target.write_text(source, encoding="utf-8")
+        row = {**asdict(mutant), "outcome": outcome, "seconds": round(seconds, 1)}
+        with file.open("a", encoding="utf-8") as rows:
+            rows.write(json.dumps(row) + "\n")
+        words = f"{outcome:9} {mutant.module}:{mutant.line} {mutant.new!r}"
+        print(f"{number}/{len(left)} {seconds:5.0f} s {words}", file=sys.stderr, flush=True)
 
 
 def _copy(folder: Path) -> Path:
@@ -160,51 +187,96 @@ def _copy(folder: Path) -> Path:
             shutil.copytree(ROOT / name, folder / name, ignore=skipped)
         else:
             shutil.copy(ROOT / name, folder / name)
+    checked = py_compile.PycInvalidationMode.CHECKED_HASH  # of a mutant, the time may be the same
+    compileall.compile_dir(str(folder), quiet=1, invalidation_mode=checked)
     return folder
 
 
-def _tested(copy: Path, room: Room, module: str, limit: float | None) -> tuple[str, float]:
-    """Outcome and seconds of the tests in the copy; compiled code is kept from mutant to mutant
-    only where the mutants are not compiled."""
-    cache = copy.parent / ("cache-of-one" if room.compiled else "cache")
-    environment = {
-        **os.environ,
-        "PYTHONPATH": str(copy),
-        "PYTHONDONTWRITEBYTECODE": "1",  # a mutant of the same second and size would run stale
-        "XDG_CACHE_HOME": str(cache),
-        "OPENBLAS_NUM_THREADS": "1",
-    }
-    own = [t for t in (copy / "tests").rglob(f"test_{Path(module).stem}.py") if module]
-    tests = dict.fromkeys([*(str(t.relative_to(copy)) for t in own), *room.tests])
-    command = [sys.executable, "-m", "pytest", "-x", "-q", "-n", "0", "-m", "not slow"]
-    command += ["-p", "no:cacheprovider", "-p", "no:randomly", *tests]
-    begin = time.monotonic()
-    process = subprocess.Popen(
-        command, cwd=copy, env=environment, start_new_session=True,
-        stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
-    )  # fmt: skip
-    try:
-        code = process.wait(limit)
-        outcome = SURVIVED if code == 0 else KILLED
-        if code not in (0, 1, 2) and code > 0:
-            outcome = f"no tests ran ({code})"
-    except subprocess.TimeoutExpired:
-        os.killpg(process.pid, signal.SIGKILL)
-        process.wait()
-        outcome = TIMEOUT
-    if room.compiled:
-        shutil.rmtree(cache, ignore_errors=True)
-    return outcome, time.monotonic() - begin
+class Bench:
+    """Runs the tests of a room in a copy, the quick ones first."""
+
+    def __init__(self, copy: Path, room: Room, cheap: float) -> None:
+        self.copy, self.room, self.cheap = copy, room, cheap
+        self.cache = copy.parent / "cache"
+        self.limit = LONGEST
+        self.cost: dict[str, float] = {}
+        self.calls: dict[str, list[str]] = {}
+
+    def __enter__(self) -> Bench:
+        environment = {
+            **os.environ,
+            "PYTHONPATH": str(self.copy),
+            "PYTHONDONTWRITEBYTECODE": "1",
+            "XDG_CACHE_HOME": str(self.cache),
+            "OPENBLAS_NUM_THREADS": "1",
+        }
+        command = [sys.executable, str(ROOT / "benchmarks/warm_tests.py"), *self.room.loaded]
+        self.process = subprocess.Popen(
+            command, cwd=self.copy, env=environment, text=True,
+            stdin=subprocess.PIPE, stdout=subprocess.PIPE,
+        )  # fmt: skip
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.process.stdin.close()
+        self.process.wait()
+
+    def measure(self) -> None:
+        """Without a mutant: all pass, what each costs, and which functions it calls."""
+        costs, seen = self.copy.parent / "costs.csv", self.copy.parent / "seen.json"
+        own = [f"test_{Path(module).stem}" for module in self.room.modules]
+        tests = [t for t in self.room.tests if self.cheap > 0.0 or any(o in t for o in own)]
+        outcome, seconds = self._asked(tests, [f"--costs={costs}"], str(seen))
+        if outcome != SURVIVED:
+            sys.exit(f"the tests of {self.room.modules[0]} fail without a mutant: {outcome}")
+        self.limit = 4.0 * seconds + SLACK
+        with costs.open(encoding="utf-8", newline="") as rows:
+            self.cost = {
+                row["test"]: float(row["setup"]) + float(row["call"])
+                for row in csv.DictReader(rows)
+            }
+        self.calls = json.loads(seen.read_text(encoding="utf-8"))
+
+    def tested(self, mutant: Mutant) -> tuple[str, float]:
+        """Outcome and processor seconds: the file named as the module first, then by what tests
+        cost; only those that call the function, where that can be seen."""
+        own = f"test_{Path(mutant.module).stem}"
+        place = f"{mutant.module}:{mutant.first}"
+        every = mutant.first == 0 or self.room.compiled
+        ranks = {
+            test: (own not in test.split("::")[0], cost)
+            for test, cost in self.cost.items()
+            if every or place in self.calls[test]
+        }
+        tests = sorted((t for t in ranks if ranks[t] <= (True, self.cheap)), key=ranks.__getitem__)
+        if not tests:
+            return SURVIVED, 0.0
+        outcome, seconds = self._asked(tests, [], "")
+        if self.room.compiled:
+            shutil.rmtree(self.cache, ignore_errors=True)
+        return outcome, seconds
+
+    def _asked(self, tests: list[str], options: list[str], seen: str) -> tuple[str, float]:
+        line = {"tests": tests, "options": options, "limit": self.limit, "seen": seen}
+        self.process.stdin.write(json.dumps(line) + "\n")
+        self.process.stdin.flush()
+        answer = json.loads(self.process.stdout.readline())
+        code = answer["code"]
+        if code is None:
+            return TIMEOUT, answer["seconds"]
+        if code in {3, 4, 5}:
+            return f"no tests ran ({code})", answer["seconds"]
+        return (SURVIVED if code == 0 else KILLED), answer["seconds"]
 
 
-def _report(chosen: list[Mutant], total: int, done: dict[str, str]) -> str:
-    known = [m for m in chosen if m.key in done]
-    survivors = [m for m in known if done[m.key] == SURVIVED]
+def _report(chosen: list[Mutant], total: int, done: dict[tuple[str, str], str]) -> str:
+    known = [m for m in chosen if m.identity in done]
+    survivors = [m for m in known if done[m.identity] == SURVIVED]
     lines = ["| module | mutants | killed | timeouts | survived |", "|---|--:|--:|--:|--:|"]
     for name in dict.fromkeys(
         m.module for room in ROOMS for m in known if m.module in room.modules
     ):
-        here = [done[m.key] for m in known if m.module == name]
+        here = [done[m.identity] for m in known if m.module == name]
         counts = [here.count(outcome) for outcome in (KILLED, TIMEOUT, SURVIVED)]
         lines.append(f"| `{name}` | {len(here)} | {' | '.join(map(str, counts))} |")
     if known:

@@ -30,6 +30,7 @@ from pathlib import Path
 import numpy as np
 
 import ves_twin as vt
+from ves_twin.cli import progress
 from ves_twin.cli.main import main
 from ves_twin.core.recording.files import load_recording
 from ves_twin.core.recording.recording import Recording
@@ -250,6 +251,7 @@ def attack(seed: int, kills: int, others: int, place: Path) -> Attack:
         others: attacks on other commands, and a fifth as many pairs.
         place: an empty folder.
     """
+    progress.FIRST = 3600.0  # lines of progress come by the clock
     found = Attack(seed, place)
     source = place / "source"
     short = {**SETTINGS, "run.duration": 3.0}

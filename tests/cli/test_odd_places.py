@@ -3,10 +3,11 @@
 import os
 import subprocess
 import sys
+from pathlib import Path
 
 import pytest
 
-from ves_twin.cli.main import main
+from ves_twin.cli.main import _give_matplotlib_a_folder, main
 
 ASCII = {"LC_ALL": "C", "PYTHONUTF8": "0", "PYTHONCOERCECLOCALE": "0"}
 """A locale whose file names are ASCII: Python hands other bytes on as they are."""
@@ -88,3 +89,14 @@ def test_too_little_memory_is_one_line(monkeypatch, capsys):
     monkeypatch.setattr("ves_twin.cli.scenarios.execute", full)
     assert main(["scenarios"]) == 2
     assert capsys.readouterr().err.startswith("ves-twin: not enough memory")
+
+
+@pytest.mark.parametrize("home", ["/dev/null", "/nowhere"])
+def test_matplotlib_has_a_folder_where_home_is_none(home, monkeypatch, tmp_path):
+    """A home that can be written but is a file, too; matplotlib would say so beside the result."""
+    monkeypatch.setenv("HOME", home)
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
+    monkeypatch.setenv("MPLCONFIGDIR", "")  # so that what is set here is taken back
+    monkeypatch.delenv("MPLCONFIGDIR")
+    _give_matplotlib_a_folder()
+    assert Path(os.environ["MPLCONFIGDIR"]).is_dir()

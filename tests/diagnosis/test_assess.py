@@ -10,7 +10,15 @@ from scipy.stats import norm
 from toy import SD, Toy, programme
 
 from ves_twin.diagnosis.adequacy import cells, misfit
-from ves_twin.diagnosis.assess import GLANCE, STRANGE, assess, first_look, pull_limit
+from ves_twin.diagnosis.assess import (
+    FAR,
+    GLANCE,
+    STRANGE,
+    _left,
+    assess,
+    first_look,
+    pull_limit,
+)
 from ves_twin.diagnosis.prewhitened import Prewhitened
 from ves_twin.diagnosis.runs import Runs
 from ves_twin.diagnosis.signature_library import build_bank
@@ -146,14 +154,15 @@ IN_ORDER = {"plant.gain": 1.06, "plant.slope": 0.15}
 LIMITS = (15.0, 5.0, 4.0)
 
 
-def assessed(values):
+def assessed(values, added=0.0, sparse=False):
     """A record of a bent plant, and how many runs it took to assess it."""
     library = build_bank(Runs(Bent(), (FED,), (0, 1)))
     clean = Bent().simulate(FED, values)
     noise = np.random.default_rng(1).standard_normal(clean.shape) * SD
-    record = (clean + noise).astype(np.float32)
+    record = (clean + noise + added).astype(np.float32)
     before = Bent.count
-    found = assess(record, library, whitening_declared(library.base.runs), *LIMITS)
+    noise_as_declared = whitening_declared(library.base.runs)
+    found = assess(record, library, noise_as_declared, *LIMITS, sparse=sparse)
     return found, Bent.count - before
 
 
@@ -162,6 +171,32 @@ def test_a_rig_in_order_that_bends_is_known_after_a_glance():
     assert found.commissioning is not None
     assert not found.exceeds(*LIMITS)
     assert runs <= 1 + 2 * 2 * GLANCE  # where it begins, and two steps of two trials each
+
+
+def test_a_rig_that_a_glance_leaves_a_little_over_its_limits_is_fitted_to_the_noise():
+    """No cause is tried there: one beside commissioning errors would leave them far off."""
+    found, _ = assessed({"plant.gain": 1.06, "plant.slope": 0.25})
+    n = len(found.commissioning.residual)
+    assert found.commissioning.chi2 < n + 4.0 * np.sqrt(2.0 * n)
+
+
+def test_of_many_parameters_no_new_columns_are_computed_where_noise_stays_far():
+    strange = 2.0 * np.sin(2.0 * np.pi * 9.0 * FED.time)[:, None] * [1.0, -2.0]
+    (whole, runs), (rough, fewer) = (assessed(IN_ORDER, strange, many) for many in (False, True))
+    for found in (whole, rough):
+        assert found.exceeds(*LIMITS)
+        fit = found.commissioning
+        assert _left(found) == fit.chi2 / len(fit.residual) > FAR
+    assert fewer < runs
+    assert _left(replace(whole, commissioning=None)) == 0.0
+
+
+def test_of_many_parameters_what_comes_near_to_noise_is_fitted_as_of_few():
+    values = {"plant.gain": 1.06, "plant.slope": 0.25}
+    (few, _), (many, _) = (assessed(values, sparse=sparse) for sparse in (False, True))
+    assert many.exceeds(*LIMITS) == few.exceeds(*LIMITS)
+    n = len(many.commissioning.residual)
+    assert many.commissioning.chi2 < n + 4.0 * np.sqrt(2.0 * n)
 
 
 def test_a_loud_cause_is_taken_out_of_the_commissioning_errors_that_it_was_fitted_with():

@@ -8,11 +8,16 @@ import numpy as np
 import pytest
 from toy import QUICK, SD, Toy, programme
 
-from ves_twin.diagnosis.assess import assess
-from ves_twin.diagnosis.explain import FAR, explain
-from ves_twin.diagnosis.fits import CLOSE, _starts
+from ves_twin.diagnosis.assess import STRANGE, assess
+from ves_twin.diagnosis.explain import FAR, _far, explain
+from ves_twin.diagnosis.fit_context import FitContext
+from ves_twin.diagnosis.fits import CLOSE, _starts, job
+from ves_twin.diagnosis.judge import CLEAR, SLACK, _commissioning
 from ves_twin.diagnosis.null import Thresholds
-from ves_twin.diagnosis.runs import Runs
+from ves_twin.diagnosis.pairs import PAIRS
+from ves_twin.diagnosis.probability import probabilities
+from ves_twin.diagnosis.refine import refine
+from ves_twin.diagnosis.runs import Runs, silent
 from ves_twin.diagnosis.signature_library import build_bank
 from ves_twin.diagnosis.whitening import whitening_declared
 
@@ -117,6 +122,98 @@ def test_two_causes_explain_what_one_does_not(looked):
     assert all(len(fit.causes) == 1 for fit in double.alone)
 
 
+def test_a_second_cause_is_found_beside_the_best_where_the_bank_proposes_no_pair(
+    looked, monkeypatch
+):
+    """The bank's pairs are of what stands at nominal; beside a fit a second cause shows better."""
+    monkeypatch.setattr("ves_twin.diagnosis.screen.Screen.pairs", lambda *_: [])
+    double = explain(looked(TWO), LEVELS, QUICK)
+    assert double.adequate
+    assert effects(double.best) == {"friction", "ripple"}
+
+
+@pytest.mark.parametrize("rough", [False, True])
+def test_what_a_rough_fit_of_commissioning_errors_leaves_too_much_makes_nothing_likelier(
+    looked, monkeypatch, rough
+):
+    """The model's error is a share of what the cause takes off chi^2, as far as that is sure."""
+    place = "ves_twin.diagnosis.judge"
+    allowed = []
+
+    def noted(fits, allowance, odds):
+        allowed.append(allowance)
+        return probabilities(fits, allowance, odds)
+
+    def left(*given):
+        fit = _commissioning(*given)[0]
+        return replace(fit, chi2=fit.chi2 + 1e4), rough
+
+    monkeypatch.setattr(f"{place}.probabilities", noted)
+    usual = explain(looked(ONE), LEVELS, QUICK, together=False)
+    monkeypatch.setattr(f"{place}._commissioning", left)
+    explain(looked(ONE), LEVELS, QUICK, together=False)
+    taken = usual.commissioning.chi2 - usual.best.chi2
+    sure = taken if rough else taken + 1e4
+    plain, with_more = allowed
+    assert plain == pytest.approx(QUICK.model_error**2 * taken, rel=1e-6)
+    # the power of the cause is the fall of chi^2 of a linear plant; noise of another level differs
+    assert with_more == pytest.approx(QUICK.model_error**2 * sure, rel=1e-3)
+
+
+@pytest.mark.parametrize(
+    ("sparse", "short", "rough", "rounds"),
+    [
+        (False, 40.0, False, []),
+        (False, -5.0, False, [QUICK.rounds]),
+        (True, 40.0, False, [0]),
+        (True, 400.0, True, []),
+        (True, -5.0, False, [0, QUICK.rounds]),
+    ],
+)
+def test_commissioning_errors_get_new_columns_where_the_cause_takes_off_little(
+    looked, monkeypatch, sparse, short, rough, rounds
+):
+    """`short`: by how much chi^2 without the cause is beyond what counts as clear."""
+    record, asked = looked({"friction.size": 0.2}), []
+    runs, evidence = record.evidence.runs, record.evidence
+    friction = next(h for h in record.screen.bank.hypotheses if h.effect == "friction")
+    leader = refine(evidence, (friction,), runs.origin, record.screen.bank.base)
+    taken = refine(evidence, (), runs.origin, record.screen.bank.base).chi2 - leader.chi2
+    assert SLACK * leader.chi2 == pytest.approx(160.0, abs=20.0)
+
+    def noted(evidence, fit, count):
+        asked.append(count)
+        return fit
+
+    monkeypatch.setattr("ves_twin.diagnosis.judge.again", noted)
+    level = replace(LEVELS, effect=(taken - short) / CLEAR)
+    desk = FitContext(record, level, replace(QUICK, sparse=sparse), silent)
+    fit, told = _commissioning(desk, evidence, leader, False)
+    assert fit.causes == ()
+    assert (told, asked) == (rough, rounds)
+    assert _commissioning(desk, evidence, leader, True)[1] == sparse
+
+
+def test_pairs_beside_the_best_leave_room_for_those_of_the_bank(looked, monkeypatch):
+    record, tried = looked(TWO), []
+    odd = [s for s in record.suspects if _name(record, s) in {"drift", "lag"}]
+    monkeypatch.setattr("ves_twin.diagnosis.screen.Screen.pairs", lambda *_: [tuple(odd)])
+
+    def noted(evidence, causes, sizes, start):
+        tried.append({cause.effect for cause in causes})
+        return job(evidence, causes, sizes, start)
+
+    monkeypatch.setattr("ves_twin.diagnosis.pairs.job", noted)
+    explain(record, LEVELS, QUICK)
+    pairs = [names for names in tried if len(names) == 2]
+    assert {"drift", "lag"} in pairs
+    assert len(pairs) <= PAIRS
+
+
+def _name(record, suspect):
+    return record.screen.bank.hypotheses[suspect.hypothesis].effect
+
+
 def test_what_no_cause_of_the_library_explains_is_not_adequate(looked):
     time = FED.time[:, None]
     strange = 0.3 * np.sin(2.0 * np.pi * 9.0 * time) * np.where(time > 4.0, [1.0, -2.0], 0.0)
@@ -142,6 +239,21 @@ def test_what_no_cause_comes_near_is_given_up_before_pairs_and_second_causes(loo
     assert not explain(looked({}, added=strange), LEVELS, QUICK).far
     assert not explain(looked(ONE), LEVELS, many).far
     assert not explain(looked(TWO), LEVELS, many).far
+
+
+@pytest.mark.parametrize(("left", "far"), [(0.4, False), (0.6, True)])
+def test_what_no_cause_takes_half_of_is_far(looked, left, far):
+    """`left`: share of the chi^2 above noise that the best cause leaves."""
+    time = FED.time[:, None]
+    strange = 3.0 * np.sin(2.0 * np.pi * 9.0 * time) * np.where(time > 4.0, [1.0, -2.0], 0.0)
+    first = looked({}, added=strange)
+    desk = FitContext(first, LEVELS, replace(QUICK, sparse=True), silent)
+    alone = first.commissioning
+    noise = len(alone.residual)
+    best = replace(alone, chi2=noise + left * (alone.chi2 - noise))
+    assert best.chi2 > STRANGE * noise
+    assert _far(desk, [replace(best, chi2=2.0 * best.chi2), best]) == far
+    assert not _far(replace(desk, settings=QUICK), [best])
 
 
 def test_a_machine_of_many_parameters_names_the_same(looked):

@@ -9,7 +9,15 @@ import pytest
 from toy import NUISANCES, SD, Toy, programme, shape
 
 from ves_twin.diagnosis.evidence import Evidence
-from ves_twin.diagnosis.gain import Gain, held_out_gain
+from ves_twin.diagnosis.gain import (
+    BLOCK_SECONDS,
+    Gain,
+    _Axes,
+    _Carried,
+    _starts,
+    _stretches,
+    held_out_gain,
+)
 from ves_twin.diagnosis.linearise import linearise
 from ves_twin.diagnosis.refine import refine
 from ves_twin.diagnosis.runs import Runs
@@ -121,6 +129,7 @@ def test_the_interval_is_of_its_confidence_and_of_its_draws(fitted, held_out):
     assert gain.low < half.low < half.high < gain.high
     # 5 to 95 % and 25 to 75 % of a normal: 1.645 and 0.674 sd
     assert (gain.high - gain.low) / (half.high - half.low) == pytest.approx(2.44, rel=0.15)
+    assert held_out_gain(runs, measured, whitening, *fitted, seed=0) == gain  # it repeats itself
     other = held_out_gain(runs, measured, whitening, *fitted, seed=1)
     assert other.low != gain.low
     # quantiles of 2000 draws
@@ -161,6 +170,57 @@ PASSING = Gain(0.5, 0.4, 0.6, 4.0, 2.0, {"out": (1.0, 0.5)}, 3.0)
 def test_what_a_gain_must_show(changed, passed, carries_on):
     gain = replace(PASSING, **changed)
     assert (gain.passed, gain.carries_on) == (passed, carries_on)
+
+
+def test_carried_columns_in_tolerances_are_those_of_a_commissioning_sd(fitted):
+    """What a fit knows better than commissioning is given back its commissioning sd."""
+    extended = fitted[1]
+    runs = Runs(Toy(), (programme(2),), (0, 1))
+    axes = _Axes.of(runs, extended)
+    found = _Carried.of(runs, extended, None)._in_tolerances(axes)
+    where = np.concatenate([axes.carried, axes.new])
+    names = [runs.coordinates[i].parameter.name for i in where]
+    assert sorted(names) == ["friction.size", *sorted(p.name for p in NUISANCES)]
+    usual = linearise(runs, runs.origin)
+    for name, column, i in zip(names, found[:-1], where, strict=True):
+        if name == "friction.size":  # commissioning leaves none of it open
+            assert np.all(column == 0.0)
+        else:
+            expected = usual.columns[np.flatnonzero(runs.nuisances == i)[0]]
+            np.testing.assert_allclose(column, expected, rtol=SINGLE, atol=1e-4)
+
+
+def test_columns_that_are_known_at_nominal_serve_where_they_do_not_bend(fitted, held_out):
+    _, runs, measured, whitening, gain = held_out
+    known = held_out_gain(runs, measured, whitening, *fitted, base=linearise(runs, runs.origin))
+    for name in ("share", "low", "high", "before", "after", "without"):
+        assert getattr(known, name) == pytest.approx(getattr(gain, name), rel=2.0 * SINGLE)
+
+
+def test_stretches_hold_every_sample_once_and_none_is_short(held_out):
+    _, runs, _, whitening, _ = held_out
+    stride = round(BLOCK_SECONDS / runs.grids[0].step)
+    for rows in (stride // 4, stride, 3 * stride + stride // 4, 3 * stride + 3 * stride // 4):
+        lengths = np.diff([*_starts(runs, 0, rows), rows])
+        assert lengths.sum() == rows
+        assert np.all(lengths[:-1] == stride)
+        assert lengths[-1] <= 1.5 * stride
+        assert lengths[-1] >= min(rows, stride // 2)
+    assert _stretches(runs, whitening).sum() == len(whitening.freedom)
+
+
+@pytest.mark.parametrize(
+    ("changed", "unconfirmed"),
+    [
+        ({}, False),
+        ({"low": -0.1}, True),
+        ({"share": None, "low": None}, False),
+        ({"share": None, "low": None, "after": 4.1}, True),
+        ({"share": None, "low": None, "after": 4.0}, False),
+    ],
+)
+def test_what_speaks_against_the_causes(changed, unconfirmed):
+    assert replace(PASSING, **changed).unconfirmed == unconfirmed
 
 
 class Turning(Toy):

@@ -2,18 +2,27 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from pendulum import PLANT, STEP, fed
 from scipy.signal import lfilter
-from toy import Toy, programme
+from toy import ROWS, SD, Toy, programme
 
 from ves_twin.core.errors import InvalidInputError
 from ves_twin.core.recording.recording import Recording, RecordingInfo
 from ves_twin.diagnosis.adequacy import cells, misfit, misfit_floor
+from ves_twin.diagnosis.forward import Excitation
 from ves_twin.diagnosis.grid import AnalysisGrid
 from ves_twin.diagnosis.runs import Runs
-from ves_twin.diagnosis.whitening import whitening_declared, whitening_measured
+from ves_twin.diagnosis.whitening import (
+    FEWEST,
+    ORDER,
+    _periodogram,
+    whitening_declared,
+    whitening_measured,
+)
 
 
 @pytest.fixture(scope="module")
@@ -92,3 +101,146 @@ def test_the_grid_keeps_what_is_slow_and_drops_what_would_fold_back():
     assert kept == pytest.approx(np.sin(2 * np.pi * 8.0 * grid.times(time)), abs=0.01)
     folding = np.sin(2 * np.pi * 92.0 * time)[:, None]  # would come back as 8 Hz
     assert np.abs(grid.reduce(folding)).max() < 0.01
+
+
+def toy_runs(hole=None) -> Runs:
+    """Of a plant whose channels have a grid of the recording's own rate and white noise."""
+    holes = () if hole is None else (hole,)
+    return Runs(Toy(), (programme(),), (0, 1), holes=holes)
+
+
+def white(seed: int, rows: int = ROWS) -> np.ndarray:
+    noise = np.random.default_rng(seed).standard_normal((rows, 2)) * SD
+    return noise.astype(np.float32)
+
+
+def still(values: np.ndarray, period: float = 0.01) -> Recording:
+    signals = {"drive.u": np.zeros((len(values), 1)), "out": values}
+    return Recording(period * np.arange(len(values)), signals, RecordingInfo("measured"))
+
+
+def test_a_line_in_the_standstill_is_no_noise():
+    line = np.linspace(-1.0, 1.0, 4000)[:, None] * [7.0, -30.0] + [5.0, -2.0]
+    noise = white(1, 4000).astype(float)
+    plain, added = (whitening_measured(toy_runs(), still(x)) for x in (noise, noise + line))
+    # the grid is in single precision: 1e-7 of lines 600 times the noise
+    np.testing.assert_allclose(added.mixing, plain.mixing, rtol=1e-3)
+    np.testing.assert_allclose(added.filters, plain.filters, atol=1e-3)
+
+
+@pytest.mark.parametrize(("share", "told"), [(0.7e-3, False), (1.5e-3, True)])
+def test_a_channel_below_a_thousandth_of_its_declared_power_tells_nothing(share, told):
+    noise = white(1, 4000) * [1.0, np.sqrt(share)]
+    found = whitening_measured(toy_runs(), still(noise))
+    sd = 1.0 / found.mixing[0, 1, 1]
+    expected = SD[1] * (np.sqrt(share) if told else 1.0)
+    assert sd == pytest.approx(expected, rel=0.08)  # 4000 rows: 3 sd of 1.1 %, and the mixing
+
+
+@pytest.mark.parametrize(("ratio", "right"), [(1.009, True), (1.011, False), (0.989, False)])
+def test_a_standstill_has_the_rate_of_the_recordings_to_a_percent(ratio, right):
+    if right:
+        assert whitening_measured(toy_runs(), still(white(1, 400), 0.01 * ratio)).measured
+    else:
+        with pytest.raises(InvalidInputError, match="standstill period"):
+            whitening_measured(toy_runs(), still(white(1, 400), 0.01 * ratio))
+
+
+@pytest.mark.parametrize("left", [FEWEST, FEWEST - 1])
+def test_a_standstill_mixes_channels_only_where_enough_samples_are_whole(left):
+    hole = np.zeros((ROWS, 2), bool)
+    hole[: ROWS - left - ORDER - 1, 0] = True  # a sample rests on so many rows before it
+    runs = toy_runs(hole)
+    if left >= FEWEST:
+        assert whitening_measured(runs, still(white(1, 400))).measured
+    else:
+        with pytest.raises(InvalidInputError, match="between the holes"):
+            whitening_measured(runs, still(white(1, 400)))
+
+
+def test_a_hole_of_one_channel_is_one_of_all_only_where_they_are_mixed():
+    hole = np.zeros((ROWS, 2), bool)
+    hole[100:200, 0] = True
+    own = whitening_declared(toy_runs(hole))
+    mixed = replace(own, mixing=own.mixing + np.array([[0.0, 0.0], [1.0, 0.0]]))
+    apart, together = (w.blocks(w.weights)[0] for w in (own, mixed))
+    lost = 100 + ORDER + 1
+    assert np.array_equal(ROWS - ORDER - 1 - apart.sum(axis=0), [lost, 0])
+    assert np.array_equal(ROWS - ORDER - 1 - together.sum(axis=0), [lost, lost])
+    assert np.array_equal(own.freedom, own.weights)
+    assert np.all(own.apply(white(3))[own.weights == 0.0] == 0.0)
+
+
+def test_without_holes_every_sample_counts():
+    declared = whitening_declared(toy_runs())
+    assert declared.weights is None
+    assert np.array_equal(declared.freedom, np.ones(2 * (ROWS - ORDER - 1)))
+
+
+def test_the_level_that_a_record_shows_is_of_the_samples_that_count():
+    hole = np.zeros((ROWS, 2), bool)
+    hole[:400] = True
+    rows = 1.2 * white(4)
+    for runs in (toy_runs(), toy_runs(hole)):
+        declared = whitening_declared(runs)
+        own = declared.adapted(declared.apply(rows))
+        # 400 rows of which two thirds of the spectrum are taken: 3 sd of 4 %
+        assert own.level[0] == pytest.approx([1.2, 1.2], rel=0.13)
+        assert declared.floor(declared.apply(rows)) == 1.0
+
+
+@pytest.mark.parametrize("colour", [-0.25, 0.0, 0.3])
+def test_the_colour_that_a_long_record_shows_is_its_own(colour):
+    time = 0.01 * np.arange(8000)
+    long = Runs(Toy(), (Excitation("long", time, {"drive.u": np.zeros((8000, 1))}),), (0, 1))
+    declared = whitening_declared(long)
+    z = declared.apply(declared.draw(np.random.default_rng(2), 1.1, colour))
+    own = declared.adapted(z)
+    # two thirds of 8000 samples: 3 sd of 1.4 %, and a step of the grid
+    assert own.colour[0] == pytest.approx([colour] * 2, abs=0.05)
+    assert own.level[0] == pytest.approx([1.1, 1.1], rel=0.04)
+
+
+def test_what_was_adapted_stays_when_it_is_adapted_again():
+    declared = whitening_declared(toy_runs())
+    rows = 1.3 * white(5)
+    own = declared.adapted(declared.apply(rows))
+    again = own.adapted(own.apply(rows))
+    assert again.level == pytest.approx(own.level, rel=0.02)
+    assert again.colour == pytest.approx(own.colour, abs=0.03)  # a step of the grid: 0.025
+
+
+@pytest.mark.parametrize(
+    ("share", "taken"), [(0.0, False), (0.29, False), (0.31, True), (0.97, True), (1.0, False)]
+)
+def test_noise_is_told_between_the_motion_and_half_the_rate_of_the_grid(share, taken):
+    """A tone at a share of the Nyquist rate, with a whole number of periods."""
+    tone = np.cos(share * np.pi * np.arange(800))[:, None]
+    power, angle = _periodogram(tone)
+    assert power.shape == (len(angle), 1)
+    if taken:
+        # Parseval: n / 4 in the one bin at the tone's angle
+        assert angle[np.argmax(power)] == pytest.approx(share * np.pi)
+        assert power.max() == pytest.approx(200.0)
+    else:
+        assert power.max() < 1e-9
+
+
+def test_poses_at_rest_have_noise_without_memory_and_lose_no_row():
+    rest = Runs(Toy(), (replace(programme(), poses=True),), (0, 1))
+    declared = whitening_declared(rest)
+    rows = 1.2 * white(7)
+    z = declared.apply(rows)
+    np.testing.assert_allclose(z.reshape(-1, 2), rows / np.array(SD), rtol=1e-5)
+    assert len(declared.times()[0]) == len(declared.blocks(z)[0]) == len(declared.freedom) / 2
+    own = declared.adapted(z)
+    assert np.abs(own.colour).max() < 1e-15
+    assert own.level[0] == pytest.approx([1.2, 1.2], rel=0.09)  # 540 of 800: 3 sd of 3 %
+    drawn = declared.apply(declared.draw(np.random.default_rng(1), 1.0, 0.4)).reshape(-1, 2)
+    assert np.mean(drawn**2) == pytest.approx(1.0, abs=0.11)  # 3 sd of sqrt(2 / 1600)
+    # one rho of 1 / sqrt(1600) is 0.025
+    assert abs(np.mean(drawn[1:] * drawn[:-1])) < 0.1
+    hole = np.zeros((ROWS, 2), bool)
+    hole[5, 0] = True
+    weights = whitening_declared(replace(rest, holes=(hole,))).weights
+    assert np.count_nonzero(weights == 0.0) == 1

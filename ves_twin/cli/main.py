@@ -154,7 +154,9 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 def _give_matplotlib_a_folder() -> None:
     """Where there is no home to write: it would warn, and look for its fonts in every command."""
-    if "MPLCONFIGDIR" not in os.environ and not os.access(os.path.expanduser("~"), os.W_OK):
+    home = os.path.expanduser("~")
+    writable = os.path.isdir(home) and os.access(home, os.W_OK)
+    if "MPLCONFIGDIR" not in os.environ and not writable:
         with suppress(OSError):  # no place at all: whoever needs one says so
             os.environ["MPLCONFIGDIR"] = str(cache_folder("matplotlib"))
 

@@ -10,7 +10,7 @@ import numpy as np
 
 
 class ReadOnly:
-    """Base of frozen dataclasses: their arrays, alone or in a mapping, cannot be written.
+    """Base of frozen dataclasses: their arrays, alone, in a tuple or a mapping, cannot be written.
 
     They are views: whoever made an array and holds it may write it still.
     """
@@ -20,9 +20,16 @@ class ReadOnly:
             value = getattr(self, field.name)
             if isinstance(value, np.ndarray):
                 object.__setattr__(self, field.name, _read_only(value))
+            elif type(value) is tuple:
+                object.__setattr__(self, field.name, tuple(map(_read_only, value)))
             elif isinstance(value, Mapping):
                 kept = {key: _read_only(item) for key, item in value.items()}
                 object.__setattr__(self, field.name, kept)
+
+    def __setstate__(self, state: dict[str, Any]) -> None:
+        """A copy, or what another process sent, is made without `__init__`."""
+        self.__dict__.update(state)
+        ReadOnly.__post_init__(self)
 
 
 def _read_only(value: Any) -> Any:

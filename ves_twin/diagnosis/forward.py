@@ -12,6 +12,7 @@ from typing import Protocol
 import numpy as np
 
 from ves_twin.core.errors import InvalidInputError, UnknownNameError
+from ves_twin.core.read_only import ReadOnly
 from ves_twin.core.recording.recording import POSES, Recording
 from ves_twin.core.types import FloatArray
 from ves_twin.diagnosis.grid import RATE
@@ -140,7 +141,7 @@ class Hypothesis:
 
 
 @dataclass(frozen=True)
-class Excitation:
+class Excitation(ReadOnly):
     """What was fed into the plant: drive signals on one clock.
 
     Attributes:

@@ -49,7 +49,8 @@ def judge(desk: FitContext, fits: list[Fit], far: bool = False) -> Explanation:
     runs = first.evidence.runs
     leader = min(fits, key=lambda fit: fit.chi2)
     declared = first.screen.whitening
-    plain = replace(declared, colour=0.0 * declared.colour, level=0.0 * declared.level + 1.0)
+    white, unit = np.zeros_like(declared.colour), np.ones_like(declared.level)
+    plain = replace(declared, colour=white, level=unit)
     own = plain.adapted(plain.apply(bare_residual(first.evidence, leader)))
     evidence = Evidence(runs, first.evidence.measured, own)
     commissioning, rough = _commissioning(desk, evidence, leader, far)
@@ -124,8 +125,7 @@ def _second(desk: FitContext, evidence: Evidence, fit: Fit, allowance: float) ->
     """Best score of a further cause beside a fit: by the nominal bank, then by one at the fit."""
     bank = desk.first.screen.bank
     z = residual_about(evidence, fit, bank.base)
-    suspects = Screen(bank, evidence.whitening, fit.free).suspects(z)
-    score = suspects[0].score if suspects else 0.0
+    score = Screen(bank, evidence.whitening, fit.free).suspects(z)[0].score
     if score < desk.thresholds.effect + allowance:
         return score
     return max((s.score for s in suspects_at(desk, evidence, fit)[1]), default=0.0)

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ves_twin.core.read_only import ReadOnly
 from ves_twin.core.types import FloatArray, IntArray, SingleArray
 from ves_twin.diagnosis.adequacy import Cell, cells
 from ves_twin.diagnosis.assess import Assessment
@@ -18,7 +19,7 @@ from ves_twin.diagnosis.whitening import Whitening
 
 
 @dataclass(frozen=True)
-class Traces:
+class Traces(ReadOnly):
     """One recording on the analysis grid.
 
     Attributes:

@@ -8,7 +8,7 @@ from functools import cached_property
 
 import numpy as np
 from scipy.linalg import solve_toeplitz
-from scipy.signal import lfilter
+from scipy.signal import detrend, lfilter
 
 from ves_twin.core.errors import InvalidInputError
 from ves_twin.core.recording.recording import Recording
@@ -233,12 +233,10 @@ def whitening_measured(runs: Runs, standstill: Recording) -> Whitening:
     period = float(np.mean(np.diff(standstill.time)))
     if any(abs(g.period / period - 1.0) > 0.01 for g in runs.grids):
         raise InvalidInputError("standstill period [s]", period, f"{grid.period} as recorded")
-    noise = grid.reduce(rows)
+    noise = detrend(grid.reduce(rows), axis=0)
     count = len(noise)
     if count < 20 * ORDER:
         raise InvalidInputError("standstill rows on the grid", count, f"at least {20 * ORDER}")
-    line = np.vander(np.linspace(-1.0, 1.0, count), 2)
-    noise = noise - line @ np.linalg.lstsq(line, noise, rcond=None)[0]
     products = [noise[: count - j].T @ noise[j:] / count for j in range(ORDER + 1)]
     covariance = np.array([np.diag(p) for p in products]).T
     silent = covariance[:, 0] < SILENT * np.array([channel.sd for channel in channels]) ** 2

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ves_twin.core.read_only import ReadOnly
 from ves_twin.core.types import FloatArray
 from ves_twin.data.quality.check import Check, Grade
 from ves_twin.diagnosis.envelope import ENVELOPE_SD
@@ -36,7 +37,7 @@ class Basis(StrEnum):
 
 
 @dataclass(frozen=True)
-class Traces:
+class Traces(ReadOnly):
     """What was compared: time [s] (n,), and signals (n, width) as they were and as expected.
 
     `reach` is the sd of what a machine in order shows about `expected`, of noise and tolerances,

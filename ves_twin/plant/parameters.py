@@ -10,6 +10,7 @@ from pathlib import Path
 import numpy as np
 
 from ves_twin.core.errors import InvalidInputError, UnknownNameError
+from ves_twin.core.read_only import ReadOnly
 from ves_twin.core.toml_file import check_schema, read_toml
 from ves_twin.core.types import FloatArray
 from ves_twin.core.units import check_unit, to_si, unit_tail
@@ -38,7 +39,7 @@ class Grade(StrEnum):
 
 
 @dataclass(frozen=True)
-class Parameter:
+class Parameter(ReadOnly):
     """One number or array of the rig.
 
     Attributes:
@@ -90,7 +91,6 @@ class Parameter:
             raise InvalidInputError(self.name, came, bounds)
         if self.unit == "1" and np.any(self.value != np.rint(self.value)):
             raise InvalidInputError(self.name, came, "a whole number")
-        self.value.setflags(write=False)
         return self
 
 

@@ -14,6 +14,7 @@ from ves_twin.control.gravity_feedforward import GravityFeedforward
 from ves_twin.control.readings import Readings
 from ves_twin.control.safety import NOT_A_POSE
 from ves_twin.core.errors import ControllerError, VesTwinError, one_line
+from ves_twin.core.read_only import ReadOnly
 from ves_twin.core.types import Block, FloatArray
 from ves_twin.mechanics.joint_motion import JointMotion
 from ves_twin.simulator.setpoints import send_setpoints
@@ -21,7 +22,7 @@ from ves_twin.simulator.signal_bus import SignalBus
 
 
 @dataclass(frozen=True)
-class ComputersSnapshot:
+class ComputersSnapshot(ReadOnly):
     """What changes from cycle to cycle outside the board and the state block."""
 
     controller: object

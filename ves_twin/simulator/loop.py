@@ -43,7 +43,7 @@ def _drive_arm(
     spline(s.servo.points, u, p.servo.cycle, work.q_set, work.rate_set)
     for j in range(3):
         board.arm_command[j] = work.q_set[j]
-    if p.late.setpoint.kept > 0:
+    if p.late.setpoint.kept:
         take_late(p.late.setpoint, s.late.angle_past, work.q_set, work.q_set)
         take_late(p.late.setpoint, s.late.rate_past, work.rate_set, work.rate_set)
     for j in range(3):
@@ -104,18 +104,18 @@ def _read_and_command(
     """Transducers, gauge, arm servo, and the leg loop and amplifiers when their clocks strike."""
     for i in range(6):
         s.work.slide[i] = slides[p.layout.slide_at[i]] - p.layout.slide_home[i]
-    if p.late.slide.kept > 0:
+    if p.late.slide.kept:
         take_late(p.late.slide, s.late.slide_past, s.work.slide, s.work.slide)
     read_lengths(p.transducer, s.work.slide, fast[LENGTH:], board.leg_length)
     board.supply_pressure[0] = s.supply.manifold + p.noise.pressure * slow[PRESSURE]
     _drive_arm(p, s, board, tick, qpos, qvel, ctrl, slow)
     if tick % p.clock.leg == 0:
         control_legs(p.legs, s.legs, board.leg_length, board.valve_command)
-    output = s.late.sent if p.late.current.kept > 0 else s.current
+    output = s.late.sent if p.late.current.kept else s.current
     if tick % p.clock.amplifier == 0:
         for i in range(6):
             output[i] = board.valve_command[i]
-    if p.late.current.kept > 0:
+    if p.late.current.kept:
         take_late(p.late.current, s.late.current_past, s.late.sent, s.current)
 
 
@@ -136,10 +136,10 @@ def _move_rig(
         if k == 0:  # later sub-steps carry the forces of later instants
             for i in range(6):
                 s.work.wrench[i] = -sensordata[p.layout.wrench_sensor + i]
-            if p.late.wrench.kept > 0:
+            if p.late.wrench.kept:
                 take_late(p.late.wrench, s.late.wrench_past, s.work.wrench, s.work.wrench)
             inside = sample_wrench(p.sensor, s.sensor, s.work.wrench, time, fast[WHITE:])
-            if p.late.wrench.kept > 0:
+            if p.late.wrench.kept:
                 for i in range(6):
                     s.sensor.true[i] = -sensordata[p.layout.wrench_sensor + i]
     return inside

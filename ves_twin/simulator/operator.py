@@ -10,6 +10,7 @@ from ves_twin.control.belief import Belief
 from ves_twin.control.operation.machine import Machine, Note, Sight
 from ves_twin.control.operation.ramp import Ramp
 from ves_twin.control.operation.state import State, Task
+from ves_twin.core.read_only import ReadOnly
 from ves_twin.core.recording.recording import Event
 from ves_twin.core.types import FloatArray
 from ves_twin.mechanics.kinematics.rotations import matrix_from_quaternion
@@ -24,7 +25,7 @@ AT_SLEEP = 0.01
 
 
 @dataclass(frozen=True)
-class OperatorSnapshot:
+class OperatorSnapshot(ReadOnly):
     """What changes from cycle to cycle."""
 
     machine: Machine

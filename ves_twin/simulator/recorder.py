@@ -9,6 +9,7 @@ from typing import Protocol
 
 import numpy as np
 
+from ves_twin.core.read_only import ReadOnly
 from ves_twin.core.signals import SIGNALS
 from ves_twin.core.types import FloatArray, IntArray
 from ves_twin.mechanics.kinematics.stewart import StewartGeometry, pose_jacobian, track_poses
@@ -74,7 +75,7 @@ class _Buffers:
 
 
 @dataclass(frozen=True)
-class RecorderSnapshot:
+class RecorderSnapshot(ReadOnly):
     """Copy of the buffers, the references and the length of the memory sink."""
 
     at: _Buffers

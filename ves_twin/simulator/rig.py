@@ -11,6 +11,7 @@ import numpy as np
 from ves_twin.control.belief import Belief
 from ves_twin.core.compiled import say_that_it_compiles
 from ves_twin.core.engine_log import log_engine
+from ves_twin.core.read_only import ReadOnly
 from ves_twin.core.types import Block, FloatArray
 from ves_twin.plant.assembly import assemble, compile_model
 from ves_twin.plant.layout import Layout
@@ -25,7 +26,7 @@ from ves_twin.simulator.signal_bus import SignalBus
 
 
 @dataclass(frozen=True)
-class RigSnapshot:
+class RigSnapshot(ReadOnly):
     """Mechanics, compiled state and signals at a tick; noise needs nothing but the tick."""
 
     tick: int

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 from ves_twin.control.leg_loop import start_legs
 from ves_twin.control.operation.machine import Machine
+from ves_twin.core.read_only import ReadOnly
 from ves_twin.core.types import FloatArray
 from ves_twin.plant.hydraulics import PRESSURE_FORM
 from ves_twin.plant.laboratory import Laboratory
@@ -18,7 +19,7 @@ solver does not converge at this level; so a held arm creeps at 2e-4 rad/s, the 
 
 
 @dataclass(frozen=True)
-class SwitchesSnapshot:
+class SwitchesSnapshot(ReadOnly):
     """Share of the pump's pressure, and torque of the joint integrators while they are off."""
 
     share: float

@@ -74,6 +74,19 @@ def test_oil_is_as_stiff_as_the_closed_form(block, travel):
     assert -force / (speed * TICK) == pytest.approx(k, rel=1e-6)
 
 
+@pytest.mark.parametrize(("share", "taken"), [(0.3, 0.3), (0.1, 0.2), (-0.5, 0.2)])
+def test_beyond_the_stroke_a_chamber_keeps_a_fifth_of_its_dead_volume(block, share, taken):
+    p, s = block
+    p["conductance"] = p["leakage"] = 0.0
+    area, dead, beta = p["area"][0, 0], p["dead_volume"][0], p["bulk_modulus"][0]
+    slide = -p["half_stroke"][0] + (share - 1.0) * dead / area
+    before = s["pressure"][0, :, 0].copy()
+    speed = 1e-6  # so slow that the volume stays
+    push(block, np.zeros(6), slide, np.full(6, speed))
+    rise = s["pressure"][0, :, 0] - before
+    assert rise == pytest.approx(-beta * area * speed * TICK / (taken * dead), rel=1e-3)
+
+
 def test_stiffness_at_mid_stroke_is_that_of_the_linear_form(block):
     k = chamber_stiffness(block[0][0], HOME)[0]
     assert k == pytest.approx(

@@ -179,3 +179,28 @@ def test_the_slow_noise_adds_to_the_signal(blocks):
     for _ in range(3000):  # 1 s: the low-pass has settled
         _, reading = sample(blocks, WRENCH)
     np.testing.assert_allclose(reading, WRENCH + 0.25, rtol=0, atol=1e-8)
+
+
+def test_a_signal_at_the_end_of_its_range_is_within_it(blocks):
+    p, _ = blocks
+    p["numerator"] = p["denominator"] = [1.0, 0.0, 0.0]  # no low-pass, whose sum would round
+    p["range"] = np.abs(WRENCH)
+    assert sample(blocks, WRENCH)[0]
+    p["range"] = np.nextafter(np.abs(WRENCH), 0.0)
+    assert not sample(blocks, WRENCH)[0]
+
+
+def test_six_axes_are_read_and_one_sensors_state_is_written(blocks):
+    """What lies behind a vector is another's; compiled code checks no bounds."""
+    p, _ = blocks
+    for name in ("gain", "offset", "drift", "wander", "noise", "calibration"):
+        p[name] = RNG.normal(size=p[name].shape)
+    s = np.zeros(2, force_sensor.STATE)
+    wrench, white = np.full(12, np.nan), np.full(12, np.nan, np.float32)
+    wrench[:6], white[:6] = WRENCH, 1.0
+    force_sensor.start_at(p[0], s[0], wrench[:6], white[:6])
+    force_sensor.wander_on(p[0], s[0], white[:6])
+    force_sensor.sample_wrench(p[0], s[0], wrench[:6], 1.0, white[:6])
+    for name in force_sensor.STATE.names:
+        assert np.all(np.isfinite(s[name][0])), name
+        assert np.all(s[name][1] == 0.0), name

@@ -6,13 +6,14 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ves_twin.core.read_only import ReadOnly
 from ves_twin.core.types import FloatArray
 from ves_twin.mechanics.joint_motion import quintic
 from ves_twin.mechanics.kinematics.stewart import StewartGeometry
 
 
 @dataclass(frozen=True)
-class Ramp:
+class Ramp(ReadOnly):
     """Way between two poses.
 
     Attributes:

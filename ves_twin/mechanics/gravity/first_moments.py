@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ves_twin.core.read_only import ReadOnly
 from ves_twin.core.types import FloatArray
 from ves_twin.mechanics.kinematics.dh_chain import DhChain
 
@@ -17,7 +18,7 @@ _SAMPLES = 64
 
 
 @dataclass(frozen=True)
-class FirstMoments:
+class FirstMoments(ReadOnly):
     """S(q) = sum m_i r_i = H(q) P, with the dependent columns of H removed.
 
     Columns come in the order link 0 x, y, z, link 1 x, y, z, ..., then the masses; each that the

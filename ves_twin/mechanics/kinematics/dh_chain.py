@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ves_twin.core.errors import InvalidInputError
+from ves_twin.core.read_only import ReadOnly
 from ves_twin.core.types import FloatArray
 
 
@@ -31,7 +32,7 @@ class Joint:
 
 
 @dataclass(frozen=True)
-class DhChain:
+class DhChain(ReadOnly):
     """An arm on the platform: link 0 stands on it, link i follows joint i.
 
     Attributes:

@@ -26,13 +26,16 @@ PARAMETERS = np.dtype([("slide", LINE), ("wrench", LINE), ("current", LINE), ("s
 """Rod travel to the transducers, wrench to the sensor's electronics, amplifier output to the
 valves, set-point to the joint servos."""
 
+PAST = (LONGEST, 6)
+"""Shape of the values of the last ticks of a line."""
+
 STATE = np.dtype(
     [
-        ("slide_past", np.float64, (LONGEST, 6)),
-        ("wrench_past", np.float64, (LONGEST, 6)),
-        ("current_past", np.float64, (LONGEST, 6)),
-        ("angle_past", np.float64, (LONGEST, 6)),
-        ("rate_past", np.float64, (LONGEST, 6)),
+        ("slide_past", np.float64, PAST),
+        ("wrench_past", np.float64, PAST),
+        ("current_past", np.float64, PAST),
+        ("angle_past", np.float64, PAST),
+        ("rate_past", np.float64, PAST),
         ("sent", np.float64, 6),
     ]
 )
