@@ -11,7 +11,7 @@ from linear import KINDS, Linear, drawn, halves, recorded, seen
 from ves_twin.diagnosis.build_up.discrepancy import discrepancy
 from ves_twin.diagnosis.build_up.halves import halves_at, split
 from ves_twin.diagnosis.build_up.inseparable import inseparable
-from ves_twin.diagnosis.build_up.paired import Difference, paired
+from ves_twin.diagnosis.build_up.paired import paired
 from ves_twin.diagnosis.build_up.proof import FALSE_SHARE, prove
 from ves_twin.diagnosis.build_up.report import report_of
 from ves_twin.diagnosis.build_up.select import Selector
@@ -256,16 +256,3 @@ def test_held_out_columns_are_simulated_for_chosen_trials_alone():
     assert set(both.held.columns.known) == {0, 2}
     assert len(both.regression.half.columns.known) == len(both.regression.trials) > 2
     assert proof.tested == 2
-
-
-def test_none_is_proved_at_a_p_above_the_rate_however_many_are_plainly_there(monkeypatch):
-    one, two = (seen(PLANT, recorded(PLANT, {}, seed)) for seed in (1, 2))
-    both = halves_at(one, two, one.runs.origin, PLANT.hypotheses)
-    p = dict(zip(range(6), (1e-9, 1e-9, 1e-9, 1e-9, 0.04, 0.1), strict=True))
-    monkeypatch.setattr(
-        "ves_twin.diagnosis.build_up.proof._each",
-        lambda bench, kept: {n: Difference(p[n], 1.0, 9) for n in kept},
-    )
-    proof = prove(both.regression, both.held, list(p))
-    assert set(proof.proved) == {0, 1, 2, 3, 4}
-    assert proof.dropped == {5: 0.1}

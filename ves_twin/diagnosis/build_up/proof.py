@@ -190,8 +190,9 @@ def prove(regression: Regression, held: Half, chosen: Sequence[int], more: int =
 
     Each is judged by its own paired improvement of held-out rows, all others refitted without it.
     The rate counts those that may be false, not those that are plainly there: else one that just
-    fails takes the next with it, the limit falling as others lean on what is gone. None is proved
-    at a p above the rate itself, however many are plainly there.
+    fails takes the next with it, the limit falling as others lean on what is gone. A single p
+    may be above the rate where many are plainly there: a limit of 5 % on each leaves 13.7 % of
+    TX40's torque in place of 9.1 %.
 
     Source: Benjamini and Hochberg 1995, with Storey's (2002) count of those without an effect, over
     all that were put to proof; dropping one by one is outside their theorem, so that the rate is
@@ -211,7 +212,7 @@ def prove(regression: Regression, held: Half, chosen: Sequence[int], more: int =
     null = more + _null([found[n].p for n in kept])
     while True:
         worst = max(kept, key=lambda n: (found[n].p, -found[n].total), default=None)
-        if worst is not None and found[worst].p > FALSE_SHARE * min(len(kept) / null, 1.0):
+        if worst is not None and found[worst].p > FALSE_SHARE * len(kept) / null:
             kept.remove(worst)
             dropped[worst] = found[worst].p
         else:
