@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+from scipy.stats import t as student
 
 from ves_twin.core.errors import InvalidInputError
 from ves_twin.core.types import FloatArray
@@ -54,8 +55,6 @@ class Identification:
 
     def half_width(self, level: float = 0.9) -> FloatArray:
         """Half the interval of each unknown at a level of confidence."""
-        from scipy.stats import t as student  # slow to import
-
         return np.asarray(self.sd * student.ppf(0.5 + level / 2.0, max(self.freedom // 6, 1)))
 
 
