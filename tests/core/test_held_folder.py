@@ -57,6 +57,7 @@ def words_of(command: str, tmp_path: Path, recording: Path) -> list[str]:
         "trend": [str(recording), "--plant", "emps"],
         "compare": [str(recording)],
         "blind": ["make"],
+        "plan": ["--plant", "pendulum", "--design", "causes"],
         "reproduce": ["fig-5-2"],
         "inspect": [str(recording)],
         "import": [str(recording), "--map", str(tmp_path / "map.toml")],

@@ -313,8 +313,8 @@ class TestMutations:
         added = 0.05 * np.sign(np.gradient(u))[:, None] * [1.0, 0.0]
         whole = self.rigs(Toy(), settings, count, added=added)
         assert all(v.verdict is Kind.UNKNOWN for v in whole)
-        monkeypatch.setattr("ves_twin.diagnosis.explain.misfit", lambda *a: 0.0)
-        monkeypatch.setattr("ves_twin.diagnosis.explain._second", lambda *a: 0.0)
+        monkeypatch.setattr("ves_twin.diagnosis.judge.misfit", lambda *a: 0.0)
+        monkeypatch.setattr("ves_twin.diagnosis.judge._second", lambda *a: 0.0)
         said = list(self.rigs(Toy(), settings, count, added=added))
         assert all(v.verdict in (Kind.NAMED, Kind.AMBIGUOUS) for v in said)
 

@@ -94,17 +94,17 @@ def _design(arguments: argparse.Namespace) -> int:
     from ves_twin.cli.progress import RunProgress
     from ves_twin.machines.design import design
 
-    with RunProgress("design", 1.0, unit="share") as progress:
-        found = design(
-            arguments.plant,
-            arguments.design,
-            arguments.scenario,
-            channels=arguments.channels,
-            seconds=arguments.seconds,
-            settings=bank_settings(),
-            progress=progress.share,
-        )
     with output_folder(arguments.out, "design") as held:
+        with RunProgress("design", 1.0, unit="share") as progress:
+            found = design(
+                arguments.plant,
+                arguments.design,
+                arguments.scenario,
+                channels=arguments.channels,
+                seconds=arguments.seconds,
+                settings=bank_settings(),
+                progress=progress.share,
+            )
         found.machine.save_excitation(found.design.excitation, held.path)
         written = sorted(path.name for path in held.path.glob("next_experiment.*"))
         where = f"written   {', '.join(written)} in {held.path}"

@@ -190,7 +190,8 @@ def renewed(local: Linearisation, point: FloatArray, prediction: SingleArray) ->
     """
     runs = local.runs
     moved = (point - local.point)[runs.nuisances] / runs.sd[runs.nuisances]
-    way = max(float(np.sqrt(np.mean(moved**2))), _strange(local, prediction))
+    rms = float(np.linalg.norm(moved)) / np.sqrt(max(len(moved), 1))
+    way = max(rms, _strange(local, prediction))
     bent = np.flatnonzero(local.bends[:-1] * way > STIFF)
     axes = runs.nuisances[bent], runs.sd[runs.nuisances[bent]]
     there = linearise(runs, point, axes=axes, forward_step=FORWARD_STEP)

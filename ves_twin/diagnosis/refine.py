@@ -130,6 +130,12 @@ def refine(
             break
     if probed and np.isfinite(point.chi2):
         point, jacobian = search.descend(point, probe(search, point, jacobian))
+    return _fit(causes, search, point, jacobian)
+
+
+def _fit(causes: tuple[Hypothesis, ...], search: Search, point: Point, jacobian: FloatArray) -> Fit:
+    """What a search came to, with what it knows of its coordinates."""
+    runs, free = search.runs, search.free
     hessian = search.hessian(jacobian)
     spread = np.diag(1.0 / np.sqrt(np.maximum(np.diag(hessian), 1e-30)))
     scaled = spread @ hessian @ spread + 1e-12 * np.eye(len(hessian))  # what nothing shows: wide

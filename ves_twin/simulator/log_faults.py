@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from ves_twin.core.read_only import ReadOnly
 from ves_twin.core.types import FloatArray
 from ves_twin.effects.effect import Effect
 from ves_twin.effects.element import Element
@@ -17,7 +18,7 @@ MEMORY = 0.1
 
 
 @dataclass(frozen=True)
-class LogTail:
+class LogTail(ReadOnly):
     """The last rows as they were handed over: time [s] (n,) and signals (n, width)."""
 
     time: FloatArray = field(default_factory=lambda: np.zeros(0))

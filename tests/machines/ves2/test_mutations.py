@@ -147,9 +147,9 @@ def test_without_refinement_nobody_is_named(monkeypatch, settings, cases):
 @pytest.mark.slow
 def test_without_adequacy_what_the_library_lacks_gets_a_name_of_it(monkeypatch, settings, cases):
     """The best of eight wrong causes is named, since nobody asks whether it leaves noise."""
-    monkeypatch.setattr("ves_twin.diagnosis.explain.misfit", lambda *a: 0.0)
-    monkeypatch.setattr("ves_twin.diagnosis.explain._second", lambda *a: 0.0)
-    monkeypatch.setattr("ves_twin.diagnosis.explain.pull_limit", lambda *a: np.inf)
+    monkeypatch.setattr("ves_twin.diagnosis.judge.misfit", lambda *a: 0.0)
+    monkeypatch.setattr("ves_twin.diagnosis.judge._second", lambda *a: 0.0)
+    monkeypatch.setattr("ves_twin.diagnosis.judge.pull_limit", lambda *a: np.inf)
     count = cases(3)
     hits, of = score(LACKING[:count], settings)[ABSTAINS]
     assert of == count
