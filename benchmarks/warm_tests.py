@@ -12,6 +12,7 @@ import importlib
 import json
 import os
 import resource
+import shutil
 import signal
 import sys
 import time
@@ -68,7 +69,8 @@ class Seen:
     @pytest.hookimpl(wrapper=True)
     def pytest_runtest_setup(self, item: pytest.Item) -> Generator[None]:
         for path in Path(os.environ[FOLDER]).iterdir():
-            path.unlink()  # what tests share is made by each of them, to see what it calls
+            # what tests share is made by each of them, to see what it calls
+            shutil.rmtree(path) if path.is_dir() else path.unlink()
         yield from self._noted(self.prepared.setdefault(item.nodeid.split("::")[0], set()))
 
     @pytest.hookimpl(wrapper=True)

@@ -22,6 +22,7 @@ from ves_twin.diagnosis.forward import Forward
 from ves_twin.diagnosis.gain import Gain, held_out_gain
 from ves_twin.diagnosis.linearise import Linearisation, linearise
 from ves_twin.diagnosis.preprocess import Dataset, preprocess
+from ves_twin.diagnosis.profile import profiled
 from ves_twin.diagnosis.refine import ROUGH, Fit, refine
 from ves_twin.diagnosis.runs import Runs
 from ves_twin.diagnosis.settings import Settings
@@ -183,7 +184,7 @@ def decide(
         return _proved(desk, forward, recordings, held, standstill, built, cut)
     if cut:  # nothing is proved there, and nothing else was held out
         held = None
-    found = _probed(found)
+    found = _probed(found, desk.settings)
     limit = pull_limit(desk.first.screen.bank, desk.settings.alpha)
     before = _within(found, limit)
     gains = held.gains(found, before, ALMOST) if held else []
@@ -226,13 +227,18 @@ def _ahead(
     return forecast(forward, recordings, found.best, desk.settings, standstill, workers)
 
 
-def _probed(found: Explanation) -> Explanation:
-    """The chosen fits once more, with runs along what they know least of their causes."""
+def _probed(found: Explanation, settings: Settings) -> Explanation:
+    """The chosen fits once more, with runs along what they know least of their causes.
+
+    Their sizes are profiled where runs are cheap.
+    """
     evidence = found.evidence
     chosen = tuple(
         refine(evidence, fit.causes, fit.shift, fit.local, 0, fit.step_share, probed=True)
         for fit in found.chosen
     )
+    if not settings.sparse:
+        chosen = tuple(profiled(evidence, fit) for fit in chosen)
     better = {fit.causes: fit for fit in chosen}
     fits = tuple(better.get(fit.causes, fit) for fit in found.fits)
     return replace(found, chosen=chosen, fits=fits)
