@@ -78,7 +78,6 @@ OF_JOINTS = (
     "coulomb_asymmetry",
     "quadratic_drag",
     "stribeck_friction",
-    "regularized_friction",
     "load_friction",
     "force_offset",
     "joint_spring",

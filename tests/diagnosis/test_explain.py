@@ -12,7 +12,7 @@ from ves_twin.diagnosis.assess import STRANGE, assess
 from ves_twin.diagnosis.explain import FAR, _far, explain
 from ves_twin.diagnosis.fit_context import FitContext
 from ves_twin.diagnosis.fits import CLOSE, _starts, job
-from ves_twin.diagnosis.judge import CLEAR, SLACK, _commissioning
+from ves_twin.diagnosis.judge import CLEAR, SLACK, _commissioning, _second, suspects_at
 from ves_twin.diagnosis.null import Thresholds
 from ves_twin.diagnosis.pairs import PAIRS
 from ves_twin.diagnosis.probability import probabilities
@@ -326,3 +326,20 @@ def test_no_signatures_are_simulated_anew_where_the_nominal_ones_find_nothing_mo
     low = replace(LEVELS, effect=0.0)
     explain(looked(ONE), low, QUICK, together=False, progress=lambda share, what: told.append(what))
     assert "signatures" in told
+
+
+def test_further_causes_are_all_that_a_fit_has_not_and_their_best_score_is_told(looked):
+    record = looked(TWO)
+    desk = FitContext(record, LEVELS, QUICK, silent)
+    runs = record.evidence.runs
+    (cause,) = (h for h in runs.forward.hypotheses if h.effect == "friction")
+    fit = refine(record.evidence, (cause,), runs.origin, record.screen.bank.base)
+    rest, scores = suspects_at(desk, record.evidence, fit)
+    every = {h.label for h in record.screen.bank.hypotheses}
+    assert {h.label for h in rest} == every - {cause.label}
+    told = _second(desk, record.evidence, fit, 0.0)
+    assert rest[scores[0].hypothesis].effect == "ripple"
+    assert told == scores[0].score > scores[1].score
+    # below the threshold and an allowance nothing is simulated for it
+    spared = replace(desk, progress=lambda *_: pytest.fail("simulated"))
+    assert _second(spared, record.evidence, fit, 1e9) > LEVELS.effect
