@@ -23,10 +23,11 @@ from ves_twin.diagnosis.next_experiment import NUISANCES
 from ves_twin.diagnosis.null import chance_floor
 from ves_twin.diagnosis.runs import Progress, Runs, silent
 from ves_twin.diagnosis.screen import Screen
-from ves_twin.diagnosis.separation import Axes, Question, changes, separation, size_of
+from ves_twin.diagnosis.separation import Question, changes, separation, size_of
 from ves_twin.diagnosis.settings import Settings
 from ves_twin.diagnosis.signature_library import SignatureLibrary, build_bank
 from ves_twin.diagnosis.slices import of_time
+from ves_twin.diagnosis.trials import FORWARD_STEP, Trials
 from ves_twin.diagnosis.whitening import whitening_declared
 
 SCHEMA = 1
@@ -40,9 +41,6 @@ EACH = 4
 
 REACH = 0.3
 """First step of the search from the best point, the box being 2 wide."""
-
-FORWARD_STEP = 1.0
-"""Commissioning sd of one-sided differences: where tolerances are many, the search takes them."""
 
 NOTHING = 30.0
 """Cost of a point that no machine bears: worse than any separation."""
@@ -154,13 +152,13 @@ def design_excitation(
     recorded = tuple(columns) or tuple(range(len(forward.channels)))
     with Workers(settings.workers) as workers:
         desk = _Desk(forward, question, recorded, workers, settings)
-        names = _counting(desk.runs(menu[0]), question, progress)
+        trials = Trials(_counting(desk.runs(menu[0]), question, progress))
         values = []
         for k, one in enumerate(menu):
             progress(k / len(menu), "menu")
-            values.append(desk.value(one, names))
+            values.append(desk.value(one, trials))
         best = menu[int(np.argmax(values))]
-        found, tried = _climbed(desk, names, space, progress)
+        found, tried = _climbed(desk, trials, space, progress)
         usual, _ = desk.judged(best, progress)
         designed, bank = desk.judged(found, progress)
         after = _after(bank, question, usual.score)
@@ -192,12 +190,9 @@ class _Desk:
         """Of one programme."""
         return Runs(self.forward, (programme,), self.columns, self.workers)
 
-    def value(self, programme: Excitation, names: tuple[str, ...] | None) -> float:
-        """Score by few runs, with the tolerances of some names; zero where the plant fails."""
-        runs = self.runs(programme)
-        axes = _axes(runs, names)
-        step = None if names is None else FORWARD_STEP
-        base = linearise(runs, runs.origin, axes=axes, forward_step=step)
+    def value(self, programme: Excitation, trials: Trials) -> float:
+        """Score by few runs; zero where the plant fails."""
+        base, axes = trials.at(self.runs(programme))
         chi2 = self.question.least(separation(base, self.question, axes))
         return score(chi2) if np.all(np.isfinite(chi2)) else 0.0
 
@@ -228,7 +223,7 @@ class _Desk:
 
 
 def _climbed(
-    desk: _Desk, names: tuple[str, ...] | None, space: DesignSpace, progress: Progress
+    desk: _Desk, trials: Trials, space: DesignSpace, progress: Progress
 ) -> tuple[Excitation, int]:
     """The best programme of a space that is found, and how many were tried.
 
@@ -241,7 +236,7 @@ def _climbed(
         inside = np.clip(point, -1.0, 1.0)
         progress(min(len(tried) / (SCATTERED + EACH * space.size), 1.0), "design")
         made = space.excitation(inside, "design")
-        value = 0.0 if made is None else desk.value(made, names)
+        value = 0.0 if made is None else desk.value(made, trials)
         tried.append((value, inside))
         return -float(np.log(value)) if value > 0.0 else NOTHING
 
@@ -280,14 +275,6 @@ def _counting(runs: Runs, question: Question, progress: Progress) -> tuple[str, 
         share = np.maximum(share, np.abs(metric.nuisances(rest)[:-1]) * sizes)
     ranked = [n for n in np.argsort(-share) if plain[n] and names[n] not in own][:NUISANCES]
     return tuple(name for n, name in enumerate(names) if n in ranked or not plain[n] or name in own)
-
-
-def _axes(runs: Runs, names: tuple[str, ...] | None) -> Axes | None:
-    if names is None:
-        return None
-    kept = [int(i) for i in runs.nuisances if runs.coordinates[i].parameter.name in names]
-    where = np.array(kept, int)
-    return where, runs.sd[where]
 
 
 def _after(bank: SignatureLibrary, question: Question, goal: float) -> float | None:
