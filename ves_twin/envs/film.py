@@ -117,7 +117,8 @@ def _pictures(recording: Recording, rows: IntArray) -> Iterator[Image.Image]:
             place_rig(data, rig.layout, rig.geometry, pose[row], joints[row])
             time = float(recording.time[row])
             frame = Image.new("RGB", (WIDTH + BESIDE, HEIGHT))
-            frame.paste(Image.fromarray(picture.show(rig.model, data)), (0, 0))
+            pixels = picture.show(rig.model, data)
+            frame.paste(Image.fromarray(pixels), (0, 0))  # type: ignore[arg-type]
             frame.paste(Image.fromarray(curves.at(time)), (WIDTH, 0))
             said = f"{time:.2f} s"
             ImageDraw.Draw(frame).text((14, 10), said, "white", font, stroke_width=2, stroke_fill=0)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from matplotlib.backends.backend_agg import FigureCanvasAgg
@@ -61,13 +62,13 @@ class FilmCurves:
         """
         figure = new_figure(height / DOTS, width / DOTS)
         figure.set_dpi(DOTS)
-        canvas = FigureCanvasAgg(figure)
+        canvas: Any = FigureCanvasAgg(figure)
         drawn = _drawn(recording)
         panels = figure.subplots(len(drawn), 1, sharex=True, squeeze=False)[:, 0]
         for axes, (label, traces) in zip(panels, drawn, strict=True):
             draw_traces(axes, recording.time, traces, label)
         panels[-1].set_xlabel("time [s]", fontsize=8)
-        figure.get_layout_engine().set(rect=(0.0, 0.0, ROOM, 1.0))
+        figure.set_layout_engine("constrained", rect=(0.0, 0.0, ROOM, 1.0))
         canvas.draw()
         bright = np.asarray(canvas.buffer_rgba())[..., :3].copy()
         begin, end = recording.time[0], recording.time[-1]
