@@ -93,6 +93,7 @@ class Design:
         units: of the sizes of each of its causes.
         designed: what it tells.
         best: what the menu's best tells.
+        begin: separation of each pair by the menu's best in the time of the design [sigma].
         after: time after which it tells as much as the menu's best in all of its own [s]; None if
             it never does.
         tried: programmes that were simulated.
@@ -103,8 +104,14 @@ class Design:
     units: tuple[str, ...]
     designed: Judged
     best: Judged
+    begin: tuple[float, ...]
     after: float | None
     tried: int
+
+    @property
+    def times(self) -> float:
+        """How many times as much it tells as the menu's best does in the same time [chi^2]."""
+        return self.designed.score / max(score(np.square(self.begin)), 1e-12)
 
     def to_json(self) -> str:
         """The figures as JSON, without the rows of the programme."""
@@ -116,6 +123,8 @@ class Design:
             "units": {c.label: unit for c, unit in zip(causes, self.units, strict=True)},
             "designed": asdict(self.designed),
             "best": asdict(self.best),
+            "begin": self.begin,
+            "times": self.times,
             "after": self.after,
             "tried": self.tried,
         }
@@ -159,12 +168,13 @@ def design_excitation(
             values.append(desk.value(one, trials))
         best = menu[int(np.argmax(values))]
         found, tried = _climbed(desk, trials, space, progress)
-        usual, _ = desk.judged(best, progress)
+        usual, known = desk.judged(best, progress)
         designed, bank = desk.judged(found, progress)
         after = _after(bank, question, usual.score)
-    known = {parameter.name: parameter.unit for parameter in forward.parameters}
-    units = tuple(known[cause.parameters[0]] for cause in question.causes)
-    return Design(found, question, units, designed, usual, after, tried)
+        begin = _sigmas(known, question, designed.seconds)
+    said = {parameter.name: parameter.unit for parameter in forward.parameters}
+    units = tuple(said[cause.parameters[0]] for cause in question.causes)
+    return Design(found, question, units, designed, usual, begin, after, tried)
 
 
 def score(chi2: FloatArray) -> float:
@@ -282,7 +292,12 @@ def _after(bank: SignatureLibrary, question: Question, goal: float) -> float | N
     time = bank.base.runs.programmes[0].time
     for part in np.arange(3, PARTS + 1) / PARTS:
         seconds = float(part * (time[-1] - time[0]))
-        chi2 = question.least(separation(of_time(bank, seconds).base, question))
-        if score(chi2) >= goal:
+        if score(np.square(_sigmas(bank, question, seconds))) >= goal:
             return seconds
     return None
+
+
+def _sigmas(bank: SignatureLibrary, question: Question, seconds: float) -> tuple[float, ...]:
+    """Separation of each pair by the first seconds of a programme."""
+    chi2 = question.least(separation(of_time(bank, seconds).base, question))
+    return tuple(float(value) for value in np.sqrt(chi2))
