@@ -27,8 +27,8 @@ RATES = (20.0, 100.0)
 CORNER = 1.25
 """Corner of the positions' low-pass over the band: what is compared is not rounded off."""
 
-ENOUGH = 150
-"""Rows of the analysis that a log must leave: a diagnosis asks for 100 after its low-pass."""
+ENOUGH = 115
+"""Rows of the analysis that a log must leave: a diagnosis asks for 100, its low-pass takes 10."""
 
 DROWNED = 0.05
 """Share of an effort that noise of positions may make once they are differentiated twice."""

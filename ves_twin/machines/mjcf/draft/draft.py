@@ -17,7 +17,7 @@ from ves_twin.diagnosis.forward import Excitation
 from ves_twin.machines.mjcf.columns import read_rig_recording
 from ves_twin.machines.mjcf.description import KIND, Mode, RigDescription
 from ves_twin.machines.mjcf.draft.check import Checked, checked
-from ves_twin.machines.mjcf.draft.chosen import ENOUGH, Chosen, chosen
+from ves_twin.machines.mjcf.draft.chosen import Chosen, chosen
 from ves_twin.machines.mjcf.draft.draft_text import compared, draft_text, signal_name, used
 from ves_twin.machines.mjcf.draft.given_model import GivenModel
 from ves_twin.machines.mjcf.draft.log_columns import LogColumns
@@ -30,6 +30,9 @@ from ves_twin.machines.mjcf.machine import Rig
 HALF = 0.5
 """Share of a signal that a model must explain open loop for commands to be fed in: an arm that
 drifts off its path tells nothing."""
+
+ROWS = 150
+"""Rows of the analysis in a stretch: half as many again as a diagnosis asks for."""
 
 STRETCH = 2.0
 """Usual length of a stretch that is held out [s]."""
@@ -60,7 +63,8 @@ class Draft:
         look: what a person should look at, a sentence each.
         mode: what is fed in, and why.
         explained: column or signal -> share of its power that the model as it is explains.
-        stretch: length of stretches to hold out [s], long enough for a diagnosis.
+        stretch: length of stretches to hold out [s], long enough for a diagnosis; 0 where the log
+            is too short for two.
     """
 
     text: str
@@ -113,8 +117,15 @@ def draft(model: Path, logs: Sequence[Path], out: Path, rate: float | None = Non
     left |= {m.column: "is a speed" for m in check.found if not used(m, mode)}
     look = (*given.notes, *log.notes, *check.findings)
     words = f"{mode.mode}: {mode.why}"
-    stretch = max(STRETCH, float(np.ceil(ENOUGH / mode.rate)))
+    stretch = _stretch(mode, log)
     return Draft(text, given.text, _guesses(check, mode), left, look, words, explained, stretch)
+
+
+def _stretch(mode: Chosen, log: LogColumns) -> float:
+    """Length of stretches to hold out [s]; a last one of half a length is one, too."""
+    length = max(STRETCH, float(np.ceil(ROWS / mode.rate)))
+    rows = len(next(iter(log.values.values())))
+    return length if log.period * rows > 1.5 * length else 0.0
 
 
 def _rig(text: str, given: GivenModel, out: Path) -> Rig:
