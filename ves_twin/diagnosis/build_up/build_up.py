@@ -10,6 +10,7 @@ from scipy.stats import norm
 
 from ves_twin.core.types import FloatArray
 from ves_twin.diagnosis.adequacy import cells, misfit
+from ves_twin.diagnosis.build_up.converged import converged
 from ves_twin.diagnosis.build_up.discrepancy import discrepancy
 from ves_twin.diagnosis.build_up.halves import Halves, carried_point, halves_at
 from ves_twin.diagnosis.build_up.paired import loss
@@ -22,7 +23,6 @@ from ves_twin.diagnosis.build_up.trials import Trial
 from ves_twin.diagnosis.evidence import Evidence
 from ves_twin.diagnosis.explanation import Explanation
 from ves_twin.diagnosis.fit_context import FitContext
-from ves_twin.diagnosis.linearise import linearise
 from ves_twin.diagnosis.preprocess import Dataset
 from ves_twin.diagnosis.refine import Fit, bare_residual, refine
 from ves_twin.diagnosis.runs import Runs
@@ -101,6 +101,8 @@ class _Builder:
             halves = self.halves(point, present)
             if np.all(off <= MOVED * regression.half.rms(linear)):
                 break
+            if self.fitted.runs.budget.skips("causes chosen anew about their own fit"):
+                break
         return halves, _places(halves, present), point
 
     def refined(
@@ -120,8 +122,10 @@ class _Builder:
             sizes = trial.departures(linear.shares[at] * linear.scale[at])
             shift = runs.depart(shift, runs.indices(trial.cause), sizes)
         causes = tuple(regression.trials[n].cause for n in chosen)
-        local = linearise(runs, np.where(runs.sd > 0.0, point, 0.0))
-        return refine(evidence, causes, shift, local, 1, probed=probed)
+        fit = converged(evidence, causes, point, shift)
+        if not probed:
+            return fit
+        return refine(evidence, causes, fit.shift, fit.local, 0, fit.step_share, probed=True)
 
 
 def build_up(desk: FitContext, start: Explanation, fitted: Dataset, held: Dataset) -> Built | None:
