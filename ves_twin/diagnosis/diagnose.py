@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
@@ -194,7 +195,9 @@ class _View:
         if end.cut:
             basis = replace(basis, held_out="split")
         lawful = None
-        if kind is Kind.UNKNOWN and not seen.runs.budget.skips("a law"):
+        seen.runs.budget.stage(math.inf if chosen.laws else 1.0)  # asked for, whatever it takes
+        wanted = kind is Kind.UNKNOWN and chosen.laws is not False
+        if wanted and not seen.runs.budget.skips("a law"):
             progress(0.0, "looking for a law")
             lawful = lawful_explanation(
                 first, found, self.limits, chosen, held.pair if held else None, progress
