@@ -18,7 +18,7 @@ from ves_twin.diagnosis.explain import explain
 from ves_twin.diagnosis.explanation import Explanation
 from ves_twin.diagnosis.fit_context import FitContext
 from ves_twin.diagnosis.forward import Excitation, Forward
-from ves_twin.diagnosis.law.explained import lawful_explanation
+from ves_twin.diagnosis.law.explained import lawful_explanation, lawful_rest
 from ves_twin.diagnosis.law.propose import Limits
 from ves_twin.diagnosis.likeness import check_likeness
 from ves_twin.diagnosis.next_experiment import separations
@@ -197,13 +197,18 @@ class _View:
             lawful = lawful_explanation(
                 first, found, self.limits, chosen, held.pair if held else None, progress
             )
+        elif kind is Kind.PARTIAL and end.built is not None and end.built.report.proved:
+            progress(0.0, "looking for a law in what is left")
+            lawful = lawful_rest(end.built, self.limits, chosen, still, progress)
+        unknown = kind is Kind.UNKNOWN
         findings = replace(
             findings,
             law=lawful.finding if lawful else None,
-            shown=lawful.explanation if lawful else None,
+            shown=lawful.explanation if lawful and unknown else None,
+            beside=lawful.explanation if lawful and not unknown else None,
             found=found,
-            built=end.built,
-            gain=lawful.gain if lawful and lawful.explanation else end.gain,
+            built=end.built.report if end.built else None,
+            gain=lawful.gain if lawful and lawful.explanation and unknown else end.gain,
             forecast=end.forecast,
             before=end.before,
             proposals=proposals,

@@ -20,7 +20,7 @@ from ves_twin.diagnosis.preprocess import Dataset
 from ves_twin.diagnosis.refine import refine
 from ves_twin.diagnosis.settings import Settings
 from ves_twin.diagnosis.whitening import Whitening
-from ves_twin.effects.law import Law, LawShape
+from ves_twin.effects.law import Law, LawShape, variable_along
 
 SOURCE = "ves-twin diagnose"
 
@@ -175,7 +175,7 @@ def _along(search: Search, law: Law) -> list[FloatArray]:
             runs.programmes, values_of(runs, search.best.fit.shift), strict=True
         )
     ]
-    return [np.concatenate([one[name] for one in seen]) for name in law.of]
+    return [np.concatenate([variable_along(name, one) for one in seen]) for name in law.of]
 
 
 def _bands(search: Search, x: FloatArray) -> tuple[tuple[float, ...], ...]:

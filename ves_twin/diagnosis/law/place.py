@@ -29,7 +29,7 @@ class LawPlace:
     """A joint or a column.
 
     Attributes:
-        name: joint, or channel.
+        name: joint, two joints, as `Law` has them, or channel.
         kind: effort or reading.
         unit: of the law.
         scale: size that a law is expected to have there [unit].
@@ -62,4 +62,4 @@ class LawForward(Forward, Protocol):
     def visited(
         self, programme: Excitation, values: Mapping[str, float], laws: Sequence[Law] = ()
     ) -> Mapping[str, FloatArray]:
-        """Every variable of the places (n,), by name."""
+        """What moves (n,), by name: every variable of the places that is no sum and no play."""

@@ -13,7 +13,7 @@ from ves_twin.core.types import FloatArray
 from ves_twin.core.units import to_si
 from ves_twin.diagnosis.forward import Channel, Excitation, Hypothesis, Parameter
 from ves_twin.diagnosis.law.place import LawPlace
-from ves_twin.effects.law import Law, LawKind
+from ves_twin.effects.law import Law, LawKind, variable_along
 from ves_twin.machines.mjcf.description import Compared, Mode
 from ves_twin.machines.mjcf.inverse import efforts_of_motion
 from ves_twin.machines.mjcf.joint_units import joint_units
@@ -172,7 +172,9 @@ class MjcfForward:
         for law in work.laws:
             if law.kind is LawKind.READING:
                 at = self._labels.index(law.place)
-                rows[:, at] = law.read(rows[:, at], *(along[name] for name in law.of))
+                rows[:, at] = law.read(
+                    rows[:, at], *(variable_along(name, along) for name in law.of)
+                )
         return rows
 
     def visited(
