@@ -48,7 +48,7 @@ travel = 1
 [signals.q{0}]
 columns = ["q{0}"]
 unit = "rad"
-noise = 1e-5
+noise = 1e-3
 [signals.t{0}]
 columns = ["t{0}"]
 unit = "N*m"

@@ -67,5 +67,14 @@ class Beside(ForwardWrapper):
         """See `LawForward`."""
         return self.forward.visited(programme, self._with_causes(values), laws)
 
+    def missing(
+        self,
+        programme: Excitation,
+        values: Mapping[str, float],
+        measured: Mapping[str, FloatArray],
+    ) -> tuple[Mapping[str, FloatArray], Mapping[str, FloatArray]] | None:
+        """See `LawForward`."""
+        return self.forward.missing(programme, self._with_causes(values), measured)
+
     def _with_causes(self, values: Mapping[str, float]) -> dict[str, float]:
         return {p.name: p.nominal for p in self.sizes} | dict(values)

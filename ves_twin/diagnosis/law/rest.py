@@ -42,9 +42,10 @@ def search_rest(
 ) -> RestSearch | None:
     """Fit laws beside causes that were proved, sizes of the causes and tolerances free.
 
-    Model error is coloured noise as in `build_up`, learnt from what is left without a law for the
-    screen, and from what the best law leaves for the odds. A law of time is none of a machine:
-    whatever is left is some function of time.
+    Places and variables are ranked by plain squares of each channel, in units of what is left
+    there: whitened in time by a rest that is a law of the motion, that law is taken for noise. Odds
+    are against model error as in `build_up`, as the best law leaves it. A law of time is none of a
+    machine: whatever is left is some function of time.
 
     Args:
         fitted: recordings that the causes were fitted to.
@@ -61,8 +62,8 @@ def search_rest(
     beside = Beside.to(causes, plant)
     runs = replace(fitted.runs, forward=beside)
     begin = _begin(causes, runs)
-    left = fitted.measured - causes.prediction
-    first = Evidence(runs, fitted.measured, discrepancy(runs, np.asarray(left, float)))
+    left = np.asarray(fitted.measured - causes.prediction, float)
+    first = Evidence(runs, fitted.measured, discrepancy(runs, left, memory=False))
     none = fit_law(first, None, begin)
     ends = ranges(beside, none)
     tables = [one for one in smooth_candidates(plant.law_places(), ends) if _of_motion(one)]

@@ -50,8 +50,8 @@ class LawFinding:
         form: formula; empty of a table.
         numbers: of the closed form.
         knots, values: as it is simulated.
-        band: places, and low and high ends of the 90 % band there, which holds that of a table of
-            the same variable too; () without one.
+        band: places, and low and high ends of the 90 % band there; of a form with what a smooth
+            departure from it may be; () without one.
         seen: ends of each variable in the recordings.
         points: variable and effort or reading that the recordings ask for, and its sd.
         transient: whether it depends on time, and says nothing of other times.

@@ -19,6 +19,7 @@ from ves_twin.machines.mjcf.inverse import efforts_of_motion
 from ves_twin.machines.mjcf.joint_units import joint_units
 from ves_twin.machines.mjcf.law_places import law_places
 from ves_twin.machines.mjcf.machine import Rig
+from ves_twin.machines.mjcf.missing import missing_efforts
 from ves_twin.machines.mjcf.places import driven_joint
 from ves_twin.machines.mjcf.started import start_signal
 from ves_twin.machines.mjcf.stepping import motion_of_drive
@@ -186,6 +187,26 @@ class MjcfForward:
     def law_places(self) -> tuple[LawPlace, ...]:
         """Joints and compared columns at which a law may act."""
         return law_places(self.rig, self.channels, self.mode)
+
+    def missing(
+        self,
+        programme: Excitation,
+        values: Mapping[str, float],
+        measured: Mapping[str, FloatArray],
+    ) -> tuple[Mapping[str, FloatArray], Mapping[str, FloatArray]] | None:
+        """Efforts by joint that a measured motion asks for beyond the model; see `LawForward`."""
+        model, told = self.rig.model, self.rig.description
+        positions = {
+            one.joint: one.sign * measured[name]
+            for name, one in self.compared.items()
+            if one.joint and one.of == "position" and name in measured
+        }
+        single = {model.joint(n).name for n in range(model.njnt)}
+        if self.mode is not Mode.CONTROL or self.imposed or not single <= positions.keys():
+            return None
+        if {self.joint_of(name) for name in told.drive.actuators} != single:
+            return None
+        return missing_efforts(Work.begin(self.rig, programme, values), positions)
 
     def _moved(
         self, work: Work, refined: bool

@@ -14,7 +14,7 @@ from ves_twin.effects.law import SIGNS, WITHIN, LawKind
 from ves_twin.machines.mjcf.description import Mode, Span
 from ves_twin.machines.mjcf.joint_units import joint_units
 from ves_twin.machines.mjcf.machine import Rig
-from ves_twin.machines.mjcf.places import SINGLE
+from ves_twin.machines.mjcf.places import SINGLE, driven_joint
 
 EFFORT_SHARE = 0.3
 """Size that a law of efforts is expected to have, as a share of the typical effort: the amplitude
@@ -33,14 +33,17 @@ def law_places(rig: Rig, channels: Sequence[Channel], mode: Mode) -> tuple[LawPl
 
     Where motion is fed in, a law of what an actuator reads is one of the effort at its joint;
     prediction being quick there, joints are tried two by two as well, and so is where each stands
-    within a play.
+    within a play. A joint whose effort nobody compares shows no law then.
     """
     told, model, found = rig.description, rig.model, []
     clock = Variable("time", "s")
+    shown = {driven_joint(model, one.actuator) for one in told.compare.values() if one.actuator}
     for number in range(model.njnt):
         joint = model.joint(number)
         span = told.typical.joint.get(joint.name, Span())
         if int(joint.type[0]) not in SINGLE or not span.effort:
+            continue
+        if mode is Mode.MOTION and joint.name not in shown:
             continue
         unit = "N*m" if joint_units(model, joint.name)[0] == "rad" else "N"
         size = EFFORT_SHARE * to_si(span.effort, unit, f"typical.joint.{joint.name}.effort")
