@@ -7,22 +7,29 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from ves_twin.core.types import FloatArray
 from ves_twin.diagnosis.build_up.discrepancy import discrepancy
 from ves_twin.diagnosis.evidence import Evidence
 from ves_twin.diagnosis.law.beside import Beside
-from ves_twin.diagnosis.law.candidate import Candidate, Table
+from ves_twin.diagnosis.law.candidate import Table
 from ves_twin.diagnosis.law.closed import closed_forms
 from ves_twin.diagnosis.law.fit_law import LawFit, fit_law
 from ves_twin.diagnosis.law.place import LawForward
 from ves_twin.diagnosis.law.propose import CLAIM, LEADERS, WORTH, Limits, Search
-from ves_twin.diagnosis.law.screen import law_screen, ranges, smooth_candidates
+from ves_twin.diagnosis.law.rest_screen import rest_screen
+from ves_twin.diagnosis.law.screen import ranges, smooth_candidates
 from ves_twin.diagnosis.linearise import FORWARD_STEP, linearise
 from ves_twin.diagnosis.preprocess import Dataset
 from ves_twin.diagnosis.refine import Fit, bare_residual
 from ves_twin.diagnosis.runs import Progress, Runs, silent
+from ves_twin.diagnosis.whitening import Whitening
 
 EQUAL = 3.0
 """Nats within which a law with fewer numbers is as good: odds below 20."""
+
+
+STRAIN = 1.0
+"""Commissioning sd that a law may need beyond what the causes need without it."""
 
 
 @dataclass(frozen=True)
@@ -42,9 +49,9 @@ def search_rest(
 ) -> RestSearch | None:
     """Fit laws beside causes that were proved, sizes of the causes and tolerances free.
 
-    Places and variables are ranked by plain squares of each channel, in units of what is left
-    there: whitened in time by a rest that is a law of the motion, that law is taken for noise. Odds
-    are against model error as in `build_up`, as the best law leaves it. A law of time is none of a
+    Places and variables are ranked by plain squares: whitened in time by a rest that is a law of
+    the motion, that law would be taken for noise. Odds are against model error as in `build_up`, as
+    the best law leaves it. A law of time is none of a
     machine: whatever is left is some function of time.
 
     Args:
@@ -63,16 +70,19 @@ def search_rest(
     runs = replace(fitted.runs, forward=beside)
     begin = _begin(causes, runs)
     left = np.asarray(fitted.measured - causes.prediction, float)
-    first = Evidence(runs, fitted.measured, discrepancy(runs, left, memory=False))
+    first = Evidence(runs, fitted.measured, _plain(runs, left))
     none = fit_law(first, None, begin)
+    limits = replace(limits, pull=max(limits.pull, none.fit.pull + STRAIN))
     ends = ranges(beside, none)
-    tables = [one for one in smooth_candidates(plant.law_places(), ends) if _of_motion(one)]
+    every = smooth_candidates(plant.law_places(), ends)
+    tables = [c for c in every if isinstance(c, Table) and c.of[0].what != "time"]
     if not tables:
         return None
-    leaders = law_screen(first, tables, none, progress)[:LEADERS]
-    found = _fitted(first, [one.candidate for one in leaders], none, progress)
-    if not found:
-        return None
+    leaders = rest_screen(first, tables, none, progress)[:LEADERS]
+    found = []
+    for n, table in enumerate(leaders):
+        progress(n / len(leaders), "fitting laws of what is left")
+        found.append(fit_law(first, table, none.fit))
     rest = np.asarray(bare_residual(first, found[0].fit), float)
     second = replace(first, whitening=discrepancy(runs, rest))
     none = fit_law(second, None, none.fit)
@@ -96,18 +106,15 @@ def _begin(causes: Fit, runs: Runs) -> Fit:
     return replace(causes, shift=shift, local=linearise(runs, shift, forward_step=FORWARD_STEP))
 
 
-def _of_motion(candidate: Candidate) -> bool:
-    return isinstance(candidate, Table) and candidate.of[0].what != "time"
+def _plain(runs: Runs, left: FloatArray) -> Whitening:
+    """Each channel by itself in units of what is left there.
 
-
-def _fitted(
-    evidence: Evidence, candidates: Sequence[Candidate], none: LawFit, progress: Progress
-) -> list[LawFit]:
-    found = []
-    for n, candidate in enumerate(candidates):
-        progress(n / len(candidates), "fitting laws of what is left")
-        found.append(fit_law(evidence, candidate, none.fit))
-    return _first(found)
+    What goes along in two channels is what a law of two joints would be, and no error to mix out.
+    """
+    found = discrepancy(runs, left, memory=False)
+    spread = np.linalg.inv(found.mixing[0].T @ found.mixing[0])
+    own = np.diag(1.0 / np.sqrt(np.diag(spread)))
+    return replace(found, mixing=np.tile(own, (len(found.mixing), 1, 1)))
 
 
 def _first(fits: Sequence[LawFit]) -> list[LawFit]:

@@ -24,8 +24,8 @@ READING_SHARE = 0.03
 """The same of a column, as a share of its typical span: what a sensor that works may be off."""
 
 
-PLAYS = np.geomspace(0.02, 0.64, 16)
-"""Widths of a play, as shares of the typical travel; each a quarter more than the last one."""
+PLAYS = np.geomspace(0.02, 0.64, 11)
+"""Widths of a play, as shares of the typical travel; each two fifths more than the last one."""
 
 
 def law_places(rig: Rig, channels: Sequence[Channel], mode: Mode) -> tuple[LawPlace, ...]:
