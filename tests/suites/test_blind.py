@@ -28,14 +28,17 @@ COUNTS = {Hidden.NONE: 1, Hidden.SINGLE: 2, Hidden.OUTSIDE: 2, Hidden.PAIR: 1, H
 RECIPE = Recipe("pendulum", COUNTS, 3)
 
 
-def made(recipe, folder):
-    make_suite(recipe, folder, folder.with_name("key"), silent)
-    return folder
+@pytest.fixture(scope="module")
+def told():
+    """Stages of the making, as its progress tells them."""
+    return []
 
 
 @pytest.fixture(scope="module")
-def suite(tmp_path_factory):
-    return made(RECIPE, tmp_path_factory.mktemp("blind") / "suite")
+def suite(tmp_path_factory, told):
+    folder = tmp_path_factory.mktemp("blind") / "suite"
+    make_suite(RECIPE, folder, folder.with_name("key"), lambda share, what: told.append(what))
+    return folder
 
 
 def test_a_seal_opens_with_its_key_alone_and_shows_tampering():
@@ -72,6 +75,10 @@ def test_no_hidden_cause_is_fainter_than_its_sort_may_be(suite):
     assert all(c.d >= DETECTABILITY[0] for t in truths for c in t.causes)
 
 
+def test_every_stage_of_the_making_is_told(suite, told):
+    assert list(dict.fromkeys(told)) == ["commissioning tolerances", "sizes in sigma", "recordings"]
+
+
 def test_a_suite_that_was_interrupted_goes_on_with_the_same_cases(suite):
     before = {p: p.read_bytes() for p in suite.rglob("*.parquet")}
     lost = suite / "case-0003"
@@ -106,7 +113,8 @@ def test_a_folder_whose_key_is_gone_is_refused(suite, tmp_path):
 
 def test_answering_imports_no_generator_and_reads_no_key(tmp_path):
     """A fresh process, in which opening the key or importing a generator ends in an error."""
-    suite = made(Recipe("pendulum", {Hidden.NONE: 1, Hidden.SINGLE: 1}, 3), tmp_path / "suite")
+    suite, recipe = tmp_path / "suite", Recipe("pendulum", {Hidden.NONE: 1, Hidden.SINGLE: 1}, 3)
+    make_suite(recipe, suite, suite.with_name("key"), silent)
     code = f"""
 import builtins, sys
 from pathlib import Path

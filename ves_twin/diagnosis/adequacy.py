@@ -24,7 +24,7 @@ FEWEST = 8
 
 
 @dataclass(frozen=True)
-class Cell:
+class EnergyCell:
     """Energy of a whitened residual in one channel and band, or channel and stretch of time.
 
     Attributes:
@@ -50,7 +50,7 @@ class Cell:
         return score(ratio, self.freedom, known=0.0)
 
 
-def cells(whitening: Whitening, z: FloatArray) -> list[Cell]:
+def cells(whitening: Whitening, z: FloatArray) -> list[EnergyCell]:
     """All cells of a whitened residual (samples,)."""
     found = []
     kept = whitening.blocks(whitening.freedom)
@@ -67,17 +67,19 @@ def cells(whitening: Whitening, z: FloatArray) -> list[Cell]:
             for a, b in pairwise(edges):
                 energy = float(np.sum(spectrum[a:b, c]) / share[c])
                 ends = float(frequency[a]), float(frequency[b - 1])
-                found.append(Cell(k, c, "band", *ends, energy, 2 * int(b - a)))
+                found.append(EnergyCell(k, c, "band", *ends, energy, 2 * int(b - a)))
             for a, b in pairwise(stretches):
                 energy = float(np.sum(block[a:b, c] ** 2))
                 ends = float(time[a]), float(time[b - 1])
                 count = int(np.sum(kept[k][a:b, c]))
                 if count >= FEWEST:
-                    found.append(Cell(k, c, "time", *ends, energy, count))
+                    found.append(EnergyCell(k, c, "time", *ends, energy, count))
     return found
 
 
-def misfit(found: list[Cell], before: list[Cell] | None = None, model_error: float = 0.0) -> float:
+def misfit(
+    found: list[EnergyCell], before: list[EnergyCell] | None = None, model_error: float = 0.0
+) -> float:
     """The largest score of all cells.
 
     Args:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from ves_twin.diagnosis.adequacy import Cell
+from ves_twin.diagnosis.adequacy import EnergyCell
 from ves_twin.diagnosis.evidence import Evidence
 from ves_twin.diagnosis.refine import Fit
 
@@ -38,8 +38,8 @@ class Explanation:
     score: float
     second: float | None
     allowance: float
-    before: tuple[Cell, ...]
-    after: tuple[Cell, ...]
+    before: tuple[EnergyCell, ...]
+    after: tuple[EnergyCell, ...]
     alone: tuple[Fit, ...] = ()
     hopeless: tuple[Fit, ...] = ()
     far: bool = False

@@ -8,7 +8,7 @@ import numpy as np
 
 from ves_twin.core.read_only import ReadOnly
 from ves_twin.core.types import FloatArray, IntArray, SingleArray
-from ves_twin.diagnosis.adequacy import Cell, cells
+from ves_twin.diagnosis.adequacy import EnergyCell, cells
 from ves_twin.diagnosis.assess import Assessment
 from ves_twin.diagnosis.envelope import envelope_sd
 from ves_twin.diagnosis.explanation import Explanation
@@ -64,8 +64,8 @@ class ReportTraces:
     channels: tuple[Channel, ...]
     causes: tuple[str, ...]
     traces: tuple[Traces, ...]
-    before: tuple[Cell, ...]
-    after: tuple[Cell, ...]
+    before: tuple[EnergyCell, ...]
+    after: tuple[EnergyCell, ...]
 
     @property
     def telling(self) -> IntArray:
@@ -148,5 +148,5 @@ def _left(
     return first.left, seen.measured - base.prediction - change
 
 
-def _cells(whitening: Whitening, z: FloatArray) -> tuple[Cell, ...]:
+def _cells(whitening: Whitening, z: FloatArray) -> tuple[EnergyCell, ...]:
     return tuple(cells(whitening, z))

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ves_twin.core.types import FloatArray, SingleArray
-from ves_twin.diagnosis.adequacy import Cell
+from ves_twin.diagnosis.adequacy import EnergyCell
 from ves_twin.diagnosis.change_point import change_point
 from ves_twin.diagnosis.evidence import Evidence
 
@@ -52,7 +52,7 @@ def describe(
     evidence: Evidence,
     predicted: SingleArray,
     residual: FloatArray,
-    found: Sequence[Cell],
+    found: Sequence[EnergyCell],
     threshold: float,
 ) -> ResidualStructure:
     """The leftover of the best explanation, or of commissioning errors alone.
@@ -86,7 +86,7 @@ def describe(
     return ResidualStructure(square, tuple(told), onset, features)
 
 
-def _onset(evidence: Evidence, residual: FloatArray, loud: Sequence[Cell]) -> float | None:
+def _onset(evidence: Evidence, residual: FloatArray, loud: Sequence[EnergyCell]) -> float | None:
     """Time [s] at which the loudest channel gets loud: by rows, else where a stretch begins.
 
     A residual that is loud from the start has no change: its first stretch begins the recording.

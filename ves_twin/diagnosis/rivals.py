@@ -8,7 +8,7 @@ from enum import StrEnum
 
 import numpy as np
 
-from ves_twin.diagnosis.adequacy import Cell, cells
+from ves_twin.diagnosis.adequacy import EnergyCell, cells
 from ves_twin.diagnosis.assess import Assessment
 from ves_twin.diagnosis.explanation import Explanation
 from ves_twin.diagnosis.forward import Channel
@@ -121,5 +121,5 @@ def _place(found: Explanation, fit: Fit, channels: Sequence[Channel]) -> Place |
     return Place(channel, worse.kind, worse.low, worse.high, _rms(worse), _rms(same))
 
 
-def _rms(cell: Cell) -> float:
+def _rms(cell: EnergyCell) -> float:
     return float(np.sqrt(cell.energy / cell.freedom))

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -65,7 +65,8 @@ def draw_truths(
     counts: Mapping[Hidden, int],
     detectability: Detectability,
     rng: np.random.Generator,
-    spread: float = 1.0,
+    spread: float,
+    progress: Callable[[float, str], None],
 ) -> list[Truth]:
     """What each case hides, in random order; causes with an alias only as confusable ones.
 
@@ -75,6 +76,7 @@ def draw_truths(
         detectability: of departures.
         rng: of all draws.
         spread: commissioning errors, in declared sd.
+        progress: told how far it is.
 
     Raises:
         InvalidInputError: a machine without causes of that sort.
@@ -85,6 +87,7 @@ def draw_truths(
     clear = [h for h in library if h.label not in machine.confusable]
     truths = []
     for n, sort in enumerate(sorts):
+        progress(n / len(sorts), "sizes in sigma")
         case = f"case-{n + 1:04d}"
         causes: tuple[HiddenCause, ...] = ()
         kind, size = "", 0.0

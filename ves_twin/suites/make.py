@@ -136,7 +136,7 @@ def _truths(machine: BlindMachine, recipe: Recipe, progress: Progress, workers: 
         runs = preprocess(machine.forward, [nominal], shared, machine.rate).runs
         base = linearise(runs, runs.origin, progress)
         detectability = Detectability(base, whitening_declared(runs))
-        truths = draw_truths(machine, recipe.counts, detectability, rng, recipe.spread)
+        truths = draw_truths(machine, recipe.counts, detectability, rng, recipe.spread, progress)
         left_out = [t for t in truths if t.hidden is Hidden.OUTSIDE and t.causes]
         likes = dict(zip([t.case for t in left_out], aliases(runs, left_out), strict=True))
     return [replace(t, background=recipe.background, aliases=likes.get(t.case, ())) for t in truths]

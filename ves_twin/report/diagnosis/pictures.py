@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ves_twin.diagnosis.adequacy import Cell
+from ves_twin.diagnosis.adequacy import EnergyCell
 from ves_twin.diagnosis.envelope import ENVELOPE_SD
 from ves_twin.diagnosis.forward import Channel
 from ves_twin.diagnosis.report_traces import ReportTraces, Traces
@@ -34,7 +34,7 @@ def change_figure(verdict: Verdict) -> Html:
     return svg(figure, "change", caption)
 
 
-def cells_figure(exhibit: ReportTraces, cells: Sequence[Cell], kind: str, name: str) -> Html:
+def cells_figure(exhibit: ReportTraces, cells: Sequence[EnergyCell], kind: str, name: str) -> Html:
     """Map of channels against bands ("band") or stretches ("time"), all recordings."""
     chosen = [cell for cell in cells if cell.kind == kind]
     several = len(exhibit.traces) > 1
@@ -55,7 +55,7 @@ def cells_figure(exhibit: ReportTraces, cells: Sequence[Cell], kind: str, name: 
     return svg(figure, f"{name}-{kind}", f"Rms in sigma by {axis} (1 = noise).")
 
 
-def _ends(cell: Cell) -> str:
+def _ends(cell: EnergyCell) -> str:
     return f"{cell.low:.2g}" if cell.high - cell.low < 1e-9 else f"{cell.low:.2g}-{cell.high:.2g}"
 
 
