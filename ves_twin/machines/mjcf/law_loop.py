@@ -138,7 +138,7 @@ def _within(play: FloatArray, x: float) -> float:
     half = 0.5 * play[0]
     slider = x if np.isnan(play[1]) else play[1]
     play[1] = min(max(slider, x - half), x + half)
-    return x - play[1]
+    return float(x - play[1])
 
 
 @compiled
