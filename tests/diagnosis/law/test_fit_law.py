@@ -13,10 +13,11 @@ from pendulum import FED, MACHINE, SDS
 from ves_twin.core.errors import InvalidInputError
 from ves_twin.core.recording.recording import Recording, RecordingInfo
 from ves_twin.diagnosis.evidence import Evidence
+from ves_twin.diagnosis.law.band import band_of_form
 from ves_twin.diagnosis.law.candidate import Closed, Table, matern
 from ves_twin.diagnosis.law.contact import Hold, Play
 from ves_twin.diagnosis.law.fit_law import LawFit, fit_law
-from ves_twin.diagnosis.law.forms import FORMS, SIGNED_SQUARE, TONE
+from ves_twin.diagnosis.law.forms import CUBE, FORMS, LINEAR, SIGNED_SQUARE, TONE
 from ves_twin.diagnosis.law.place import LawForward, Variable
 from ves_twin.diagnosis.law.screen import law_screen, ranges, smooth_candidates
 from ves_twin.diagnosis.law.smoothness import smoothest
@@ -105,6 +106,21 @@ def test_a_table_follows_the_truth_within_its_band_and_a_form_of_one_number_beat
     assert np.std(off) < 0.1 * np.std(square(knots))
     closed = Closed(JOINT, (speed(),), (SIGNED_SQUARE,), ((),), ends["speed@joint"])
     assert fit_law(evidence, closed, none.fit).log_evidence > table.log_evidence
+
+
+@pytest.mark.parametrize("forms", [(SIGNED_SQUARE,), (LINEAR, CUBE)], ids=["true", "near"])
+def test_the_band_of_a_form_holds_the_truth_where_the_form_only_comes_near(forms):
+    evidence, none = dragged()
+    ends = ranges(FORWARD, none)["speed@joint"]
+    fit = fit_law(evidence, Closed(JOINT, (speed(),), forms, ((),) * len(forms), ends), none.fit)
+    assert fit.candidate is not None
+    at = np.linspace(*ends, 61)
+    low, high = band_of_form(evidence, fit, at, 0.9)
+    law, truth = fit.candidate.law(fit.numbers).at(at), square(at)
+    shift = np.mean(law - truth)
+    assert np.mean((truth + shift >= low) & (truth + shift <= high)) > 0.8
+    assert np.median(high - low) < 0.2 * np.std(truth)
+    assert np.all((law >= low) & (law <= high))
 
 
 def test_evidence_of_a_smooth_prior_is_the_gaussian_integral():
