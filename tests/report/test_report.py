@@ -25,9 +25,10 @@ from ves_twin.diagnosis.rivals import Standing
 from ves_twin.diagnosis.settings import Settings
 from ves_twin.diagnosis.verdict import Kind
 from ves_twin.diagnosis.whitening import whitening_declared
-from ves_twin.report.diagnosis.answer import headline, tone
+from ves_twin.report.diagnosis.answer import headline, next_step, tone
 from ves_twin.report.diagnosis.credibility import Pedigree, credibility
 from ves_twin.report.diagnosis.page import diagnosis_page
+from ves_twin.report.diagnosis.pictures import answer_figure
 from ves_twin.report.diagnosis.words import spoken
 from ves_twin.report.rerun.diagnosis import (
     diagnosis_blueprint,
@@ -419,6 +420,33 @@ def test_a_proved_extension_that_is_not_firm_acts_like_its_name_and_its_stand_in
     page = diagnosis_page(verdict)
     assert "acts like it, or like lag at plant" in page
     assert "Firm: friction at plant" in headline(proof_of(proven, firm=True))
+
+
+@pytest.mark.parametrize(("sds", "inside"), [(0.5, True), (10.0, False)])
+def test_a_measurement_inside_the_envelope_is_said_not_to_show_the_cause(friction, sds, inside):
+    (traces,) = friction.exhibit.traces
+    shifted = replace(traces, measured=traces.nominal + np.float32(sds) * traces.reach)
+    page = answer_figure(replace(friction.exhibit, traces=(shifted,)), "with the cause")
+    assert ("The measurement stays inside" in page) == inside
+    assert ("a curve inside may still be one" in page) != inside
+    assert f"all {len(friction.exhibit.channels)} together" in page or not inside
+
+
+def test_what_improves_the_prediction_is_to_be_used_and_firm_names_to_be_looked_at(proven):
+    assert next_step(proof_of(proven, firm=True)) == (
+        "Simulate with the extended model, and look at friction at plant."
+    )
+    unsure = next_step(proof_of(proven, firm=False))
+    assert "Simulate with the extended model" in unsure
+    assert "friction" not in unsure
+
+
+def test_where_tolerances_explain_the_record_the_next_step_is_to_say_what_is_known(settings):
+    nothing = said(settings, {}, seed=1)
+    blind = {**nothing.smallest_findable}
+    blind["friction@plant"] = replace(blind["friction@plant"], value=None)
+    step = next_step(replace(nothing, smallest_findable=blind))
+    assert step.startswith("Narrow the tolerances of what you know better than declared")
 
 
 def test_the_page_tells_how_many_were_tried_what_is_left_and_what_is_not_separated(proven):

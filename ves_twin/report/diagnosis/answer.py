@@ -69,6 +69,11 @@ def next_step(verdict: Verdict) -> str:
     if tone(verdict) == "bad":
         names = listed([name_of(cause) for cause in verdict.causes[:TOLD]])
         return f"Look at {names} on the machine, and simulate with the extended model."
+    if verdict.proved and verdict.gain is not None and verdict.gain.passed:
+        firm = [spoken(one.label) for one in verdict.proved if one.firm]
+        if firm:
+            return f"Simulate with the extended model, and look at {listed(firm[:TOLD])}."
+        return "Simulate with the extended model. A motion in which they differ settles the names."
     if verdict.law is not None and verdict.law.claimed:
         place = verdict.law.place
         return f"Look at {place} on the machine, and simulate with the law in the model."
