@@ -17,7 +17,15 @@ from ves_twin.diagnosis.law.band import band_of_form
 from ves_twin.diagnosis.law.candidate import Closed, Table, matern
 from ves_twin.diagnosis.law.contact import Hold, Play
 from ves_twin.diagnosis.law.fit_law import LawFit, fit_law
-from ves_twin.diagnosis.law.forms import CUBE, FORMS, LINEAR, SIGNED_SQUARE, TONE
+from ves_twin.diagnosis.law.forms import (
+    CUBE,
+    DEAD_ZONE,
+    FORMS,
+    LIMITED,
+    LINEAR,
+    SIGNED_SQUARE,
+    TONE,
+)
 from ves_twin.diagnosis.law.place import LawForward, Variable
 from ves_twin.diagnosis.law.screen import law_screen, ranges, smooth_candidates
 from ves_twin.diagnosis.law.smoothness import smoothest
@@ -157,6 +165,15 @@ def test_every_closed_form_is_finite_over_its_range_and_written_with_its_numbers
         assert_allclose(law.at(x), exact, atol=0.02 * np.max(np.abs(exact)) + 1e-12)
         assert law.form.startswith("2")
         assert "p" not in law.form.replace("exp", "").replace("step", "")
+
+
+def test_what_a_dead_zone_lets_through_and_what_it_keeps_are_all_of_a_command():
+    x = np.linspace(-2.0, 2.0, 41)
+    through, kept = (form.at(x, 4.0, 0.3) for form in (DEAD_ZONE, LIMITED))
+    assert_allclose(through + kept, x)
+    assert_allclose(through[np.abs(x) <= 0.3], 0.0)
+    assert np.max(kept) == 0.3
+    assert {DEAD_ZONE, LIMITED} <= {*FORMS["command"]}
 
 
 def test_laws_of_one_label_cannot_be_told_apart_and_are_refused():
