@@ -12,7 +12,6 @@ from ves_twin.core.workers import Workers
 from ves_twin.diagnosis.assess import pull_limit
 from ves_twin.diagnosis.build_up.build_up import Built, build_up
 from ves_twin.diagnosis.build_up.halves import split
-from ves_twin.diagnosis.build_up.result import BuildUp
 from ves_twin.diagnosis.explain import explain
 from ves_twin.diagnosis.explanation import Explanation
 from ves_twin.diagnosis.fit_context import FitContext
@@ -33,6 +32,9 @@ from ves_twin.diagnosis.whitening import Whitening, whitening_of
 ALMOST = 0.95
 """The same of a single cause that leaves more than noise: a wrong one that moves the same channels
 takes up to nine tenths (viscous damping of a drag with the square of speed, of blind pendulums)."""
+
+EXPLAINED, BUILT = 0.4, 0.8
+"""Shares of the time after which single causes and pairs, and then building up, must end."""
 
 MANY_FROM = 2
 """Causes beyond which more may be at work than a search of single ones and pairs can see."""
@@ -56,7 +58,7 @@ class Conclusion:
     kind: Kind
     gain: Gain | None = None
     forecast: Gain | None = None
-    built: BuildUp | None = None
+    built: Built | None = None
     cut: bool = False
     before: Fit | None = None
 
@@ -166,13 +168,16 @@ def decide(
         held: those held out.
         standstill: tells the noise; the declared one is taken without it.
     """
+    budget, many = desk.first.evidence.runs.budget, desk.settings.causes > MANY_FROM
+    budget.stage(EXPLAINED if many else BUILT)
     found = explain(desk.first, desk.thresholds, desk.settings, desk.progress)
+    budget.stage(BUILT)
     if found is None:
         return Conclusion(None, Kind.UNKNOWN)
     if found.far:
         return Conclusion(found, Kind.UNKNOWN, before=found.commissioning)
     built, cut = None, False
-    if not found.adequate and desk.settings.causes > MANY_FROM:
+    if not found.adequate and many:
         evidence = desk.first.evidence
         fitted = Dataset(evidence.runs, evidence.measured, ())
         if held is None:
@@ -190,8 +195,7 @@ def decide(
     gains = held.gains(found, before, ALMOST) if held else []
     kind = _kind(found, gains)
     ahead = _ahead(desk, forward, recordings, found, standstill) if kind.names_causes else None
-    report = built.report if built else None
-    return Conclusion(found, kind, gains[0] if gains else None, ahead, report, cut, before)
+    return Conclusion(found, kind, gains[0] if gains else None, ahead, built, cut, before)
 
 
 def _proved(
@@ -210,7 +214,7 @@ def _proved(
         kind = Kind.NAMED if len(found.best.causes) == 1 else Kind.SEVERAL
     gain = held.gain(built.before, found.best) if held else None
     ahead = _ahead(desk, forward, recordings, found, standstill)
-    return Conclusion(found, kind, gain, ahead, built.report, cut, built.before)
+    return Conclusion(found, kind, gain, ahead, built, cut, built.before)
 
 
 def _ahead(
@@ -237,7 +241,7 @@ def _probed(found: Explanation, settings: Settings) -> Explanation:
         refine(evidence, fit.causes, fit.shift, fit.local, 0, fit.step_share, probed=True)
         for fit in found.chosen
     )
-    if not settings.sparse:
+    if not settings.sparse and not evidence.runs.budget.skips("profiles of sizes"):
         chosen = tuple(profiled(evidence, fit) for fit in chosen)
     better = {fit.causes: fit for fit in chosen}
     fits = tuple(better.get(fit.causes, fit) for fit in found.fits)

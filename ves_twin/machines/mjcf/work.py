@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import copy
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, partial
 
 import mujoco
 import numpy as np
@@ -15,7 +15,7 @@ from ves_twin.diagnosis.forward import Excitation
 from ves_twin.effects.effect import Effect
 from ves_twin.effects.element import Element
 from ves_twin.effects.joints import CoulombFriction
-from ves_twin.effects.law import Law, LawKind
+from ves_twin.effects.law import Law, LawKind, LawShape, joints_of, variable_along
 from ves_twin.effects.place import Place
 from ves_twin.machines.mjcf.description import Compared
 from ves_twin.machines.mjcf.machine import Rig
@@ -76,10 +76,15 @@ class Work:
 
     def resistance(self, joint: str, speed: FloatArray) -> FloatArray:
         """Effort [N, N m] against motion of a joint that the model itself lacks (n,)."""
-        total = np.zeros_like(speed)
-        for effect, place in self.at(Element.JOINT, joint):
-            total = total + effect.resist(speed, SMOOTH * place.speed)
-        return total
+        return sum((resist(speed) for resist in self.resists(joint)), np.zeros_like(speed))
+
+    def resists(self, joint: str) -> list[Callable[[FloatArray], FloatArray]]:
+        """The parts of it, of each effect that has one."""
+        return [
+            partial(effect.resist, slow=SMOOTH * place.speed)
+            for effect, place in self.at(Element.JOINT, joint)
+            if type(effect).resist is not Effect.resist
+        ]
 
     def carried(self, joint: str, load: FloatArray, speed: FloatArray) -> FloatArray:
         """Effort [N, N m] against motion of a joint that its load makes (n,)."""
@@ -128,8 +133,13 @@ class Work:
         """Effort [N, N m] of the laws at a joint along variables (n,) each."""
         total = np.zeros(len(self.programme.time))
         for law in self.laws:
-            if law.kind is LawKind.EFFORT and law.place == joint:
-                total = total + law.at(*(along[name] for name in law.of))
+            sign = dict(joints_of(law.place)).get(joint, 0.0)
+            if law.kind is not LawKind.EFFORT or not sign:
+                continue
+            of = [variable_along(name, along) for name in law.of]
+            stop = law.shape is LawShape.STOP
+            effort = law.stopped(of[0], along[f"speed@{joint}"]) if stop else law.at(*of)
+            total = total + sign * effort
         return total
 
     def position(self, joint: str, position: FloatArray) -> FloatArray:

@@ -155,6 +155,8 @@ def _proved(verdict: Verdict) -> str:
         said += f" {begin} {', '.join(names[:TOLD])}{more}." if names else ""
     if verdict.verdict is Kind.PARTIAL:
         said += " Something more stays unexplained."
+    if verdict.law is not None and verdict.law.part:
+        said += f" {verdict.law.of_rest}"
     return said
 
 

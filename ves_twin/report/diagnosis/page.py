@@ -80,7 +80,8 @@ def diagnosis_page(verdict: Verdict, title: str = "Diagnosis", plant: str = "") 
         parts += _pictures(verdict, exhibit)
     parts += proved_parts(verdict)
     if verdict.law is not None:
-        parts.insert(1, section("A law in place of a cause", *law_parts(verdict.law)))
+        what = "A law of what the causes leave" if verdict.law.part else "A law in place of a cause"
+        parts.insert(1, section(what, *law_parts(verdict.law)))
     if verdict.rivals:
         note = paragraph(CHI2, "note")
         parts.append(section("Rivals, and why they lost", note, _rivals(verdict.rivals)))
