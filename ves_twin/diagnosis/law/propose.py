@@ -175,8 +175,7 @@ def search_laws(
     fine = resolved(second, tables[0])
     if fine is not tables[0] and fine.candidate is not None:
         tables = [fine, *tables[1:]]
-        least = 0.5 * (fine.log_evidence - none.log_evidence)
-        others += tone_laws(second, none, [fine.candidate.place], ends, least, progress)
+        others += tone_laws(second, none, [fine.candidate.place], ends, WORTH, progress)
     worth = [f for f in tables if f.log_evidence > none.log_evidence + WORTH]
     plain = [fit for fit in worth if isinstance(fit.candidate, Table)]
     plain = [fit for fit in plain if fit.log_evidence > plain[0].log_evidence - NEAR]
