@@ -100,3 +100,12 @@ def test_poses_at_rest_keep_every_row_and_have_noise_without_memory():
         replace(poses, time=np.arange(40.0), info=replace(poses.info, log="")), ("drive.u",)
     ).poses
     assert not fed.poses
+
+
+def test_a_diagnosis_without_time_ends_with_a_verdict_and_says_what_it_left_out():
+    hurried = replace(FOUR, minutes=1e-6)
+    verdict = diagnose(PLANT, [measured(1)], held_out=[measured(2)], settings=hurried)
+    assert verdict.verdict in (Kind.PARTIAL, Kind.UNKNOWN)
+    assert "pairs of causes" in verdict.basis.left_out
+    assert verdict.statistics.effect_threshold > 0.0
+    assert any("No time was left for" in text for text in basis_sentences(verdict))

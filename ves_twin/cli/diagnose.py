@@ -59,6 +59,13 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         metavar="MODEL",
         help="in place of --plant: draft the machine's file in the output folder, as `new` does",
     )
+    parser.add_argument(
+        "--minutes",
+        metavar="N",
+        type=float,
+        default=30.0,
+        help="processor time that it may take; it says what it leaves out then (default: 30)",
+    )
     parser.add_argument("--out", metavar="DIR", help="output folder (default: runs/diagnosis)")
     parser.add_argument("--json", action="store_true", help="the verdict as JSON on stdout")
 
@@ -111,7 +118,7 @@ def _diagnose(arguments: argparse.Namespace) -> Diagnosis:
             exclude=arguments.exclude,
             experiment=given.experiment,
             alternate=arguments.alternate,
-            settings=replace(bank_settings(), laws=arguments.law),
+            settings=replace(bank_settings(), laws=arguments.law, minutes=arguments.minutes),
             progress=progress.share,
         )
 

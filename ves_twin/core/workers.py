@@ -1,4 +1,4 @@
-"""Workers: processes that share out independent jobs, started once and kept."""
+"""Workers: processes that share out independent jobs, and the time that these may take."""
 
 from __future__ import annotations
 
@@ -8,6 +8,8 @@ from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import ProcessPoolExecutor
 from contextlib import contextmanager
 from typing import TypeVar
+
+from ves_twin.core.budget import Budget
 
 Job = TypeVar("Job")
 Result = TypeVar("Result")
@@ -20,14 +22,16 @@ class Workers:
 
     Args:
         count: of processes; 1 computes here.
+        budget: of all jobs, by a clock that processes share where there are several; endless if
+            None.
     """
 
-    def __init__(self, count: int = 1) -> None:
-        self.count = count
+    def __init__(self, count: int = 1, budget: Budget | None = None) -> None:
+        self.count, self.budget = count, budget or Budget()
         self._pool: ProcessPoolExecutor | None = None
 
-    def __reduce__(self) -> tuple[type[Workers], tuple[int]]:
-        return Workers, (1,)  # what was given to another process computes there
+    def __reduce__(self) -> tuple[type[Workers], tuple[int, Budget]]:
+        return Workers, (1, self.budget)  # what was given to another process computes there
 
     def __enter__(self) -> Workers:
         return self

@@ -162,8 +162,9 @@ def _provisional(verdict: Verdict) -> Verdict:
 def sized(built: BuildUp, causes: Sequence[Cause]) -> tuple[Proved, ...]:
     """What is proved with its sizes.
 
-    Firm only where no commissioning error explains it either, and no interval holds the value that
-    the model has already: a shape that is known so little is not known by name.
+    Firm only where it passes the test by itself, too, no commissioning error explains it either,
+    and no interval holds the value that the model has already: a shape that is known so little is
+    not known by name.
     """
     named = {f"{cause.effect}@{cause.target}": cause for cause in causes}
     found = []
@@ -174,6 +175,7 @@ def sized(built: BuildUp, causes: Sequence[Cause]) -> tuple[Proved, ...]:
             for name, e in cause.shortened.parameters.items()
         }
         known = all(not s.low <= s.nominal <= s.high for s in sizes.values())
+        known = known and one.p <= built.false_discovery_rate  # many that are sure raise its limit
         found.append(replace(one, parameters=sizes, firm=one.firm and cause.firm and known))
     return tuple(found)
 

@@ -33,6 +33,9 @@ ALMOST = 0.95
 """The same of a single cause that leaves more than noise: a wrong one that moves the same channels
 takes up to nine tenths (viscous damping of a drag with the square of speed, of blind pendulums)."""
 
+EXPLAINED, BUILT = 0.4, 0.8
+"""Shares of the time after which single causes and pairs, and then building up, must end."""
+
 MANY_FROM = 2
 """Causes beyond which more may be at work than a search of single ones and pairs can see."""
 
@@ -165,13 +168,16 @@ def decide(
         held: those held out.
         standstill: tells the noise; the declared one is taken without it.
     """
+    budget, many = desk.first.evidence.runs.budget, desk.settings.causes > MANY_FROM
+    budget.stage(EXPLAINED if many else BUILT)
     found = explain(desk.first, desk.thresholds, desk.settings, desk.progress)
+    budget.stage(BUILT)
     if found is None:
         return Conclusion(None, Kind.UNKNOWN)
     if found.far:
         return Conclusion(found, Kind.UNKNOWN, before=found.commissioning)
     built, cut = None, False
-    if not found.adequate and desk.settings.causes > MANY_FROM:
+    if not found.adequate and many:
         evidence = desk.first.evidence
         fitted = Dataset(evidence.runs, evidence.measured, ())
         if held is None:
@@ -235,7 +241,7 @@ def _probed(found: Explanation, settings: Settings) -> Explanation:
         refine(evidence, fit.causes, fit.shift, fit.local, 0, fit.step_share, probed=True)
         for fit in found.chosen
     )
-    if not settings.sparse:
+    if not settings.sparse and not evidence.runs.budget.skips("profiles of sizes"):
         chosen = tuple(profiled(evidence, fit) for fit in chosen)
     better = {fit.causes: fit for fit in chosen}
     fits = tuple(better.get(fit.causes, fit) for fit in found.fits)

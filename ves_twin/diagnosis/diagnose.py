@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
@@ -74,7 +75,7 @@ def diagnose(
     chosen = settings or Settings()
     _check_causes(forward, exclude)
     check_commissioned(len(commissioning))
-    with Workers(chosen.workers) as workers:
+    with Workers(chosen.workers, chosen.budget) as workers:
         scale = _scale(forward, commissioning, workers, chosen)
         material = _Material(
             tuple(recordings),
@@ -186,21 +187,24 @@ class _View:
         ambiguous = kind is Kind.AMBIGUOUS
         proposals = _next(seen.runs, found, material.next_programmes) if ambiguous else ()
         apart: tuple[Alone, ...] = ()
-        if found is None or not found.adequate:
+        proved = end.built is not None and bool(end.built.report.proved)
+        seen.runs.budget.stage(1.0)
+        if not (proved or (found is not None and found.adequate)):
             bank, limits = first.screen.bank, findings.limits
             apart = disagreement(seen, bank, self.whitening, limits, chosen, progress)
         if end.cut:
             basis = replace(basis, held_out="split")
-        lawful = None
-        if kind is Kind.UNKNOWN:
-            progress(0.0, "looking for a law")
-            lawful = lawful_explanation(
-                first, found, self.limits, chosen, held.pair if held else None, progress
-            )
-        elif kind is Kind.PARTIAL and end.built is not None and end.built.report.proved:
-            progress(0.0, "looking for a law in what is left")
-            lawful = lawful_rest(end.built, self.limits, chosen, still, progress)
-        unknown = kind is Kind.UNKNOWN
+        lawful, unknown = None, kind is Kind.UNKNOWN
+        seen.runs.budget.stage(math.inf if chosen.laws else 1.0)  # asked for, whatever it takes
+        wanted = chosen.laws is not False and (unknown or (kind is Kind.PARTIAL and proved))
+        if wanted and not seen.runs.budget.skips("a law"):
+            progress(0.0, "looking for a law" if unknown else "looking for a law in what is left")
+            if end.built is not None and not unknown:
+                lawful = lawful_rest(end.built, self.limits, chosen, still, progress)
+            else:
+                pair = held.pair if held else None
+                lawful = lawful_explanation(first, found, self.limits, chosen, pair, progress)
+        basis = replace(basis, left_out=tuple(seen.runs.budget.left_out))
         findings = replace(
             findings,
             law=lawful.finding if lawful else None,

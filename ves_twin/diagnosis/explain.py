@@ -48,6 +48,8 @@ def explain(
     found = _singles(desk, together)
     if found is None or found.adequate or found.far or not together:
         return found
+    if first.evidence.runs.budget.skips("pairs of causes"):
+        return found
     return pairs(desk, found) or found
 
 

@@ -126,7 +126,7 @@ def _second(desk: FitContext, evidence: Evidence, fit: Fit, allowance: float) ->
     bank = desk.first.screen.bank
     z = residual_about(evidence, fit, bank.base)
     score = Screen(bank, evidence.whitening, fit.free).suspects(z)[0].score
-    if score < desk.thresholds.effect + allowance:
+    if score < desk.thresholds.effect + allowance or evidence.runs.budget.over:
         return score
     return max((s.score for s in suspects_at(desk, evidence, fit)[1]), default=0.0)
 

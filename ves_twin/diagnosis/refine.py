@@ -119,12 +119,12 @@ def refine(
     start = np.clip(shift, search.low, search.high)
     point, jacobian = search.run(search.at(start, step_share))
     whole = steps == ITERATIONS and np.isfinite(point.chi2)
-    if whole and not near(search.local, point.shift):
+    if whole and not near(search.local, point.shift) and not runs.budget.over:
         last, local = _kept(search), _stepped(search, point)
         search = Search(evidence, free, local, farthest, enough, target=target)
         point, jacobian = search.run(search.at(point.shift, point.delta), last)
     for _ in range(rounds):
-        if near(search.local, point.shift):
+        if near(search.local, point.shift) or runs.budget.over:
             break
         before, last = point.chi2, _kept(search)
         turned = replace(search.local, columns=search.turned)
@@ -133,7 +133,7 @@ def refine(
         point, jacobian = search.run(search.at(point.shift, point.delta), last)
         if before - point.chi2 < WORTH * point.chi2:
             break
-    if probed and np.isfinite(point.chi2):
+    if probed and np.isfinite(point.chi2) and not runs.budget.over:
         point, jacobian = search.descend(point, probe(search, point, jacobian))
     return _fit(causes, search, point, jacobian)
 

@@ -9,6 +9,7 @@ from itertools import pairwise
 
 import numpy as np
 
+from ves_twin.core.budget import Budget
 from ves_twin.core.types import BoolArray, FloatArray, IntArray, SingleArray
 from ves_twin.core.workers import Workers
 from ves_twin.diagnosis.forward import Excitation, Forward, Hypothesis, Parameter
@@ -59,6 +60,11 @@ class Runs:
             copies = range(len(self.programmes)) if parameter.per_recording else (-1,)
             axes += [Coordinate(parameter, k) for k in copies]
         return tuple(axes)
+
+    @property
+    def budget(self) -> Budget:
+        """Time that is left."""
+        return self.workers.budget
 
     @cached_property
     def sd(self) -> FloatArray:

@@ -26,6 +26,9 @@ NONLINEAR_CHI2 = 2.0
 """Squared residual per sample from which a search that stalls is gone on with at the priors' own
 weight."""
 
+BETTER_FITS = "better fits"
+"""What a search leaves out that ends early."""
+
 PRIOR_WEIGHT_RATIO = 10.0
 """Times that weight, which is tried beside it: a long step may end where the legs hunt, and no
 column points back from there."""
@@ -214,6 +217,8 @@ class Search:
     def descend(self, point: Point, jacobian: FloatArray) -> tuple[Point, FloatArray]:
         """From a point with its Jacobian down to the best one."""
         for _ in range(self.steps):
+            if self.runs.budget.skips(BETTER_FITS):
+                break
             found = self._step(point, jacobian)
             fall = point.chi2 - found.chi2
             point = found

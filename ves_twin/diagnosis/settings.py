@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import time
 from dataclasses import dataclass
 from pathlib import Path
 
+from ves_twin.core.budget import Budget
 from ves_twin.diagnosis.grid import RATE
 
 
@@ -31,6 +33,8 @@ class Settings:
         sparse: whether banks are built with fewer runs, as a machine of many parameters needs.
         laws: whether a law is looked for where no cause explains the record, and the plant can
             have laws; None where that takes minutes at most.
+        minutes: that a diagnosis may take, of processor time in one process, of the clock in
+            several; what it then leaves out it says.
     """
 
     alpha: float = 0.002
@@ -48,6 +52,12 @@ class Settings:
     rate: float = RATE
     sparse: bool = False
     laws: bool | None = False
+    minutes: float = 30.0
+
+    @property
+    def budget(self) -> Budget:
+        """Of a diagnosis that begins now."""
+        return Budget(self.minutes, time.process_time if self.workers == 1 else time.monotonic)
 
     @property
     def bank(self) -> str:

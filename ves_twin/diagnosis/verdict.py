@@ -137,7 +137,7 @@ class Basis:
     `recordings` is "external" where every one, held-out ones too, comes from a log of a machine,
     "unknown" otherwise: a simulated one, or one that does not say where it comes from.
     `baseline_differs` is the largest difference of the baseline's inputs from those of the record,
-    of their range.
+    of their range. `left_out` names what there was no time for.
     """
 
     noise: str
@@ -146,6 +146,7 @@ class Basis:
     baseline: str = "none"
     recordings: str = "unknown"
     baseline_differs: float | None = None
+    left_out: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True)

@@ -17,3 +17,12 @@ def test_a_size_whose_interval_holds_the_models_own_value_is_not_firm(low, firm)
     (told,) = sized(BuildUp((one,), 1, 0.05, {}, {}), (cause,))
     assert told.parameters["level"].value == 1.0
     assert told.firm is firm
+
+
+@pytest.mark.parametrize(("p", "firm"), [(0.04, True), (0.1, False)])
+def test_a_name_that_only_many_sure_ones_beside_it_let_pass_is_not_firm(p, firm):
+    size = Estimate(1.0, 0.5, 1.5, "N", 0.0)
+    cause = Cause("coulomb_friction", "joint", {"level": size}, 1.0, True, None)
+    one = Proved("coulomb_friction", "joint", {}, p, 20, {"torque": (2.0, 1.0)}, True)
+    (told,) = sized(BuildUp((one,), 7, 0.05, {}, {}), (cause,))
+    assert told.firm is firm

@@ -10,6 +10,7 @@ from scipy.stats import norm
 
 from ves_twin.core.types import FloatArray
 from ves_twin.diagnosis.adequacy import cells, misfit
+from ves_twin.diagnosis.build_up.converged import converged
 from ves_twin.diagnosis.build_up.discrepancy import discrepancy
 from ves_twin.diagnosis.build_up.halves import Halves, carried_point, halves_at
 from ves_twin.diagnosis.build_up.paired import loss
@@ -22,7 +23,6 @@ from ves_twin.diagnosis.build_up.trials import Trial
 from ves_twin.diagnosis.evidence import Evidence
 from ves_twin.diagnosis.explanation import Explanation
 from ves_twin.diagnosis.fit_context import FitContext
-from ves_twin.diagnosis.linearise import linearise
 from ves_twin.diagnosis.preprocess import Dataset
 from ves_twin.diagnosis.refine import Fit, bare_residual, refine
 from ves_twin.diagnosis.runs import Runs
@@ -88,13 +88,20 @@ class _Builder:
         whitening = discrepancy(self.fitted.runs, residual, EVEN, memory)
         return Evidence(self.fitted.runs, self.fitted.measured, whitening)
 
-    def chosen(self) -> tuple[Halves, list[int], FloatArray]:
-        """Trials worth a proof, about the point where all of them are fitted in full."""
-        point, present = self.fitted.runs.origin, tuple[Trial, ...]()
-        halves = self.halves(point, present)
-        for _ in range(ROUNDS):
+    def chosen(
+        self, halves: Halves, point: FloatArray, begin: Sequence[int] = ()
+    ) -> tuple[Halves, list[int], FloatArray]:
+        """Trials worth a proof, about the point where all of them are fitted in full.
+
+        Args:
+            halves: linear about the point.
+            point: departures (coordinates,).
+            begin: trials that are fitted in full before others are looked at.
+        """
+        present, only = tuple[Trial, ...](), list(begin)
+        for _ in range(ROUNDS + bool(only)):
             regression = halves.regression
-            chosen = Selector(regression).run(_places(halves, present))
+            chosen = only or Selector(regression).run(_places(halves, present))
             evidence = self.evidence(regression.fit(chosen).residual)
             linear = regression.solve(chosen, evidence.whitening).residual
             fit = self.refined(halves, chosen, point, evidence)
@@ -102,9 +109,30 @@ class _Builder:
             off = regression.half.rms(bare_residual(evidence, fit) - linear)
             point = fit.shift
             halves = self.halves(point, present)
+            if only:
+                only = []
+                continue
             if np.all(off <= MOVED * regression.half.rms(linear)):
                 break
+            if self.fitted.runs.budget.skips("causes chosen anew about their own fit"):
+                break
         return halves, _places(halves, present), point
+
+    def onward(
+        self, halves: Halves, few: Proof, point: FloatArray
+    ) -> tuple[Halves, Proof, FloatArray]:
+        """What is proved about a few causes fitted in full, where it holds them; else the few.
+
+        A dead band hides what else acts on a command until both are where they belong.
+        """
+        if self.fitted.runs.budget.skips("further causes beside the best pair"):
+            return halves, few, point
+        there, chosen, at = self.chosen(halves, point, few.proved)
+        more = prove(there.regression, there.held, chosen, more=few.tested)
+        held = {there.regression.trials[n].cause.label for n in more.proved}
+        if not {halves.regression.trials[n].cause.label for n in few.proved} <= held:
+            return halves, few, point
+        return there, more, at
 
     def refined(
         self,
@@ -117,14 +145,21 @@ class _Builder:
         """Chosen trials fitted with the full forward, from what the linear fit says."""
         regression, runs = halves.regression, self.fitted.runs
         linear = regression.solve(chosen, evidence.whitening)
-        shift = np.where(runs.sd > 0.0, point, 0.0)
+        full = np.where(runs.sd > 0.0, point, 0.0)
+        near, half = full, full
         for n, at in regression.places(chosen).items():
             trial = regression.trials[n]
+            where = runs.indices(trial.cause)
             sizes = trial.departures(linear.shares[at] * linear.scale[at])
-            shift = runs.depart(shift, runs.indices(trial.cause), sizes)
+            full = runs.depart(full, where, sizes)
+            here = point[where] if np.any(point[where]) else full[where]
+            near = runs.depart(near, where, here)
+            half = runs.depart(half, where, 0.5 * (here + full[where]))
         causes = tuple(regression.trials[n].cause for n in chosen)
-        local = linearise(runs, np.where(runs.sd > 0.0, point, 0.0))
-        return refine(evidence, causes, shift, local, 1, probed=probed)
+        fit = converged(evidence, causes, point, _likeliest(evidence, (full, half, near)))
+        if not probed:
+            return fit
+        return refine(evidence, causes, fit.shift, fit.local, 0, fit.step_share, probed=True)
 
 
 def build_up(desk: FitContext, start: Explanation, fitted: Dataset, held: Dataset) -> Built | None:
@@ -141,10 +176,14 @@ def build_up(desk: FitContext, start: Explanation, fitted: Dataset, held: Datase
     """
     builder = _Builder(desk, fitted, held)
     desk.progress(0.0, "building up")
-    halves, chosen, point = builder.chosen()
-    proof = _no_worse(halves, prove(halves.regression, halves.held, chosen))
+    origin = fitted.runs.origin
+    halves, chosen, point = builder.chosen(builder.halves(origin, ()), origin)
+    first = prove(halves.regression, halves.held, chosen)
+    proof = _no_worse(halves, first)
     if not proof.tested:
         return None
+    if proof.proved != first.proved:
+        halves, proof, point = builder.onward(halves, proof, point)
     evidence = builder.evidence(proof.bench.fit.residual, memory=False)
     final = builder.refined(halves, proof.proved, point, evidence, probed=True)
     before = builder.refined(halves, (), point, evidence)
@@ -158,6 +197,18 @@ def build_up(desk: FitContext, start: Explanation, fitted: Dataset, held: Datase
         np.asarray(held.measured - there, float),
     )
     return Built(found, before, report_of(halves, proof, ends), fitted, held)
+
+
+def _likeliest(evidence: Evidence, starts: Sequence[FloatArray]) -> FloatArray:
+    """The start that leaves least: columns of finite sizes may promise what none of them keeps."""
+
+    def left(shift: FloatArray) -> float:
+        rows = evidence.whitening.apply(evidence.measured - evidence.runs.one(shift))
+        chi2 = float(rows @ rows)
+        return chi2 if np.isfinite(chi2) else np.inf
+
+    different = {shift.tobytes(): shift for shift in starts}
+    return min(different.values(), key=left)
 
 
 def _places(halves: Halves, present: Sequence[Trial]) -> list[int]:

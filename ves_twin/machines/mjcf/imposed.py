@@ -82,6 +82,8 @@ class Imposed:
 
     def move(self, data: mujoco.MjData, step: int) -> None:
         """Set place and speed of a step, and the effort that keeps the recorded acceleration."""
+        if not len(self.dofs):
+            return
         data.qpos[self.places] = self.position[step]
         data.qvel[self.dofs] = self.speed[step]
         data.qfrc_applied[self.dofs] = self.inertia * self.pull[step]

@@ -23,6 +23,9 @@ from ves_twin.machines.mjcf.law_loop import CompiledLaws, lawful_rows
 from ves_twin.machines.mjcf.started import first_state, start_signal
 from ves_twin.machines.mjcf.work import Work, sensor_rows, variables
 
+CHECKED = 50
+"""Rows after which it is looked whether the engine gave up: a look costs as much as a step."""
+
 CARRIED = 4
 """Iterations of a friction that its load makes: of a tenth of the load it is then known to 1e-4."""
 
@@ -240,7 +243,12 @@ def _stepped(
         (name, int(model.joint(name).dofadr[0]), int(model.joint(name).qposadr[0]))
         for name in {e.target for e, _ in work.effects if e.element is Element.JOINT}
     ]
-    holders = {n: [e.holder() for e, _ in work.at(Element.JOINT, n)] for n, _, _ in resisted}
+    at_joint = {n: [e for e, _ in work.at(Element.JOINT, n)] for n, _, _ in resisted}
+    holders = {
+        n: [e.holder() for e in found if type(e).holder is not Effect.holder]
+        for n, found in at_joint.items()
+    }
+    resists = {n: work.resists(n) for n, _, _ in resisted}
     path, sensed = np.zeros((rows, model.nq + model.nv)), np.zeros((rows, model.nsensordata))
     pull, imposed = np.zeros((rows, model.nv)), Imposed.of(work, steps)
     speed, given, reach = np.zeros(1), np.zeros(1), _Reach(work)
@@ -256,17 +264,18 @@ def _stepped(
             data.qfrc_applied[:] = 0.0
             for name, dof, at in resisted:
                 speed[0], q = data.qvel[dof], float(data.qpos[at])
-                held = sum(holder(q) for holder in holders[name])
+                effort = sum(float(resist(speed)[0]) for resist in resists[name])
+                effort += sum(holder(q) for holder in holders[name])
                 given[0] = data.qfrc_actuator[dof]
-                held += _carried(work, name, given, speed) if name in loaded else 0.0
-                data.qfrc_applied[dof] = -work.resistance(name, speed)[0] - held
+                effort += _carried(work, name, given, speed) if name in loaded else 0.0
+                data.qfrc_applied[dof] = -effort
             if len(laws.codes):
                 laws.push(data, own)
             imposed.move(data, k * steps + n)
             mujoco.mj_step(model, data)
             if n == 0:
                 sensed[k], pull[k] = data.sensordata, data.qacc
-        if _failed(data):
+        if k % CHECKED == 0 and _failed(data):
             break
     for name, command in imposed.commands(path, pull).items():
         asked[:, model.actuator(name).id] = command

@@ -34,7 +34,8 @@ def rests_on(basis: Basis) -> str:
     keys = [(name, getattr(basis, name)) for name in fields]
     there = _listed([GIVEN[key] for key in keys if key in GIVEN])
     absent = " or ".join(MISSING[key] for key in keys if key in MISSING)
-    return f"{there}; {absent} was not given." if absent else f"{there}."
+    said = f"{there}; {absent} was not given." if absent else f"{there}."
+    return " ".join([said, *_left_out(basis)])
 
 
 def _listed(names: list[str]) -> str:
@@ -113,7 +114,15 @@ def basis_sentences(verdict: Verdict) -> tuple[str, ...]:
         tolerances.get(basis.tolerances, f"Tolerances: {basis.tolerances}."),
         held.get(basis.held_out, f"Held-out recordings: {basis.held_out}."),
         *_repeats(basis),
+        *_left_out(basis),
     )
+
+
+def _left_out(basis: Basis) -> tuple[str, ...]:
+    """What there was no time for."""
+    if not basis.left_out:
+        return ()
+    return (f"No time was left for {_listed(list(basis.left_out))} (--minutes).",)
 
 
 def _repeats(basis: Basis) -> tuple[str, ...]:

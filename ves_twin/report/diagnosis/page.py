@@ -32,6 +32,7 @@ from ves_twin.report.diagnosis.words import (
     ends_words,
     fitted_word,
     interval_words,
+    listed,
     name_of,
     size_words,
     spoken,
@@ -191,7 +192,7 @@ def _pictures(verdict: Verdict, exhibit: ReportTraces) -> list[Html]:
     large = exhibit.telling[:SHOWN].tolist()
     shown = exhibit.traces[:DRAWN]
     what = (
-        f"The model with {' with '.join(map(spoken, exhibit.causes))}, beside the best that its"
+        f"The model with {listed(list(map(spoken, exhibit.causes)))}, beside the best that its"
         " tolerances alone can do, in the channels where the two differ most."
         if exhibit.causes
         else "No cause is in the model: its tolerances alone are fitted."

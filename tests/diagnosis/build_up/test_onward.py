@@ -1,0 +1,106 @@
+"""A valve with a dead band: what else acts on its command shows beside the best pair alone."""
+
+from __future__ import annotations
+
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from ves_twin.diagnosis.build_up.build_up import _Builder, _likeliest
+from ves_twin.diagnosis.build_up.proof import prove
+from ves_twin.diagnosis.evidence import Evidence
+from ves_twin.diagnosis.forward import Excitation
+from ves_twin.diagnosis.preprocess import Dataset
+from ves_twin.diagnosis.runs import Runs, silent
+from ves_twin.diagnosis.whitening import whitening_declared
+from ves_twin.machines.mjcf.forward import MjcfForward
+from ves_twin.machines.mjcf.machine import Rig
+
+MODEL = """<mujoco><option timestep="0.05" gravity="0 0 0" integrator="implicitfast"/>
+  <worldbody><body name="rod"><joint name="boom" type="slide" damping="100"/>
+    <inertial pos="0 0 0" mass="1" diaginertia="1 1 1"/></body></worldbody>
+  <actuator><motor name="valve" joint="boom"/></actuator></mujoco>"""
+
+DESCRIPTION = """schema = 1
+kind = "rig"
+name = "boom"
+model = "boom.xml"
+rate = 20
+[clock]
+column = "t"
+[signals.duty]
+columns = ["u"]
+unit = "N"
+[signals.length]
+columns = ["x"]
+unit = "m"
+noise = "0.2 mm"
+[drive]
+mode = "control"
+actuators = { valve = "duty" }
+[compare.length]
+joint = "boom"
+[typical.joint.boom]
+effort = 2
+speed = "2 cm/s"
+travel = "5 cm"
+""" + "".join(
+    f'[[effects]]\nkind = "actuator_{kind}"\non = ["valve"]\nlargest = {largest}\n'
+    for kind, largest in (("gain", 3), ("deadband", 1.8), ("delay", 0.3), ("asymmetry", 0.8))
+)
+
+HIDDEN = {
+    "actuator_gain@valve:gain": 1.0,
+    "actuator_deadband@valve:band": 0.9,
+    "actuator_delay@valve:delay": 0.1,
+}
+
+
+@pytest.fixture(scope="module")
+def forward(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("boom")
+    (folder / "boom.xml").write_text(MODEL)
+    (folder / "boom.toml").write_text(DESCRIPTION)
+    return MjcfForward.of(Rig.load(str(folder / "boom.toml")))
+
+
+def seen(forward: MjcfForward, seed: int) -> Dataset:
+    rng = np.random.default_rng(seed)
+    time = 0.05 * np.arange(600)
+    tones = np.sin(2.0 * np.pi * np.outer(time, [0.11, 0.29, 0.53]) + rng.uniform(0.0, 6.28, 3))
+    fed = Excitation("manual", time, {"duty": 1.2 * tones.sum(axis=1, keepdims=True)}, rate=20.0)
+    runs = Runs(forward, (fed,), (0,))
+    names = [axis.parameter.name for axis in runs.coordinates]
+    rows = runs.one(np.array([HIDDEN.get(name, 0.0) for name in names]))
+    return Dataset(runs, rows + 2e-4 * rng.standard_normal(rows.shape).astype(np.float32), ())
+
+
+def test_what_a_dead_band_hides_is_found_beside_it(forward):
+    fitted, held = seen(forward, 1), seen(forward, 2)
+    bank = SimpleNamespace(hypotheses=forward.hypotheses)
+    desk = SimpleNamespace(
+        first=SimpleNamespace(screen=SimpleNamespace(bank=bank)), progress=silent
+    )
+    builder, origin = _Builder(desk, fitted, held), fitted.runs.origin
+    halves = builder.halves(origin, ())
+    labels = [trial.cause.label for trial in halves.regression.trials]
+    pair = [labels.index(f"actuator_{kind}@valve") for kind in ("gain", "deadband")]
+    few = prove(halves.regression, halves.held, pair)
+    assert len(few.proved) == 2
+    there, more, point = builder.onward(halves, few, origin)
+    names = {there.regression.trials[n].cause.effect for n in more.proved}
+    assert names == {"actuator_gain", "actuator_deadband", "actuator_delay"}
+    runs = fitted.runs
+    found = {axis.parameter.name: point[i] for i, axis in enumerate(runs.coordinates)}
+    for name, size in HIDDEN.items():
+        assert found[name] == pytest.approx(size, rel=0.1)
+
+
+def test_a_fit_begins_where_least_is_left(forward):
+    data = seen(forward, 1)
+    runs = data.runs
+    evidence = Evidence(runs, data.measured, whitening_declared(runs))
+    true = np.array([HIDDEN.get(axis.parameter.name, 0.0) for axis in runs.coordinates])
+    starts = (2.0 * true, true, runs.origin)
+    assert _likeliest(evidence, starts) is true
