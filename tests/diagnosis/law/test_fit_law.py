@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
 from functools import cache
 
@@ -14,7 +15,7 @@ from ves_twin.core.errors import InvalidInputError
 from ves_twin.core.recording.recording import Recording, RecordingInfo
 from ves_twin.diagnosis.evidence import Evidence
 from ves_twin.diagnosis.law.band import band_of_form
-from ves_twin.diagnosis.law.candidate import Closed, Table, matern
+from ves_twin.diagnosis.law.candidate import Candidate, Closed, Table, matern
 from ves_twin.diagnosis.law.contact import Hold, Play
 from ves_twin.diagnosis.law.fit_law import LawFit, fit_law
 from ves_twin.diagnosis.law.forms import (
@@ -27,12 +28,13 @@ from ves_twin.diagnosis.law.forms import (
     TONE,
 )
 from ves_twin.diagnosis.law.place import LawForward, Variable
+from ves_twin.diagnosis.law.propose import resolved
 from ves_twin.diagnosis.law.screen import law_screen, ranges, smooth_candidates
 from ves_twin.diagnosis.law.smoothness import smoothest
 from ves_twin.diagnosis.law.with_law import WithLaw
 from ves_twin.diagnosis.linearise import linearise
 from ves_twin.diagnosis.preprocess import preprocess
-from ves_twin.diagnosis.refine import refine
+from ves_twin.diagnosis.refine import Fit, refine
 from ves_twin.diagnosis.whitening import whitening_declared
 from ves_twin.effects.law import Law, LawKind, LawShape
 from ves_twin.machines.mjcf.forward import MjcfForward
@@ -47,18 +49,17 @@ def square(x: np.ndarray) -> np.ndarray:
     return -DRAG * np.abs(x) * x
 
 
-@cache
 def dragged() -> tuple[Evidence, LawFit]:
     """A pendulum with drag in the square of speed, and commissioning errors fitted alone."""
-    x = np.linspace(-12.0, 12.0, 801)
-    law = Law(
-        "joint",
-        LawKind.EFFORT,
-        LawShape.TABLE,
-        ("speed@joint",),
-        (tuple(x.tolist()),),
-        tuple(square(x).tolist()),
-    )
+    return hidden("speed@joint", square)
+
+
+@cache
+def hidden(of: str, curve: Callable[[np.ndarray], np.ndarray]) -> tuple[Evidence, LawFit]:
+    """A pendulum with a curve, and commissioning errors fitted alone."""
+    x = np.linspace(-12.0, 12.0, 8001)
+    knots, values = (tuple(x.tolist()),), tuple(curve(x).tolist())
+    law = Law("joint", LawKind.EFFORT, LawShape.TABLE, (of,), knots, values)
     rows = FORWARD.simulate(FED, {"body_mass@link:mass": 1.004}, False, (law,))
     rows = rows + np.random.default_rng(3).standard_normal(rows.shape) * SDS
     signals = {"joint.angle": rows[:, :1], "joint.rate": rows[:, 1:], **FED.drive}
@@ -129,6 +130,36 @@ def test_the_band_of_a_form_holds_the_truth_where_the_form_only_comes_near(forms
     assert np.mean((truth + shift >= low) & (truth + shift <= high)) > 0.8
     assert np.median(high - low) < 0.2 * np.std(truth)
     assert np.all((law >= low) & (law <= high))
+
+
+def ripple(x: np.ndarray) -> np.ndarray:
+    return 0.02 * np.sin(16.0 * x + 1.0)
+
+
+@pytest.mark.slow
+def test_a_table_gets_the_knots_that_a_ripple_asks_for():
+    evidence, none = hidden("position@joint", ripple)
+    ends = ranges(FORWARD, none)
+    tables = [c for c in smooth_candidates([JOINT], ends) if c.label == "joint(position@joint)"]
+    coarse = fit_law(evidence, tables[0], none.fit)
+    fine = resolved(evidence, coarse)
+    assert fine.count > 1.9 * coarse.count
+    x = np.linspace(0.9 * ends["position@joint"][0], 0.9 * ends["position@joint"][1], 400)
+    off = [
+        np.std(fit.candidate.law(fit.numbers).at(x) - ripple(x)) / np.std(ripple(x))
+        for fit in (coarse, fine)
+        if fit.candidate is not None
+    ]
+    assert off[1] < 0.25 < off[0]
+    drag = fit_law(*dragged_table())
+    assert resolved(dragged()[0], drag) is drag
+
+
+def dragged_table() -> tuple[Evidence, Candidate, Fit]:
+    evidence, none = dragged()
+    ends = ranges(FORWARD, none)
+    tables = [c for c in smooth_candidates([JOINT], ends) if c.label == "joint(speed@joint)"]
+    return evidence, tables[0], none.fit
 
 
 def test_evidence_of_a_smooth_prior_is_the_gaussian_integral():

@@ -48,6 +48,9 @@ BEGUN = 3
 WORTH = 3.0
 """Nats over no law from which a table is worth closed forms."""
 
+FINEST = 60
+"""Knots from which a table is not made finer: a ripple of 20 periods has three in each then."""
+
 KEPT = 6
 """Laws that are fitted once more with the noise that the best leaves."""
 
@@ -169,6 +172,10 @@ def search_laws(
     ends = both(ends, ranges(plant, best))
     tables = _first([_further(second, fit, ends) for fit in _first(tables, 3)], 3)
     others = [_again(second, fit) for fit in _first(others, 3)]
+    fine = resolved(second, tables[0])
+    if fine is not tables[0] and fine.candidate is not None:
+        tables = [fine, *tables[1:]]
+        others += tone_laws(second, none, [fine.candidate.place], ends, WORTH, progress)
     worth = [f for f in tables if f.log_evidence > none.log_evidence + WORTH]
     plain = [fit for fit in worth if isinstance(fit.candidate, Table)]
     plain = [fit for fit in plain if fit.log_evidence > plain[0].log_evidence - NEAR]
@@ -185,9 +192,28 @@ def _further(evidence: Evidence, fit: LawFit, ends: Mapping[str, tuple[float, fl
     if not isinstance(table, Table):
         return _again(evidence, fit)
     variable = table.of[0]
-    wider = replace(table, knots=knots(variable, ends[variable.name]))
+    return _on(evidence, fit, table, knots(variable, ends[variable.name]))
+
+
+def _on(evidence: Evidence, fit: LawFit, table: Table, at: tuple[float, ...]) -> LawFit:
+    """A table once more on other knots."""
     law = table.law(fit.numbers)
-    return fit_law(evidence, wider, fit.fit, law.at(np.array(wider.knots)))
+    return fit_law(evidence, replace(table, knots=at), fit.fit, law.at(np.array(at)))
+
+
+def resolved(evidence: Evidence, fit: LawFit) -> LawFit:
+    """A table on as many knots as its record has evidence for.
+
+    Of a ripple of five periods the usual knots make another curve, which may leave no more than
+    what the simulation may be off.
+    """
+    while isinstance(table := fit.candidate, Table) and len(table.knots) < FINEST:
+        ends = table.knots[0], table.knots[-1]
+        finer = _on(evidence, fit, table, knots(table.of[0], ends, 2 * len(table.knots) - 1))
+        if not finer.log_evidence > fit.log_evidence + WORTH:
+            break
+        fit = finer
+    return fit
 
 
 def _quiet(evidence: Evidence, none: LawFit, fit: LawFit, limits: Limits) -> bool:

@@ -158,10 +158,12 @@ def _wide(ends: tuple[float, float]) -> bool:
     return bool(np.isfinite(ends).all()) and ends[1] > ends[0]
 
 
-def knots(variable: Variable, ends: tuple[float, float]) -> tuple[float, ...]:
-    """Of a table: even, those of speed closer about zero."""
+def knots(
+    variable: Variable, ends: tuple[float, float], count: int | None = None
+) -> tuple[float, ...]:
+    """Of a table: even, those of speed closer about zero; as many as usual if nobody says."""
     low, high = ends
-    count = KNOTS[variable.what]
+    count = count or KNOTS[variable.what]
     if variable.what != "speed":
         return tuple(np.linspace(low, high, count).tolist())
     most = max(-low, high)
