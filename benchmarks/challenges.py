@@ -1,18 +1,23 @@
 """Six policies on the challenge matrix of VibrationDamping, as the table of docs/challenges.md.
 
-One policy at a time: `ves-twin evaluate VibrationDamping-v0 --policy P --challenges`.
+One policy at a time: `ves-twin evaluate VibrationDamping-v0 --policy P --challenges`. Policies that
+are through are kept below `--keep`, for the same code, models and words: a second start goes on.
 """
 
 from __future__ import annotations
 
 import argparse
+import json
+from dataclasses import asdict
 from pathlib import Path
 
 import numpy as np
 
 from ves_twin.cli.progress import RunProgress
-from ves_twin.envs.challenges import CHALLENGES, score_challenges
-from ves_twin.envs.evaluation import Trial, paired
+from ves_twin.core.whole_file import write_whole
+from ves_twin.envs.challenges import CHALLENGES, Row, score_challenges
+from ves_twin.envs.evaluation import Episode, Evaluation, Figure, Trial, paired
+from ves_twin.thesis.store import code_hash
 
 ENVIRONMENT = "VibrationDamping-v0"
 
@@ -33,18 +38,24 @@ def main() -> None:
     parser.add_argument("--seeds", type=int, default=8)
     parser.add_argument("--plant", default="ves2_fast")
     parser.add_argument("--workers", type=int, default=1)
+    parser.add_argument("--keep", type=Path, default=Path("runs/challenges"))
     parser.add_argument("--page", type=Path, help="write the table between its marks in this page")
     given = parser.parse_args()
     found = {}
     with RunProgress("challenges", 1.0, unit="share") as progress:
         for policy in POLICIES:
             trial = Trial(ENVIRONMENT, policy, "none", given.plant)
-            found[policy] = score_challenges(
-                trial,
-                range(given.seeds),
-                given.workers,
-                lambda s, what, p=policy: progress.share(s, p),
-            )
+            kept = given.keep / code_hash() / f"{policy}_{given.plant}_{given.seeds}.json"
+            if not kept.is_file():
+                rows = score_challenges(
+                    trial,
+                    range(given.seeds),
+                    given.workers,
+                    lambda s, what, p=policy: progress.share(s, p),
+                )
+                kept.parent.mkdir(parents=True, exist_ok=True)
+                write_whole(kept, json.dumps([asdict(row) for row in rows]))
+            found[policy] = [read_row(row) for row in json.loads(kept.read_text(encoding="utf-8"))]
     text = table(found)
     print(text)
     if given.page:
@@ -52,6 +63,20 @@ def main() -> None:
         before, rest = page.split(BEGIN)
         after = rest.split(END)[1]
         given.page.write_text(f"{before}{BEGIN}\n{text}\n{END}{after}", encoding="utf-8")
+
+
+def read_row(told) -> Row:
+    """A row of the matrix from a kept file; JSON keeps every bit of a number."""
+    evaluation = told["evaluation"]
+    return Row(
+        told["challenge"],
+        Evaluation(
+            Trial(**evaluation["trial"]),
+            tuple(Episode(**episode) for episode in evaluation["episodes"]),
+            {name: Figure(**figure) for name, figure in evaluation["figures"].items()},
+            evaluation["outcomes"],
+        ),
+    )
 
 
 def table(found) -> str:

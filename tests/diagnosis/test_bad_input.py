@@ -179,7 +179,7 @@ def test_without_excitation_nothing_can_be_said_about_what_it_would_show(setting
     assert v.verdict is Kind.NOTHING
     for cause in ("friction", "lag", "gain"):
         assert v.smallest_findable[f"{cause}@plant"].value is None
-    assert "this recording can say nothing" in headline(v)
+    assert "This recording can say nothing about" in headline(v)
 
 
 def test_a_recording_of_another_plant_gets_no_name(settings):

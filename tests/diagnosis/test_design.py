@@ -1,11 +1,13 @@
 """Designed programmes: the measure by its closed form, the search against a menu."""
 
 import json
+from dataclasses import replace
 
 import numpy as np
 import pytest
 from toy import SD, Toy, programme, shape
 
+from ves_twin.cli.design_text import design_text
 from ves_twin.core.errors import InvalidInputError, UnknownNameError
 from ves_twin.diagnosis import design as module
 from ves_twin.diagnosis.design import design_excitation, score
@@ -88,6 +90,35 @@ def test_the_menu_is_kept_where_nothing_tells_more(few):
     found = design_excitation(toy, question, [loud], Box(), settings=Settings())
     assert found.after is None
     assert found.designed.score < found.best.score
+    assert found.begin == pytest.approx(found.best.sigma)  # both are as long
+    assert "The menu's best tells more" in design_text(found)
+
+
+class Half(Box):
+    """The same, half as long as the menu's."""
+
+    def excitation(self, point, name):
+        whole, rows = super().excitation(point, name), len(TIME) // 2
+        drive = {"drive.u": whole.drive["drive.u"][:rows]}
+        return Excitation(name, TIME[:rows], drive)
+
+
+def test_a_shorter_design_is_held_against_the_menu_s_best_of_its_own_length_too(few):
+    toy = Toy(causes=("lag", "friction"))
+    question = Question.of(toy, ["lag", "friction"])
+    fed = programme(amplitude=2.0)
+    found = design_excitation(toy, question, [fed], Half(), settings=Settings())
+    cut = Half().excitation(np.zeros(2), "cut")
+    begin = Excitation("cut", cut.time, {"drive.u": fed.drive["drive.u"][: len(cut.time)]})
+    runs = Runs(toy, (begin,), (0, 1))
+    alone = np.sqrt(question.least(separation(linearise(runs, runs.origin), question)))
+    assert found.begin == pytest.approx(alone, rel=0.02)
+    assert found.begin[0] < found.best.sigma[0]
+    assert found.times == pytest.approx((found.designed.sigma[0] / found.begin[0]) ** 2)
+    assert json.loads(found.to_json())["times"] == found.times
+    words = design_text(replace(found, after=None))
+    told = found.times > 1.0
+    assert ("times as much (chi^2) as the menu's best in the same time" in words) == told
 
 
 def test_what_no_programme_parts_is_refused(few):

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from ves_twin.cli.main import main
-from ves_twin.envs import ENVIRONMENTS
+from ves_twin.envs import ENVIRONMENTS, RIG_ENVIRONMENTS
 from ves_twin.envs.baselines import BASELINES, EXPERTS
 from ves_twin.envs.wrappers import RandomRigs
 
@@ -52,6 +52,26 @@ def test_what_is_read_back_is_the_episode_to_the_last_bit(capsys, kind):
     hidden = [(e.kind, e.target) for e in env.unwrapped.sim.plant.effects]
     assert [(e["kind"], e["target"]) for e in json.loads(told["effects"])] == hidden
     assert hidden
+
+
+@pytest.mark.nightly
+@pytest.mark.parametrize("identity", sorted(ENVIRONMENTS))
+def test_a_set_of_every_environment_comes_back_to_the_last_bit(capsys, identity):
+    plant = ["--plant", "ves2_fast"] if identity in RIG_ENVIRONMENTS else []
+    words = ["dataset", identity, "--kind", "random", "--rigs", "none", "--episodes", "1", *plant]
+    assert main([*words, "--json"]) == 0
+    data = minari.load_dataset(json.loads(capsys.readouterr().out)["id"])
+    env, kept = data.recover_environment(), next(iter(data))
+    rows, gains, over = [env.reset(seed=0)[0]], [], False
+    for action in kept.actions:
+        assert not over
+        seen, gain, terminated, truncated, _ = env.step(action)
+        rows.append(seen)
+        gains.append(gain)
+        over = terminated or truncated
+    assert over
+    np.testing.assert_array_equal(kept.observations, rows)
+    np.testing.assert_array_equal(kept.rewards, gains)
 
 
 @pytest.mark.slow

@@ -6,10 +6,11 @@ import numpy as np
 import pytest
 
 from ves_twin.core.quantity import percent, quantity
+from ves_twin.report.diagnosis.words import listed
 from ves_twin.report.figure import new_figure, svg
 from ves_twin.report.html import Html, bullets, markup, paragraph, table
 from ves_twin.report.page import html_page
-from ves_twin.report.plots import Trace, draw_cells, draw_levels, draw_traces, thinned
+from ves_twin.report.plots import Trace, draw_cells, draw_change, draw_levels, draw_traces, thinned
 
 
 def test_text_is_escaped_once_and_html_is_not():
@@ -78,3 +79,23 @@ def test_a_long_line_keeps_its_peaks():
     assert len(drawn) <= 1400
     assert drawn.max() == 7.0
     assert np.all(np.diff(time) >= 0)
+
+
+def test_an_option_is_not_broken_at_its_dashes_and_what_is_html_stays():
+    held = markup("give it as --held-out. -- or a-b, <x>")
+    assert held == 'give it as <span class="whole">--held-out</span>. -- or a-b, &lt;x&gt;'
+    assert markup(held) == held
+
+
+def test_levels_are_read_off_an_axis_of_plain_numbers():
+    figure = draw_change(["a", "b"], [1.25, 0.2], [0.98, 0.16], "sigma", 1.0)
+    figure.canvas.draw()
+    ticks = [tick.get_text() for tick in figure.axes[0].get_xticklabels(which="both")]
+    assert {"0.2", "0.5", "1"} <= set(ticks)
+    assert not [text for text in ticks if "10" in text and "^" in text]
+
+
+def test_names_are_listed_as_a_person_says_them():
+    assert listed(["a"]) == "a"
+    assert listed(["a", "b"]) == "a and b"
+    assert listed(["a", "b", "c"]) == "a, b and c"

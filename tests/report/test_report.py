@@ -25,9 +25,10 @@ from ves_twin.diagnosis.rivals import Standing
 from ves_twin.diagnosis.settings import Settings
 from ves_twin.diagnosis.verdict import Kind
 from ves_twin.diagnosis.whitening import whitening_declared
-from ves_twin.report.diagnosis.answer import headline, tone
+from ves_twin.report.diagnosis.answer import headline, next_step, tone
 from ves_twin.report.diagnosis.credibility import Pedigree, credibility
 from ves_twin.report.diagnosis.page import diagnosis_page
+from ves_twin.report.diagnosis.pictures import answer_figure
 from ves_twin.report.diagnosis.words import spoken
 from ves_twin.report.rerun.diagnosis import (
     diagnosis_blueprint,
@@ -60,12 +61,17 @@ def proven(settings):
 
 
 def first_screen(page):
-    return re.sub(r"<[^>]*>", " ", page[page.index("<h1>") : page.index("<section>")])
+    return words_of(page[page.index("<h1>") : page.index("<section>")])
+
+
+def words_of(page):
+    """A span is within a line, any other tag ends one."""
+    return re.sub(r"<[^>]*>", " ", re.sub(r"</?span[^>]*>", "", page))
 
 
 def second_screen(page):
     """The figures behind the first one."""
-    return re.sub(r"<[^>]*>", " ", page.split("<section>")[1])
+    return words_of(page.split("<section>")[1])
 
 
 def test_the_first_screen_says_what_was_found_how_sure_what_next_and_on_what_it_rests(proven):
@@ -130,7 +136,7 @@ def test_nothing_is_good_news_only_as_far_as_the_recording_can_show(settings):
     blind = {k: replace(f, value=None) for k, f in nothing.smallest_findable.items()}
     assert headline(replace(nothing, smallest_findable=blind)).startswith("Nothing can be said")
     some = {**nothing.smallest_findable, "friction@plant": blind["friction@plant"]}
-    assert "About 1 of 6 causes" in headline(replace(nothing, smallest_findable=some))
+    assert "nothing about 1 of 6 causes" in headline(replace(nothing, smallest_findable=some))
     assert tone(replace(nothing, smallest_findable=some)) == "open"
     page = diagnosis_page(replace(nothing, smallest_findable=some))
     assert "Nothing can be said about: friction at plant." in page
@@ -407,7 +413,7 @@ def proof_of(verdict, firm):
 
 def test_a_proved_extension_that_is_not_firm_acts_like_its_name_and_its_stand_ins(proven):
     verdict = proof_of(proven, firm=False)
-    assert "Acting like: friction at plant" in headline(verdict)
+    assert "Something that acts like friction at plant" in headline(verdict)
     assert "Firm" not in headline(verdict)
     assert "Acts like: friction at plant" in verdict.words
     assert "or lag@plant" in verdict.words
@@ -416,11 +422,38 @@ def test_a_proved_extension_that_is_not_firm_acts_like_its_name_and_its_stand_in
     assert "Firm: friction at plant" in headline(proof_of(proven, firm=True))
 
 
+@pytest.mark.parametrize(("sds", "inside"), [(0.5, True), (10.0, False)])
+def test_a_measurement_inside_the_envelope_is_said_not_to_show_the_cause(friction, sds, inside):
+    (traces,) = friction.exhibit.traces
+    shifted = replace(traces, measured=traces.nominal + np.float32(sds) * traces.reach)
+    page = answer_figure(replace(friction.exhibit, traces=(shifted,)), "with the cause")
+    assert ("The measurement stays inside" in page) == inside
+    assert ("a curve inside may still be one" in page) != inside
+    assert f"all {len(friction.exhibit.channels)} together" in page or not inside
+
+
+def test_what_improves_the_prediction_is_to_be_used_and_firm_names_to_be_looked_at(proven):
+    assert next_step(proof_of(proven, firm=True)) == (
+        "Simulate with the extended model, and look at friction at plant."
+    )
+    unsure = next_step(proof_of(proven, firm=False))
+    assert "Simulate with the extended model" in unsure
+    assert "friction" not in unsure
+
+
+def test_where_tolerances_explain_the_record_the_next_step_is_to_say_what_is_known(settings):
+    nothing = said(settings, {}, seed=1)
+    blind = {**nothing.smallest_findable}
+    blind["friction@plant"] = replace(blind["friction@plant"], value=None)
+    step = next_step(replace(nothing, smallest_findable=blind))
+    assert step.startswith("Narrow the tolerances of what you know better than declared")
+
+
 def test_the_page_tells_how_many_were_tried_what_is_left_and_what_is_not_separated(proven):
     page = diagnosis_page(proof_of(proven, firm=True))
     said = re.sub(r"<[^>]*>", " ", page)
-    assert "3 extensions were put to proof" in said
-    assert "1 predict better, at a false-discovery rate of 5 %" in said
+    assert "3 causes were tested on held-out data; 1 of them improve" in said
+    assert "at most 5 % are expected to be false" in said
     assert "out.1 (+0.70)" in said
     assert "drive.u (20 %)" in said
     assert "friction at plant, lag at plant: only a combination of them is known" in said

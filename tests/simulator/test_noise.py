@@ -5,8 +5,8 @@ import sys
 
 import numpy as np
 
-from ves_twin.simulator.codes import FAST_CHANNELS, SLOW
-from ves_twin.simulator.noise import BLOCK, NoiseStreams
+from ves_twin.simulator.codes import FAST_CHANNELS, SLOW, SLOW_CHANNELS
+from ves_twin.simulator.noise import BLOCK, ORIGIN, NoiseStreams
 
 
 def test_a_tick_has_the_same_number_whatever_was_asked_before():
@@ -43,6 +43,16 @@ def test_channels_and_seeds_are_independent_and_standard_normal():
     assert np.max(np.abs(correlation - np.eye(FAST_CHANNELS))) < spread
     assert abs(np.corrcoef(numbers[0], other[0])[0, 1]) < spread
     assert np.allclose(numbers.std(axis=1), 1.0, atol=5.0 / np.sqrt(2 * BLOCK))
+
+
+def test_every_channel_is_the_philox_stream_of_its_own_key():
+    seed, block = 2**63 - 2, 3
+    fast, slow = NoiseStreams(seed).window(block * BLOCK - ORIGIN, 1 + SLOW)
+    for channel in range(FAST_CHANNELS + SLOW_CHANNELS):
+        bits = np.random.Philox(key=[seed, channel], counter=[0, block, 0, 0])
+        wanted = np.random.Generator(bits).standard_normal(BLOCK, np.float32)
+        found = fast[:, channel] if channel < FAST_CHANNELS else slow[:, channel - FAST_CHANNELS]
+        assert np.array_equal(found[:17], wanted[:17])
 
 
 def test_noise_off_is_zero():

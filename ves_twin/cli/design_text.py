@@ -45,9 +45,15 @@ def _sigmas(best: Judged, designed: Judged, number: int) -> tuple[str, str]:
 
 
 def _sentence(design: Design) -> str:
-    if design.after is None:
-        return "The menu's best tells more than this design: take that, or a longer --seconds."
-    return (
-        f"The design tells as much after {design.after:.2g} s as the menu's best in"
-        f" {design.best.seconds:.2g} s."
-    )
+    best, seconds = design.best.seconds, design.designed.seconds
+    if design.after is not None:
+        return (
+            f"The design tells as much after {design.after:.2g} s as the menu's best in"
+            f" {best:.2g} s."
+        )
+    if design.times > 1.0 and seconds < best:
+        return (
+            f"In {seconds:.2g} s the design tells {design.times:.2g} times as much (chi^2) as the"
+            f" menu's best in the same time; in {best:.2g} s that tells more."
+        )
+    return "The menu's best tells more than this design: take that, or a longer --seconds."

@@ -25,6 +25,6 @@ def new_text(found: NewMachine, model: Path, logs: Sequence[Path]) -> str:
     lines += [f"  look      {words}" for words in draft.look]
     shares = ", ".join(f"{share:.0%} of {name}" for name, share in draft.explained.items())
     lines += [f"  as it is  the model explains {shares}"] if shares else []
-    held = f"--held-out {logs[1]}" if len(logs) > 1 else "--alternate 2"
+    held = f"--held-out {logs[1]}" if len(logs) > 1 else f"--alternate {draft.stretch:g}"
     lines += [f"  next      ves-twin diagnose {logs[0]} {held} --plant {found.path}"]
     return "\n".join(lines)

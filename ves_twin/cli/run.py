@@ -23,7 +23,11 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("scenario", metavar="SCENARIO", help="a name or a TOML file")
     add_run_options(parser)
     parser.add_argument("--json", action="store_true", help="the summary as JSON on stdout")
-    parser.add_argument("--video", metavar="FILE.gif", help="draw the run as a moving picture")
+    parser.add_argument(
+        "--video",
+        metavar="FILE.mp4",
+        help="draw the run as a moving picture (.mp4, .gif), with its time and curves",
+    )
 
 
 def add_run_options(parser: argparse.ArgumentParser) -> None:
@@ -75,12 +79,12 @@ def execute(arguments: argparse.Namespace) -> int:
 def _draw(folder: Path, video: Path) -> str:
     """Draw a run whose summary is told, and say so; one without rows has nothing to draw."""
     from ves_twin.core.recording.files import load_recording
-    from ves_twin.envs.film import write_gif
+    from ves_twin.envs.film import write_film
 
     recording = load_recording(folder)
     if not len(recording):
         return f"  video     none: the run ended before its first row; {video} is not written"
-    write_gif(recording, video)
+    write_film(recording, video)
     return f"  video     {video}"
 
 

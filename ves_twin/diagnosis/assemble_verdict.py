@@ -61,6 +61,7 @@ class Findings:
         before: the model without a cause, within its tolerances; None where nothing was found.
         law: that was found where no cause explains the record; None if nobody looked.
         shown: what the report shows as fitted, if not `found`: a law that is claimed.
+        beside: proved causes with a law that is claimed of what they leave, fitted together.
     """
 
     seen: Dataset
@@ -80,6 +81,7 @@ class Findings:
     before: Fit | None = None
     law: LawFinding | None = None
     shown: Explanation | None = None
+    beside: Explanation | None = None
 
     @property
     def fitted(self) -> Explanation | None:
@@ -240,8 +242,12 @@ def _cause(
 
 
 def _tuned(findings: Findings) -> dict[str, Estimate]:
-    """Commissioning numbers of the plant at the best fit, with what is known of them then."""
-    fit = findings.fitted.best if findings.fitted else findings.first.commissioning
+    """Commissioning numbers of the plant at the best fit, with what is known of them then.
+
+    Beside a law of what causes leave, sizes of the causes too: they were fitted together with it.
+    """
+    fitted = findings.beside or findings.fitted
+    fit = fitted.best if fitted else findings.first.commissioning
     if fit is None:
         return {}
     runs, z = fit.local.runs, float(norm.isf(0.5 * (1.0 - findings.settings.confidence)))

@@ -12,7 +12,6 @@ from ves_twin.core.workers import Workers
 from ves_twin.diagnosis.assess import pull_limit
 from ves_twin.diagnosis.build_up.build_up import Built, build_up
 from ves_twin.diagnosis.build_up.halves import split
-from ves_twin.diagnosis.build_up.result import BuildUp
 from ves_twin.diagnosis.explain import explain
 from ves_twin.diagnosis.explanation import Explanation
 from ves_twin.diagnosis.fit_context import FitContext
@@ -59,7 +58,7 @@ class Conclusion:
     kind: Kind
     gain: Gain | None = None
     forecast: Gain | None = None
-    built: BuildUp | None = None
+    built: Built | None = None
     cut: bool = False
     before: Fit | None = None
 
@@ -196,8 +195,7 @@ def decide(
     gains = held.gains(found, before, ALMOST) if held else []
     kind = _kind(found, gains)
     ahead = _ahead(desk, forward, recordings, found, standstill) if kind.names_causes else None
-    report = built.report if built else None
-    return Conclusion(found, kind, gains[0] if gains else None, ahead, report, cut, before)
+    return Conclusion(found, kind, gains[0] if gains else None, ahead, built, cut, before)
 
 
 def _proved(
@@ -216,7 +214,7 @@ def _proved(
         kind = Kind.NAMED if len(found.best.causes) == 1 else Kind.SEVERAL
     gain = held.gain(built.before, found.best) if held else None
     ahead = _ahead(desk, forward, recordings, found, standstill)
-    return Conclusion(found, kind, gain, ahead, built.report, cut, built.before)
+    return Conclusion(found, kind, gain, ahead, built, cut, built.before)
 
 
 def _ahead(

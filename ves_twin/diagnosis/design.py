@@ -23,10 +23,11 @@ from ves_twin.diagnosis.next_experiment import NUISANCES
 from ves_twin.diagnosis.null import chance_floor
 from ves_twin.diagnosis.runs import Progress, Runs, silent
 from ves_twin.diagnosis.screen import Screen
-from ves_twin.diagnosis.separation import Axes, Question, changes, separation, size_of
+from ves_twin.diagnosis.separation import Question, changes, separation, size_of
 from ves_twin.diagnosis.settings import Settings
 from ves_twin.diagnosis.signature_library import SignatureLibrary, build_bank
 from ves_twin.diagnosis.slices import of_time
+from ves_twin.diagnosis.trials import FORWARD_STEP, Trials
 from ves_twin.diagnosis.whitening import whitening_declared
 
 SCHEMA = 1
@@ -40,9 +41,6 @@ EACH = 4
 
 REACH = 0.3
 """First step of the search from the best point, the box being 2 wide."""
-
-FORWARD_STEP = 1.0
-"""Commissioning sd of one-sided differences: where tolerances are many, the search takes them."""
 
 NOTHING = 30.0
 """Cost of a point that no machine bears: worse than any separation."""
@@ -95,6 +93,7 @@ class Design:
         units: of the sizes of each of its causes.
         designed: what it tells.
         best: what the menu's best tells.
+        begin: separation of each pair by the menu's best in the time of the design [sigma].
         after: time after which it tells as much as the menu's best in all of its own [s]; None if
             it never does.
         tried: programmes that were simulated.
@@ -105,8 +104,14 @@ class Design:
     units: tuple[str, ...]
     designed: Judged
     best: Judged
+    begin: tuple[float, ...]
     after: float | None
     tried: int
+
+    @property
+    def times(self) -> float:
+        """How many times as much it tells as the menu's best does in the same time [chi^2]."""
+        return self.designed.score / max(score(np.square(self.begin)), 1e-12)
 
     def to_json(self) -> str:
         """The figures as JSON, without the rows of the programme."""
@@ -118,6 +123,8 @@ class Design:
             "units": {c.label: unit for c, unit in zip(causes, self.units, strict=True)},
             "designed": asdict(self.designed),
             "best": asdict(self.best),
+            "begin": self.begin,
+            "times": self.times,
             "after": self.after,
             "tried": self.tried,
         }
@@ -154,19 +161,20 @@ def design_excitation(
     recorded = tuple(columns) or tuple(range(len(forward.channels)))
     with Workers(settings.workers) as workers:
         desk = _Desk(forward, question, recorded, workers, settings)
-        names = _counting(desk.runs(menu[0]), question, progress)
+        trials = Trials(_counting(desk.runs(menu[0]), question, progress))
         values = []
         for k, one in enumerate(menu):
             progress(k / len(menu), "menu")
-            values.append(desk.value(one, names))
+            values.append(desk.value(one, trials))
         best = menu[int(np.argmax(values))]
-        found, tried = _climbed(desk, names, space, progress)
-        usual, _ = desk.judged(best, progress)
+        found, tried = _climbed(desk, trials, space, progress)
+        usual, known = desk.judged(best, progress)
         designed, bank = desk.judged(found, progress)
         after = _after(bank, question, usual.score)
-    known = {parameter.name: parameter.unit for parameter in forward.parameters}
-    units = tuple(known[cause.parameters[0]] for cause in question.causes)
-    return Design(found, question, units, designed, usual, after, tried)
+        begin = _sigmas(known, question, designed.seconds)
+    said = {parameter.name: parameter.unit for parameter in forward.parameters}
+    units = tuple(said[cause.parameters[0]] for cause in question.causes)
+    return Design(found, question, units, designed, usual, begin, after, tried)
 
 
 def score(chi2: FloatArray) -> float:
@@ -192,12 +200,9 @@ class _Desk:
         """Of one programme."""
         return Runs(self.forward, (programme,), self.columns, self.workers)
 
-    def value(self, programme: Excitation, names: tuple[str, ...] | None) -> float:
-        """Score by few runs, with the tolerances of some names; zero where the plant fails."""
-        runs = self.runs(programme)
-        axes = _axes(runs, names)
-        step = None if names is None else FORWARD_STEP
-        base = linearise(runs, runs.origin, axes=axes, forward_step=step)
+    def value(self, programme: Excitation, trials: Trials) -> float:
+        """Score by few runs; zero where the plant fails."""
+        base, axes = trials.at(self.runs(programme))
         chi2 = self.question.least(separation(base, self.question, axes))
         return score(chi2) if np.all(np.isfinite(chi2)) else 0.0
 
@@ -228,7 +233,7 @@ class _Desk:
 
 
 def _climbed(
-    desk: _Desk, names: tuple[str, ...] | None, space: DesignSpace, progress: Progress
+    desk: _Desk, trials: Trials, space: DesignSpace, progress: Progress
 ) -> tuple[Excitation, int]:
     """The best programme of a space that is found, and how many were tried.
 
@@ -241,7 +246,7 @@ def _climbed(
         inside = np.clip(point, -1.0, 1.0)
         progress(min(len(tried) / (SCATTERED + EACH * space.size), 1.0), "design")
         made = space.excitation(inside, "design")
-        value = 0.0 if made is None else desk.value(made, names)
+        value = 0.0 if made is None else desk.value(made, trials)
         tried.append((value, inside))
         return -float(np.log(value)) if value > 0.0 else NOTHING
 
@@ -282,20 +287,17 @@ def _counting(runs: Runs, question: Question, progress: Progress) -> tuple[str, 
     return tuple(name for n, name in enumerate(names) if n in ranked or not plain[n] or name in own)
 
 
-def _axes(runs: Runs, names: tuple[str, ...] | None) -> Axes | None:
-    if names is None:
-        return None
-    kept = [int(i) for i in runs.nuisances if runs.coordinates[i].parameter.name in names]
-    where = np.array(kept, int)
-    return where, runs.sd[where]
-
-
 def _after(bank: SignatureLibrary, question: Question, goal: float) -> float | None:
     """Time from which the begin of a programme has a score."""
     time = bank.base.runs.programmes[0].time
     for part in np.arange(3, PARTS + 1) / PARTS:
         seconds = float(part * (time[-1] - time[0]))
-        chi2 = question.least(separation(of_time(bank, seconds).base, question))
-        if score(chi2) >= goal:
+        if score(np.square(_sigmas(bank, question, seconds))) >= goal:
             return seconds
     return None
+
+
+def _sigmas(bank: SignatureLibrary, question: Question, seconds: float) -> tuple[float, ...]:
+    """Separation of each pair by the first seconds of a programme."""
+    chi2 = question.least(separation(of_time(bank, seconds).base, question))
+    return tuple(float(value) for value in np.sqrt(chi2))

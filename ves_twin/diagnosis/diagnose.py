@@ -19,7 +19,7 @@ from ves_twin.diagnosis.explain import explain
 from ves_twin.diagnosis.explanation import Explanation
 from ves_twin.diagnosis.fit_context import FitContext
 from ves_twin.diagnosis.forward import Excitation, Forward
-from ves_twin.diagnosis.law.explained import lawful_explanation
+from ves_twin.diagnosis.law.explained import lawful_explanation, lawful_rest
 from ves_twin.diagnosis.law.propose import Limits
 from ves_twin.diagnosis.likeness import check_likeness
 from ves_twin.diagnosis.next_experiment import separations
@@ -187,29 +187,32 @@ class _View:
         ambiguous = kind is Kind.AMBIGUOUS
         proposals = _next(seen.runs, found, material.next_programmes) if ambiguous else ()
         apart: tuple[Alone, ...] = ()
-        proved = end.built is not None and bool(end.built.proved)
+        proved = end.built is not None and bool(end.built.report.proved)
         seen.runs.budget.stage(1.0)
         if not (proved or (found is not None and found.adequate)):
             bank, limits = first.screen.bank, findings.limits
             apart = disagreement(seen, bank, self.whitening, limits, chosen, progress)
         if end.cut:
             basis = replace(basis, held_out="split")
-        lawful = None
+        lawful, unknown = None, kind is Kind.UNKNOWN
         seen.runs.budget.stage(math.inf if chosen.laws else 1.0)  # asked for, whatever it takes
-        wanted = kind is Kind.UNKNOWN and chosen.laws is not False
+        wanted = chosen.laws is not False and (unknown or (kind is Kind.PARTIAL and proved))
         if wanted and not seen.runs.budget.skips("a law"):
-            progress(0.0, "looking for a law")
-            lawful = lawful_explanation(
-                first, found, self.limits, chosen, held.pair if held else None, progress
-            )
+            progress(0.0, "looking for a law" if unknown else "looking for a law in what is left")
+            if end.built is not None and not unknown:
+                lawful = lawful_rest(end.built, self.limits, chosen, still, progress)
+            else:
+                pair = held.pair if held else None
+                lawful = lawful_explanation(first, found, self.limits, chosen, pair, progress)
         basis = replace(basis, left_out=tuple(seen.runs.budget.left_out))
         findings = replace(
             findings,
             law=lawful.finding if lawful else None,
-            shown=lawful.explanation if lawful else None,
+            shown=lawful.explanation if lawful and unknown else None,
+            beside=lawful.explanation if lawful and not unknown else None,
             found=found,
-            built=end.built,
-            gain=lawful.gain if lawful and lawful.explanation else end.gain,
+            built=end.built.report if end.built else None,
+            gain=lawful.gain if lawful and lawful.explanation and unknown else end.gain,
             forecast=end.forecast,
             before=end.before,
             proposals=proposals,

@@ -105,12 +105,12 @@ def _rows(recording: Recording, channels: Sequence[Channel]) -> FloatArray:
 
 def _check_length(runs: Runs) -> None:
     """Refuse a recording in which bands and stretches of time mean nothing."""
-    for programme, time in zip(runs.programmes, runs.times, strict=True):
+    for programme, grid, time in zip(runs.programmes, runs.grids, runs.times, strict=True):
         fewest = FEWEST_POSES if programme.poses else FEWEST_ROWS
         if len(time) < fewest:
-            raise InvalidInputError(
-                f"rows of {programme.name} on the grid", len(time), f"at least {fewest}"
-            )
+            what = f"rows of {programme.name} at {1.0 / grid.step:.3g} Hz"
+            expected = f"at least {fewest}: a longer recording, or longer stretches of it"
+            raise InvalidInputError(what, len(time), expected)
 
 
 def _marked(runs: Runs, empty: Sequence[BoolArray]) -> list[BoolArray]:

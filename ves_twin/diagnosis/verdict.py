@@ -200,8 +200,9 @@ class Verdict:
     is what then stays of each channel, `inseparable` what is known only in combination. `nearest`
     are the causes that come nearest where none is named. `law` is what was found where no cause
     explains the record and a law was looked for; if it is claimed, `tuned`, `residuals`,
-    `leftover` and `gain` are with it. `exhibit` has the traces of the report, and stays out of
-    verdict.json.
+    `leftover` and `gain` are with it. A law that is a `part` stands beside the causes, and `tuned`
+    has their sizes as they were fitted together with it. `exhibit` has the traces of the report,
+    and stays out of verdict.json.
     """
 
     verdict: Kind
@@ -272,8 +273,8 @@ class Verdict:
 
     @property
     def lawful(self) -> str:
-        """The sentence of a law that is claimed; empty without one."""
-        if self.law is None or not self.law.claimed:
+        """The sentence of a law that is claimed in place of a cause; empty without one."""
+        if self.law is None or not self.law.claimed or self.law.part:
             return ""
         return f"No cause in the library explains it. A law does: {self.law.words}."
 
@@ -318,6 +319,8 @@ class Verdict:
         said += [f"Acts like: {'; '.join(like)}."] if like else []
         if self.verdict is Kind.PARTIAL:
             said.append("Something more stays unexplained.")
+        if self.law is not None and self.law.part:
+            said.append(self.law.of_rest)
         return " ".join(said)
 
     @property

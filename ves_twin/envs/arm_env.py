@@ -114,7 +114,8 @@ class ArmEnv(RigEnv[CommandedArm]):
         return total
 
     def _energies(self, poses: FloatArray) -> list[float]:
-        return list(map(float, strain_energies(poses, self._home, self._stiffness)))
+        energies: list[float] = strain_energies(poses, self._home, self._stiffness).tolist()
+        return energies
 
     def readings(self, board: SignalBus) -> dict[str, FloatArray]:
         """Measurements and set-points."""

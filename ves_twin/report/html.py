@@ -2,8 +2,12 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable, Sequence
 from html import escape
+
+OPTION = re.compile(r"(?<![\w-])--[a-z][a-z-]*")
+"""An option of a command, within a text."""
 
 
 class Html(str):
@@ -13,8 +17,10 @@ class Html(str):
 
 
 def markup(text: object) -> Html:
-    """Text as HTML: escaped, unless it is HTML already."""
-    return text if isinstance(text, Html) else Html(escape(str(text)))
+    """Text as HTML: escaped, unless it is HTML already; options are not broken at a dash."""
+    if isinstance(text, Html):
+        return text
+    return Html(OPTION.sub(r'<span class="whole">\g<0></span>', escape(str(text))))
 
 
 def paragraph(text: object, kind: str = "") -> Html:

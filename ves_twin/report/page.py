@@ -18,6 +18,7 @@ h1 { font-size: 1.55rem; margin: 0 0 .3rem; }
 h2 { font-size: 1.15rem; margin: 2.2rem 0 .6rem; padding-bottom: .2rem;
   border-bottom: 1px solid var(--line); }
 p { margin: .4rem 0; max-width: 52rem; }
+.whole { white-space: nowrap; }
 .lead { font-size: 1.15rem; margin: .8rem 0; }
 .note { color: var(--soft); font-size: .92rem; }
 .good, .bad, .open { font-size: 1.05rem;

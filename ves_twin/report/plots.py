@@ -112,7 +112,7 @@ def draw_levels(names: Sequence[str], levels: Sequence[float], unit: str, mark: 
     values = np.maximum(np.nan_to_num(np.array(levels, float)), low)
     place = np.arange(len(names))
     axes.barh(place, values - low, left=low, color=BEFORE, height=0.65)
-    axes.set_xscale("log")
+    _plain_log(axes)
     axes.set_xlim(low, max(3.0 * mark, 1.5 * values.max(initial=1.0)))
     axes.axvline(mark, color=LIMIT, linewidth=1.0)
     axes.set_yticks(place, list(names), fontsize=8)
@@ -122,6 +122,16 @@ def draw_levels(names: Sequence[str], levels: Sequence[float], unit: str, mark: 
     for side in ("top", "right"):
         axes.spines[side].set_visible(False)
     return figure
+
+
+def _plain_log(axes: Axes) -> None:
+    """A logarithmic axis with plain numbers at 1, 2 and 5 of each decade."""
+    from matplotlib.ticker import LogLocator, NullFormatter  # slow to import
+
+    axes.set_xscale("log")
+    axes.xaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
+    axes.xaxis.set_major_formatter(lambda value, _: f"{value:g}")
+    axes.xaxis.set_minor_formatter(NullFormatter())
 
 
 def draw_change(
@@ -143,7 +153,7 @@ def draw_change(
     axes.hlines(place, there, here, color="#c3cad1", linewidth=2.0)
     axes.plot(there, place, "o", color=BEFORE, markersize=6, label="before")
     axes.plot(here, place, "o", color=AFTER, markersize=6, label="after")
-    axes.set_xscale("log")
+    _plain_log(axes)
     both = np.concatenate([there, here, [mark]])
     axes.set_xlim(both.min() / 1.5, both.max() * 1.5)
     axes.axvline(mark, color=LIMIT, linewidth=1.0)

@@ -158,7 +158,7 @@ class Computers:
             type(wrench) is not np.ndarray
             or wrench.dtype != np.float64
             or wrench.shape != (6,)
-            or not np.all(np.isfinite(wrench))
+            or not np.isfinite(wrench).all()
         ):
             raise _returned(name, wrench, time, "a wrench")
         return wrench.copy()

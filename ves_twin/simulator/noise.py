@@ -100,7 +100,10 @@ class _Ahead(Thread):
 def _draw(seed: int, block: int) -> _Drawn:
     fast = np.empty((FAST_CHANNELS, BLOCK), np.float32)
     slow = np.empty((SLOW_CHANNELS, BLOCK // SLOW), np.float32)
+    bits = np.random.Philox(key=[seed, 0], counter=[0, block, 0, 0])
+    normal, start = np.random.Generator(bits), bits.state  # a new one for each takes a fifth more
     for channel, row in enumerate([*fast, *slow]):
-        bits = np.random.Philox(key=[seed, channel], counter=[0, block, 0, 0])
-        np.random.Generator(bits).standard_normal(dtype=np.float32, out=row)
+        start["state"]["key"][1] = channel
+        bits.state = start
+        normal.standard_normal(dtype=np.float32, out=row)
     return _Drawn(fast.T, slow.T)

@@ -13,10 +13,19 @@ from pendulum import FED, MACHINE, SDS
 from ves_twin.core.errors import InvalidInputError
 from ves_twin.core.recording.recording import Recording, RecordingInfo
 from ves_twin.diagnosis.evidence import Evidence
+from ves_twin.diagnosis.law.band import band_of_form
 from ves_twin.diagnosis.law.candidate import Closed, Table, matern
 from ves_twin.diagnosis.law.contact import Hold, Play
 from ves_twin.diagnosis.law.fit_law import LawFit, fit_law
-from ves_twin.diagnosis.law.forms import FORMS, SIGNED_SQUARE, TONE
+from ves_twin.diagnosis.law.forms import (
+    CUBE,
+    DEAD_ZONE,
+    FORMS,
+    LIMITED,
+    LINEAR,
+    SIGNED_SQUARE,
+    TONE,
+)
 from ves_twin.diagnosis.law.place import LawForward, Variable
 from ves_twin.diagnosis.law.screen import law_screen, ranges, smooth_candidates
 from ves_twin.diagnosis.law.smoothness import smoothest
@@ -107,6 +116,21 @@ def test_a_table_follows_the_truth_within_its_band_and_a_form_of_one_number_beat
     assert fit_law(evidence, closed, none.fit).log_evidence > table.log_evidence
 
 
+@pytest.mark.parametrize("forms", [(SIGNED_SQUARE,), (LINEAR, CUBE)], ids=["true", "near"])
+def test_the_band_of_a_form_holds_the_truth_where_the_form_only_comes_near(forms):
+    evidence, none = dragged()
+    ends = ranges(FORWARD, none)["speed@joint"]
+    fit = fit_law(evidence, Closed(JOINT, (speed(),), forms, ((),) * len(forms), ends), none.fit)
+    assert fit.candidate is not None
+    at = np.linspace(*ends, 61)
+    low, high = band_of_form(evidence, fit, at, 0.9)
+    law, truth = fit.candidate.law(fit.numbers).at(at), square(at)
+    shift = np.mean(law - truth)
+    assert np.mean((truth + shift >= low) & (truth + shift <= high)) > 0.8
+    assert np.median(high - low) < 0.2 * np.std(truth)
+    assert np.all((law >= low) & (law <= high))
+
+
 def test_evidence_of_a_smooth_prior_is_the_gaussian_integral():
     """log N(z; 0, I + Z K Z') - log N(z; 0, I), by the definition."""
     rng = np.random.default_rng(2)
@@ -141,6 +165,15 @@ def test_every_closed_form_is_finite_over_its_range_and_written_with_its_numbers
         assert_allclose(law.at(x), exact, atol=0.02 * np.max(np.abs(exact)) + 1e-12)
         assert law.form.startswith("2")
         assert "p" not in law.form.replace("exp", "").replace("step", "")
+
+
+def test_what_a_dead_zone_lets_through_and_what_it_keeps_are_all_of_a_command():
+    x = np.linspace(-2.0, 2.0, 41)
+    through, kept = (form.at(x, 4.0, 0.3) for form in (DEAD_ZONE, LIMITED))
+    assert_allclose(through + kept, x)
+    assert_allclose(through[np.abs(x) <= 0.3], 0.0)
+    assert np.max(kept) == 0.3
+    assert {DEAD_ZONE, LIMITED} <= {*FORMS["command"]}
 
 
 def test_laws_of_one_label_cannot_be_told_apart_and_are_refused():

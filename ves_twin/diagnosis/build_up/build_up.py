@@ -51,11 +51,14 @@ class Built:
             it; that of before where nothing is proved.
         before: fit of commissioning errors alone, under the same discrepancy.
         report: what was proved, what is left.
+        fitted, held: recordings, or stretches of them, that it was fitted to and proved on.
     """
 
     found: Explanation
     before: Fit
     report: BuildUp
+    fitted: Dataset
+    held: Dataset
 
 
 @dataclass(frozen=True)
@@ -102,7 +105,7 @@ class _Builder:
             evidence = self.evidence(regression.fit(chosen).residual)
             linear = regression.solve(chosen, evidence.whitening).residual
             fit = self.refined(halves, chosen, point, evidence)
-            left = regression.half.rms(bare_residual(evidence, fit))
+            left = regression.half.rms(np.asarray(bare_residual(evidence, fit), float))
             size = float(np.mean(np.log(np.maximum(left, 1e-30))))
             if size > best + MOVED:  # columns that hide each other: what was there before stays
                 break
@@ -198,7 +201,7 @@ def build_up(desk: FitContext, start: Explanation, fitted: Dataset, held: Datase
         np.asarray(bare_residual(evidence, final), float),
         np.asarray(held.measured - there, float),
     )
-    return Built(found, before, report_of(halves, proof, ends))
+    return Built(found, before, report_of(halves, proof, ends), fitted, held)
 
 
 def _likeliest(evidence: Evidence, starts: Sequence[FloatArray]) -> FloatArray:

@@ -46,15 +46,26 @@ def closed_forms(
     columns = columns_about(evidence, every, table)
     z = table.fit.residual + table.jacobian @ table.point
     gram, slope = projected(columns, table.jacobian[:, table.count :], z, table.temper)
+    gram = gram + np.diag(1.0 / np.square([e.sd[0] for e in entries]))
+
+    def fitted(which: Sequence[int], about: LawFit) -> LawFit:
+        """From the sizes that the quadratic form has: from none a loud law is out of reach."""
+        at = np.array(which)
+        sizes = np.linalg.solve(gram[np.ix_(at, at)], slope[at])
+        parts = [[size, *entries[n].inner[0]] for size, n in zip(sizes, which, strict=True)]
+        return fit_law(
+            evidence, _sum([entries[n] for n in which]), about.fit, np.concatenate(parts)
+        )
+
     chosen, found = _ranked(gram, slope, entries), []
-    for n, candidate in enumerate(chosen):
+    for n, which in enumerate(chosen):
         progress(n / len(chosen), "closed forms")
-        found.append(fit_law(evidence, candidate, table.fit))
-    best = max(found, key=lambda fit: fit.log_evidence)
-    if isinstance(best.candidate, Closed) and len(best.candidate.forms) > 1:
-        tried = {fit.candidate.label for fit in found if fit.candidate is not None}
-        alone = [one for one in best.candidate.each if one.label not in tried]
-        found += [fit_law(evidence, one, best.fit) for one in alone]
+        found.append(fitted(which, table))
+    first = max(range(len(found)), key=lambda n: found[n].log_evidence)
+    if len(chosen[first]) > 1:
+        tried = {entries[which[0]].label for which in chosen if len(which) == 1}
+        alone = [n for n in chosen[first] if entries[n].label not in tried]
+        found += [fitted((n,), found[first]) for n in alone]
     return found
 
 
@@ -71,11 +82,12 @@ def _entries(candidate: Candidate, ends: Mapping[str, tuple[float, float]]) -> l
     return found
 
 
-def _ranked(gram: FloatArray, slope: FloatArray, entries: Sequence[Closed]) -> list[Closed]:
+def _ranked(
+    gram: FloatArray, slope: FloatArray, entries: Sequence[Closed]
+) -> list[tuple[int, ...]]:
     """The best sums of two and the best single forms, each set of forms once."""
     count = len(entries)
     pay = COST * np.array([1 + len(e.inner[0]) for e in entries])
-    gram = gram + np.diag(1.0 / np.square([e.sd[0] for e in entries]))
     own = np.diag(gram)
     single = pay - np.square(slope) / own
     i, k = np.triu_indices(count, 1)
@@ -91,8 +103,7 @@ def _ranked(gram: FloatArray, slope: FloatArray, entries: Sequence[Closed]) -> l
     for _, which in sorted(ranked):
         found.setdefault(tuple(sorted(entries[n].forms[0].name for n in which)), which)
     best = list(found.values())
-    chosen = best[:PAIRS] + [which for which in best[PAIRS:] if len(which) == 1][:SINGLES]
-    return [_sum([entries[n] for n in which]) for which in chosen]
+    return best[:PAIRS] + [which for which in best[PAIRS:] if len(which) == 1][:SINGLES]
 
 
 def _sum(parts: Sequence[Closed]) -> Closed:

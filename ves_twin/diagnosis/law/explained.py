@@ -1,24 +1,28 @@
-"""lawful_explanation: a law for a record that no cause explains, where one may be looked for."""
+"""lawful_explanation, lawful_rest: laws where no cause explains a record, or proved ones a part."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from time import perf_counter
 
+from ves_twin.core.recording.recording import Recording
+from ves_twin.core.types import FloatArray
 from ves_twin.diagnosis.assess import Assessment
+from ves_twin.diagnosis.build_up.build_up import Built
 from ves_twin.diagnosis.evidence import Evidence
 from ves_twin.diagnosis.explanation import Explanation
 from ves_twin.diagnosis.gain import Gain
 from ves_twin.diagnosis.law.finding import law_finding
 from ves_twin.diagnosis.law.place import LawForward
 from ves_twin.diagnosis.law.propose import Limits, Search, search_laws
+from ves_twin.diagnosis.law.rest import search_rest
 from ves_twin.diagnosis.law.result import LawFinding
 from ves_twin.diagnosis.law.screen import runs_of
 from ves_twin.diagnosis.preprocess import Dataset
 from ves_twin.diagnosis.refine import Fit
-from ves_twin.diagnosis.runs import Progress
+from ves_twin.diagnosis.runs import Progress, Runs
 from ves_twin.diagnosis.settings import Settings
-from ves_twin.diagnosis.whitening import Whitening
+from ves_twin.diagnosis.whitening import Whitening, whitening_of
 
 LONGEST = 300.0
 """Time [s] that a search nobody asked for may take."""
@@ -58,16 +62,8 @@ def lawful_explanation(
     Returns:
         None where nobody asked, or the plant has no places for laws.
     """
-    runs = first.evidence.runs
-    plant, commissioning = runs.forward, found.commissioning if found else first.commissioning
-    if settings.laws is False or commissioning is None or not isinstance(plant, LawForward):
-        return None
-    if any(programme.poses for programme in runs.programmes) or not plant.law_places():
-        return None
-    begin = perf_counter()
-    runs.one(commissioning.shift)
-    once = (perf_counter() - begin) / runs.workers.count
-    if settings.laws is None and runs_of(plant.law_places()) * once > LONGEST:
+    commissioning = found.commissioning if found else first.commissioning
+    if commissioning is None or not _asked(first.evidence.runs, commissioning.shift, settings):
         return None
     evidence = found.evidence if found else first.evidence
     search = search_laws(evidence, commissioning, limits, progress)
@@ -77,6 +73,52 @@ def lawful_explanation(
     if not finding.claimed or found is None:
         return Lawful(finding, None)
     return Lawful(finding, _explained(found, search))
+
+
+def lawful_rest(
+    built: Built,
+    limits: Limits,
+    settings: Settings,
+    standstill: Recording | None,
+    progress: Progress,
+) -> Lawful | None:
+    """Look for a law in what proved causes leave.
+
+    Args:
+        built: the causes.
+        limits: of a claim.
+        settings: whether laws are wanted, and how sure.
+        standstill: tells the noise; the declared one is taken without it.
+        progress: told how far it is.
+
+    Returns:
+        None where nobody asked, or the plant has no places for laws.
+    """
+    causes, held = built.found.best, built.held
+    if not _asked(built.fitted.runs, causes.shift, settings):
+        return None
+    search = search_rest(built.fitted, causes, limits, progress)
+    if search is None:
+        return None
+    there = replace(held, runs=replace(held.runs, forward=search.evidence.runs.forward))
+    noise = whitening_of(there.runs, standstill)
+    finding = replace(law_finding(search, settings, (there, noise)), part=True)
+    if not finding.claimed:
+        return Lawful(finding, None)
+    return Lawful(finding, _explained(built.found, search))
+
+
+def _asked(runs: Runs, shift: FloatArray, settings: Settings) -> bool:
+    """Whether laws are wanted, can act, and are found in time."""
+    plant = runs.forward
+    if settings.laws is False or not isinstance(plant, LawForward):
+        return False
+    if any(programme.poses for programme in runs.programmes) or not plant.law_places():
+        return False
+    begin = perf_counter()
+    runs.one(shift)
+    once = (perf_counter() - begin) / runs.workers.count
+    return settings.laws is True or runs_of(plant.law_places()) * once <= LONGEST
 
 
 def _explained(found: Explanation, search: Search) -> Explanation:

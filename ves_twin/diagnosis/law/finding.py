@@ -9,6 +9,7 @@ from scipy.stats import norm
 
 from ves_twin.core.types import FloatArray
 from ves_twin.diagnosis.gain import Gain, held_out_gain
+from ves_twin.diagnosis.law.band import band_of_form
 from ves_twin.diagnosis.law.candidate import Closed, Table
 from ves_twin.diagnosis.law.fit_law import LawFit
 from ves_twin.diagnosis.law.place import LawForward, Variable
@@ -20,7 +21,7 @@ from ves_twin.diagnosis.preprocess import Dataset
 from ves_twin.diagnosis.refine import refine
 from ves_twin.diagnosis.settings import Settings
 from ves_twin.diagnosis.whitening import Whitening
-from ves_twin.effects.law import Law, LawShape
+from ves_twin.effects.law import Law, LawShape, variable_along
 
 SOURCE = "ves-twin diagnose"
 
@@ -28,14 +29,14 @@ GATE = 0.25
 """Share of the held-out excess that a law must take away."""
 
 WIDER = 1.3
-"""Factor on a band: of 22 machines with shapes of ours the 90 % band as fitted held 81 % of the
-knots."""
+"""Factor on a table's band: of 22 machines with shapes of ours the 90 % band as fitted held 81 % of
+the knots."""
 
 BAND = 0.90
 """Probability of bands and of intervals."""
 
 DRAWN = 400
-"""Draws of a closed form's numbers that make its band."""
+"""Draws of a table's numbers that make its band."""
 
 PLOTTED = 61
 """Places of the band and, along time, of what the recordings ask for."""
@@ -77,7 +78,7 @@ def law_finding(
         numbers=_numbers(best),
         knots=law.knots,
         values=law.values,
-        band=_bands(search, along[0]) if law.shape is LawShape.TABLE else (),
+        band=_band(search, along[0]) if law.shape is LawShape.TABLE else (),
         seen=tuple((float(np.min(x)), float(np.max(x))) for x in along),
         points=_points(search, law, along) if law.shape is LawShape.TABLE else (),
         transient="time" in law.of,
@@ -175,34 +176,25 @@ def _along(search: Search, law: Law) -> list[FloatArray]:
             runs.programmes, values_of(runs, search.best.fit.shift), strict=True
         )
     ]
-    return [np.concatenate([one[name] for one in seen]) for name in law.of]
+    return [np.concatenate([variable_along(name, one) for one in seen]) for name in law.of]
 
 
-def _bands(search: Search, x: FloatArray) -> tuple[tuple[float, ...], ...]:
-    """Of the law, and of the best table of the same variable: a form may only come near."""
-    best = search.best
-    found = _band(best, x)
-    for fit in search.pool[1:]:
-        if isinstance(fit.candidate, Table) and best.candidate is not None:
-            same = fit.candidate.place, fit.candidate.of
-            if same == (best.candidate.place, best.candidate.of):
-                at, low, high = _band(fit, x)
-                found = at, tuple(map(min, low, found[1])), tuple(map(max, high, found[2]))
-    return found
-
-
-def _band(best: LawFit, x: FloatArray) -> tuple[tuple[float, ...], ...]:
+def _band(search: Search, x: FloatArray) -> tuple[tuple[float, ...], ...]:
     """Places, and ends of the band of the law there."""
+    best = search.best
     if best.candidate is None:
         return ()
     at = np.linspace(float(np.min(x)), float(np.max(x)), PLOTTED)
-    covariance = WIDER**2 * best.fit.covariance
-    rng = np.random.default_rng(0)
-    drawn = rng.multivariate_normal(best.numbers, covariance, DRAWN, method="eigh")
-    rows = np.array([best.candidate.law(numbers).at(at) for numbers in drawn])
-    tail = 0.5 * (1.0 - BAND)
-    low, high = np.quantile(rows, [tail, 1.0 - tail], axis=0)
-    return tuple(at.tolist()), tuple(low.tolist()), tuple(high.tolist())
+    if isinstance(best.candidate, Closed):
+        ends = band_of_form(search.evidence, best, at, BAND)
+    else:
+        covariance = WIDER**2 * best.fit.covariance
+        rng = np.random.default_rng(0)
+        drawn = rng.multivariate_normal(best.numbers, covariance, DRAWN, method="eigh")
+        rows = np.array([best.candidate.law(numbers).at(at) for numbers in drawn])
+        tail = 0.5 * (1.0 - BAND)
+        ends = np.quantile(rows, [tail, 1.0 - tail], axis=0)
+    return tuple(at.tolist()), tuple(ends[0].tolist()), tuple(ends[1].tolist())
 
 
 def _points(search: Search, law: Law, along: list[FloatArray]) -> tuple[tuple[float, ...], ...]:

@@ -74,6 +74,25 @@ SATURATING = Form(
     (0.2,),
     relative=False,
 )
+WIDTHS = ((0.02,), (0.05,), (0.1,), (0.2,), (0.3,), (0.4,))
+"""Of a dead zone, to either side of zero, as shares of the range."""
+
+DEAD_ZONE = Form(
+    "dead zone",
+    "sign(x) max(|x| - p, 0)",
+    lambda x, w, p: np.sign(x) * _up(np.abs(x) - np.abs(p)),
+    WIDTHS,
+    (0.2,),
+    relative=False,
+)
+LIMITED = Form(
+    "limited",
+    "sign(x) min(|x|, p)",
+    lambda x, w, p: np.clip(x, -np.abs(p), np.abs(p)),
+    WIDTHS,
+    (0.2,),
+    relative=False,
+)
 DECAY = Form(
     "decaying",
     "exp(-x/p)",
@@ -91,10 +110,25 @@ TONE = Form(
 """Its frequency and phase come from a scan, not from the table of starts."""
 
 FORMS: dict[str, tuple[Form, ...]] = {
-    "position": (CONSTANT, LINEAR, SQUARE, CUBE, SINE, COSINE, MODULUS, SIGN, RAMP, DOWN, BEND),
+    "position": (
+        *(CONSTANT, LINEAR, SQUARE, CUBE, SINE, COSINE, MODULUS, SIGN, RAMP, DOWN, BEND),
+        DEAD_ZONE,
+    ),
     "speed": (LINEAR, SIGNED_SQUARE, CUBE, SIGN, SQUARE, MODULUS, STRIBECK, SATURATING),
     "time": (CONSTANT, LINEAR, SQUARE, CUBE, RAMP, BEND, STEP, DECAY),
-    "command": (CONSTANT, LINEAR, SQUARE, SIGNED_SQUARE, CUBE, SIGN, MODULUS, RAMP, DOWN),
+    "command": (
+        CONSTANT,
+        LINEAR,
+        SQUARE,
+        SIGNED_SQUARE,
+        CUBE,
+        SIGN,
+        MODULUS,
+        RAMP,
+        DOWN,
+        DEAD_ZONE,
+        LIMITED,
+    ),
 }
 """What is tried of each kind of variable. Source: the field's textbook laws of friction, springs,
 drag, cogging, drift and saturation (Armstrong-Helouvry et al. 1994; Stribeck 1902)."""

@@ -17,7 +17,7 @@ from ves_twin.diagnosis.law.place import LawPlace
 from ves_twin.diagnosis.law.with_law import WithLaw
 from ves_twin.diagnosis.metric import Metric
 from ves_twin.diagnosis.runs import Progress, silent
-from ves_twin.effects.law import LawKind
+from ves_twin.effects.law import LawKind, joints_of
 
 HELD = range(2, 15)
 """Rows that a reading may be held."""
@@ -55,7 +55,7 @@ def stop_laws(
     found = []
     for place in places:
         positions = [v for v in place.variables if v.name == f"position@{place.name}"]
-        if place.kind is not LawKind.EFFORT or not positions:
+        if place.kind is not LawKind.EFFORT or not positions or len(joints_of(place.name)) > 1:
             continue
         low, high = ends[positions[0].name]
         wide = high - low

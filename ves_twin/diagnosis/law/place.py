@@ -29,7 +29,7 @@ class LawPlace:
     """A joint or a column.
 
     Attributes:
-        name: joint, or channel.
+        name: joint, two joints, as `Law` has them, or channel.
         kind: effort or reading.
         unit: of the law.
         scale: size that a law is expected to have there [unit].
@@ -62,4 +62,21 @@ class LawForward(Forward, Protocol):
     def visited(
         self, programme: Excitation, values: Mapping[str, float], laws: Sequence[Law] = ()
     ) -> Mapping[str, FloatArray]:
-        """Every variable of the places (n,), by name."""
+        """What moves (n,), by name: every variable of the places that is no sum and no play."""
+
+    def missing(
+        self,
+        programme: Excitation,
+        values: Mapping[str, float],
+        measured: Mapping[str, FloatArray],
+    ) -> tuple[Mapping[str, FloatArray], Mapping[str, FloatArray]] | None:
+        """Efforts by joint that a measured motion asks for beyond the plant's, and variables.
+
+        Args:
+            programme: what was fed in.
+            values: parameter -> value.
+            measured: channels (n,) at the programme's rows, smooth.
+
+        Returns:
+            None where the channels do not tell the motion, or the motion is what is fed in.
+        """

@@ -13,6 +13,7 @@ from ves_twin.diagnosis.law.adapted import adapted
 from ves_twin.diagnosis.law.candidate import Candidate, Mesh, Table
 from ves_twin.diagnosis.law.closed import closed_forms
 from ves_twin.diagnosis.law.fit_law import LawFit, fit_law
+from ves_twin.diagnosis.law.loud import loud_screen
 from ves_twin.diagnosis.law.memories import memory_laws, stop_laws
 from ves_twin.diagnosis.law.place import LawForward, LawPlace
 from ves_twin.diagnosis.law.screen import (
@@ -37,6 +38,9 @@ NEAR = 30.0
 
 MOST = 7
 """Tables that are fitted at most."""
+
+LOUDEST = 2
+"""Tables of a loud record that are fitted from what inverse dynamics says of them."""
 
 BEGUN = 3
 """Linearisations before tables that are far behind are left as they are."""
@@ -151,6 +155,7 @@ def search_laws(
     suspects = law_screen(evidence, smooth, none, progress)
     single = [s for s in suspects if isinstance(s.candidate, Table)]
     tables = _tables(evidence, single, none, progress)
+    tables = _first([*tables, *_loud(evidence, none, places)], len(single))
     if not tables:
         return None
     others = memory_laws(evidence, none, places, progress)
@@ -206,6 +211,13 @@ def _tables(
         for n, fit in enumerate(begun)
     ]
     return _first(ended, len(ended))
+
+
+def _loud(evidence: Evidence, none: LawFit, places: Sequence[LawPlace]) -> list[LawFit]:
+    """The likeliest tables by inverse dynamics, fitted from what it says, tolerances unstrained."""
+    begin = replace(none.fit, shift=np.zeros_like(none.fit.shift), step_share=0.0)
+    suspects = loud_screen(evidence, none, places)[:LOUDEST]
+    return [fit_law(evidence, one.candidate, begin, one.numbers) for one in suspects]
 
 
 def _chosen(

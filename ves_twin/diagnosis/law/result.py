@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from ves_twin.diagnosis.gain import Gain
+from ves_twin.effects.law import WITHIN, joints_of
 
 
 @dataclass(frozen=True)
@@ -49,8 +50,8 @@ class LawFinding:
         form: formula; empty of a table.
         numbers: of the closed form.
         knots, values: as it is simulated.
-        band: places, and low and high ends of the 90 % band there, which holds that of a table of
-            the same variable too; () without one.
+        band: places, and low and high ends of the 90 % band there; of a form with what a smooth
+            departure from it may be; () without one.
         seen: ends of each variable in the recordings.
         points: variable and effort or reading that the recordings ask for, and its sd.
         transient: whether it depends on time, and says nothing of other times.
@@ -59,6 +60,7 @@ class LawFinding:
         further: log odds of a further law beside it, over what the simulation's error allows.
         also: what else it could be, and what was tried, the nearest first.
         gain: on held-out recordings; None if there were none.
+        part: whether it is of what proved causes leave, and is no explanation of all of it.
     """
 
     claimed: bool
@@ -82,6 +84,7 @@ class LawFinding:
     further: float
     also: tuple[LawRival, ...]
     gain: Gain | None
+    part: bool = False
 
     @property
     def words(self) -> str:
@@ -89,9 +92,16 @@ class LawFinding:
         told = {"play": "play", "hold": "rows that repeat", "stop": "a stop"}
         what = told.get(self.shape, f"an {self.kind}" if self.kind == "effort" else "a reading")
         along = " and ".join(_spoken(name, self.place) for name in self.of)
-        where = f"{what} {'at' if self.kind == 'effort' else 'of'} {self.place}"
+        where = f"{what} {'at' if self.kind == 'effort' else 'of'} {named(self.place)}"
         said = f"{where} that depends on {along}" if self.shape in ("table", "mesh") else where
         return f"{said}: {self.form}" if self.form else said
+
+    @property
+    def of_rest(self) -> str:
+        """The sentence of a law of what proved causes leave."""
+        if self.claimed:
+            return f"Of what they leave, a law takes a part: {self.words}."
+        return f"What they leave comes nearest to {self.words}."
 
     @property
     def refusal(self) -> str:
@@ -99,9 +109,24 @@ class LawFinding:
         return "" if self.gain is not None else "there were no held-out recordings to prove it on"
 
 
+def named(place: str) -> str:
+    """A place as a person says it: two joints together, or against one another."""
+    joints = joints_of(place)
+    if len(joints) == 1:
+        return place
+    (one, _), (two, sign) = joints
+    return f"{one} and {two}{' together' if sign > 0.0 else ', against one another,'}"
+
+
 def _spoken(variable: str, place: str) -> str:
     """A variable as a person says it."""
     what, _, name = variable.partition("@")
     if what == "time":
         return "time"
+    name, _, width = name.partition(WITHIN)
+    if width:
+        return f"where {name} stands within a play of {width}"
+    joints = joints_of(name)
+    if len(joints) == 2:
+        return f"the {'sum' if joints[1][1] > 0.0 else 'difference'} of their {what}s"
     return f"its {what}" if name == place or place.startswith(name) else f"{what} of {name}"

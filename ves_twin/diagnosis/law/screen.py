@@ -15,7 +15,7 @@ from ves_twin.diagnosis.law.place import LawForward, LawPlace, Variable
 from ves_twin.diagnosis.law.smoothness import Smoothness, smoothest
 from ves_twin.diagnosis.law.with_law import WithLaw
 from ves_twin.diagnosis.runs import Progress, Runs, silent
-from ves_twin.effects.law import LawKind
+from ves_twin.effects.law import LawKind, variable_along
 
 KNOTS = {"position": 19, "speed": 21, "time": 25, "command": 13}
 """Of a table, by what it depends on: those of speed are closer about zero."""
@@ -49,10 +49,13 @@ class Suspect:
 def ranges(forward: LawForward, found: LawFit) -> Mapping[str, tuple[float, float]]:
     """Ends of every variable in the recordings, as a fit simulates them."""
     runs = found.fit.local.runs
+    names = {variable.name for place in forward.law_places() for variable in place.variables}
     laws = [found.candidate.law(found.numbers)] if found.candidate else []
     ends: dict[str, tuple[float, float]] = {}
     for programme, values in zip(runs.programmes, values_of(runs, found.fit.shift), strict=True):
-        for name, rows in forward.visited(programme, values, laws).items():
+        path = forward.visited(programme, values, laws)
+        for name in names:
+            rows = variable_along(name, path)
             low, high = ends.get(name, (np.inf, -np.inf))
             ends[name] = min(low, float(np.min(rows))), max(high, float(np.max(rows)))
     return ends

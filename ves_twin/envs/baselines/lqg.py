@@ -27,9 +27,16 @@ class Lqg(Policy):
 
     The model takes the step's action as held for the step; that rates go linearly, and the arm's
     two cycles of look-ahead, count as one step of delay.
+
+    Args:
+        briefing: of an environment of the arm on an elastic base.
+        effort: loss of a share of 1 over a second [J].
+
+    Raises:
+        InvalidInputError: another environment.
     """
 
-    def __init__(self, briefing: TaskSpec) -> None:
+    def __init__(self, briefing: TaskSpec, effort: float = EFFORT) -> None:
         from control import sample_system  # slow to import
 
         arm = "arm.rate" in briefing.actions.slices
@@ -46,10 +53,10 @@ class Lqg(Policy):
         weight = np.zeros((n + m, n + m))
         weight[12:18, 12:18] = (briefing.emulated.stiffness + briefing.emulated.stiffness.T) / 4
         weight[30:33, 30:33] = RETURN * np.eye(3)
-        effort = EFFORT * np.eye(m)
-        value = solve_discrete_are(a, b, weight, effort)
-        self._weights = weight, effort, value
-        self._gain = np.linalg.solve(effort + b.T @ value @ b, b.T @ value @ a)
+        price = effort * np.eye(m)
+        value = solve_discrete_are(a, b, weight, price)
+        self._weights = weight, price, value
+        self._gain = np.linalg.solve(price + b.T @ value @ b, b.T @ value @ a)
         pushes = np.zeros((n + m, 6))
         pushes[6:12] = np.linalg.inv(briefing.emulated.mass) * briefing.step * PUSH
         drive = pushes @ pushes.T + 1e-12 * np.eye(n + m)
@@ -72,13 +79,21 @@ class Lqg(Policy):
 
     def act(self, observation: FloatArray) -> FloatArray:
         """Correct the estimate by the readings, then act on it."""
+        action = self.decide(self.estimate(observation))
+        self.expect(action)
+        return action
+
+    def estimate(self, observation: FloatArray) -> FloatArray:
+        """The state (n,), corrected by the readings of now."""
         seen = self._known.observations.split(observation)
         reading = np.concatenate([seen["platform.pose"], seen["arm.q"], seen["arm.command"]])
         off = reading - self._start - self._c @ self._state
         self._state = self._state + self._correction @ off
-        action = self.decide(self._state)
+        return self._state
+
+    def expect(self, action: FloatArray) -> None:
+        """Carry the estimate on to the next step under an action."""
         self._state = self._a @ self._state + self._b @ action
-        return action
 
     def decide(self, state: FloatArray) -> FloatArray:
         """The action for an estimated state: the optimal one without bounds, cut off at them."""

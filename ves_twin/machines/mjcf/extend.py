@@ -21,10 +21,11 @@ def extended(rig: Rig, verdict: Verdict) -> Rig:
 
     The held-out gain was measured with both, so that one without the other would not have it.
     """
-    values = {name: e.value for name, e in verdict.tuned.items()}
+    values: dict[str, float] = {}
     for cause in verdict.causes:
         at = f"{cause.effect}@{cause.target}"
         values |= {f"{at}:{n.rpartition(':')[2]}": e.value for n, e in cause.parameters.items()}
+    values |= {name: e.value for name, e in verdict.tuned.items()}  # fitted beside a law, if any
     settings = {_place(s): s for s in rig.description.parameters}
     present = {kind: dict(t) for kind, t in rig.description.present.items()}
     for entry in rig.entries:

@@ -13,12 +13,13 @@ from ves_twin.core.types import FloatArray
 from ves_twin.core.units import to_si
 from ves_twin.diagnosis.forward import Channel, Excitation, Hypothesis, Parameter
 from ves_twin.diagnosis.law.place import LawPlace
-from ves_twin.effects.law import Law, LawKind
+from ves_twin.effects.law import Law, LawKind, variable_along
 from ves_twin.machines.mjcf.description import Compared, Mode
 from ves_twin.machines.mjcf.inverse import efforts_of_motion
 from ves_twin.machines.mjcf.joint_units import joint_units
 from ves_twin.machines.mjcf.law_places import law_places
 from ves_twin.machines.mjcf.machine import Rig
+from ves_twin.machines.mjcf.missing import missing_efforts
 from ves_twin.machines.mjcf.places import driven_joint
 from ves_twin.machines.mjcf.started import start_signal
 from ves_twin.machines.mjcf.stepping import motion_of_drive
@@ -172,7 +173,9 @@ class MjcfForward:
         for law in work.laws:
             if law.kind is LawKind.READING:
                 at = self._labels.index(law.place)
-                rows[:, at] = law.read(rows[:, at], *(along[name] for name in law.of))
+                rows[:, at] = law.read(
+                    rows[:, at], *(variable_along(name, along) for name in law.of)
+                )
         return rows
 
     def visited(
@@ -184,6 +187,26 @@ class MjcfForward:
     def law_places(self) -> tuple[LawPlace, ...]:
         """Joints and compared columns at which a law may act."""
         return law_places(self.rig, self.channels, self.mode)
+
+    def missing(
+        self,
+        programme: Excitation,
+        values: Mapping[str, float],
+        measured: Mapping[str, FloatArray],
+    ) -> tuple[Mapping[str, FloatArray], Mapping[str, FloatArray]] | None:
+        """Efforts by joint that a measured motion asks for beyond the model; see `LawForward`."""
+        model, told = self.rig.model, self.rig.description
+        positions = {
+            one.joint: one.sign * measured[name]
+            for name, one in self.compared.items()
+            if one.joint and one.of == "position" and name in measured
+        }
+        single = {model.joint(n).name for n in range(model.njnt)}
+        if self.mode is not Mode.CONTROL or self.imposed or not single <= positions.keys():
+            return None
+        if {self.joint_of(name) for name in told.drive.actuators} != single:
+            return None
+        return missing_efforts(Work.begin(self.rig, programme, values), positions)
 
     def _moved(
         self, work: Work, refined: bool

@@ -7,7 +7,7 @@ from typing import Self
 
 from pydantic import Field, model_validator
 
-from ves_twin.effects.law import Law, LawKind, LawShape
+from ves_twin.effects.law import Law, LawKind, LawShape, parts_of
 from ves_twin.scenario.fields import Part
 
 CAUSE = "law"
@@ -58,6 +58,17 @@ class LawTable(Part):
             raise ValueError("laws.cause: expected a table or a mesh, which a factor can scale")
         if len(self.values) != wanted:
             raise ValueError(f"laws.values: got {len(self.values)}, expected {wanted}")
+        return self
+
+    @model_validator(mode="after")
+    def _has_widths(self) -> Self:
+        for n, name in enumerate(self.of):
+            try:
+                width = parts_of(name)[2]
+            except ValueError as wrong:
+                raise ValueError(f"laws.of: no number as the width of a play: '{name}'") from wrong
+            if width and n:
+                raise ValueError("laws.of: only the first variable may be a place within a play")
         return self
 
     @property

@@ -15,7 +15,7 @@ from ves_twin.diagnosis.forward import Excitation
 from ves_twin.effects.effect import Effect
 from ves_twin.effects.element import Element
 from ves_twin.effects.joints import CoulombFriction
-from ves_twin.effects.law import Law, LawKind
+from ves_twin.effects.law import Law, LawKind, LawShape, joints_of, variable_along
 from ves_twin.effects.place import Place
 from ves_twin.machines.mjcf.description import Compared
 from ves_twin.machines.mjcf.machine import Rig
@@ -133,8 +133,13 @@ class Work:
         """Effort [N, N m] of the laws at a joint along variables (n,) each."""
         total = np.zeros(len(self.programme.time))
         for law in self.laws:
-            if law.kind is LawKind.EFFORT and law.place == joint:
-                total = total + law.at(*(along[name] for name in law.of))
+            sign = dict(joints_of(law.place)).get(joint, 0.0)
+            if law.kind is not LawKind.EFFORT or not sign:
+                continue
+            of = [variable_along(name, along) for name in law.of]
+            stop = law.shape is LawShape.STOP
+            effort = law.stopped(of[0], along[f"speed@{joint}"]) if stop else law.at(*of)
+            total = total + sign * effort
         return total
 
     def position(self, joint: str, position: FloatArray) -> FloatArray:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from functools import lru_cache
+
 import numpy as np
 
 from ves_twin.core.types import FloatArray
@@ -31,10 +33,22 @@ def slow_modes(time: FloatArray, correlation_time: float, zeroed: float = 0.5) -
 
     Source: K. Karhunen 1947, M. Loeve 1948.
     """
-    t = np.linspace(time[0], time[-1], GRID)
-    since = np.exp(-(t - time[0] + zeroed) / correlation_time)
+    length = float(time[-1] - time[0])
+    t, shapes = _loudest(length, correlation_time, zeroed)
+    return np.stack([np.interp(time - time[0], t, shape) for shape in shapes.T], axis=1)
+
+
+@lru_cache(maxsize=16)
+def _loudest(
+    length: float, correlation_time: float, zeroed: float
+) -> tuple[FloatArray, FloatArray]:
+    """Times from the first row on (GRID,), and the shapes there (GRID, MODES).
+
+    Kept, since each trial of a search asks for those of one length again.
+    """
+    t = np.linspace(0.0, length, GRID)
+    since = np.exp(-(t + zeroed) / correlation_time)
     covariance = np.exp(-np.abs(t[:, None] - t) / correlation_time) - since[:, None] - since + 1.0
     values, vectors = np.linalg.eigh(covariance)
     loudest = np.argsort(-values)[:MODES]
-    shapes = vectors[:, loudest] * np.sqrt(np.maximum(values[loudest], 0.0))
-    return np.stack([np.interp(time, t, shape) for shape in shapes.T], axis=1)
+    return t, vectors[:, loudest] * np.sqrt(np.maximum(values[loudest], 0.0))

@@ -56,12 +56,20 @@ def leg_jacobian(
     """
     r = matrix_from_angles(pose[3:6])
     jacobian = np.empty((6, 6))
+    arm = np.empty(3)
     for i in range(6):
-        arm = r @ np.ascontiguousarray(top[i])
-        leg = home + pose[:3] + arm - base[i]
-        u = leg / np.sqrt(np.sum(leg * leg))
-        jacobian[i, :3] = u
-        jacobian[i, 3:] = np.cross(arm, u)
+        np.dot(r, top[i], arm)
+        row = jacobian[i]
+        square = 0.0
+        for k in range(3):
+            row[k] = home[k] + pose[k] + arm[k] - base[i, k]
+            square += row[k] * row[k]
+        length = np.sqrt(square)
+        for k in range(3):
+            row[k] /= length
+        row[3] = arm[1] * row[2] - arm[2] * row[1]
+        row[4] = arm[2] * row[0] - arm[0] * row[2]
+        row[5] = arm[0] * row[1] - arm[1] * row[0]
     return jacobian
 
 
@@ -70,9 +78,8 @@ def pose_jacobian(
     pose: FloatArray, base: FloatArray, top: FloatArray, home: FloatArray
 ) -> FloatArray:
     """Leg rates (6, 6) per rate of the pose: columns 3-5 [m/rad] per rate of the angles."""
-    twist = leg_jacobian(pose, base, top, home)
-    jacobian = twist.copy()
-    jacobian[:, 3:] = np.ascontiguousarray(twist[:, 3:]) @ rate_matrix(pose[3:])
+    jacobian = leg_jacobian(pose, base, top, home)
+    jacobian[:, 3:] = np.ascontiguousarray(jacobian[:, 3:]) @ rate_matrix(pose[3:])
     return jacobian
 
 

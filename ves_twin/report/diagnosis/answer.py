@@ -8,7 +8,15 @@ from ves_twin.diagnosis.verdict import Cause, Kind, Verdict
 from ves_twin.report.diagnosis.basis import taken_share
 from ves_twin.report.diagnosis.law import worth_sentence
 from ves_twin.report.diagnosis.limits import next_sentences
-from ves_twin.report.diagnosis.words import TOLD, capital, ends_words, name_of, size_words, spoken
+from ves_twin.report.diagnosis.words import (
+    TOLD,
+    capital,
+    ends_words,
+    listed,
+    name_of,
+    size_words,
+    spoken,
+)
 
 STRANGER = 0.5
 """Share of a channel's own spread that stays unexplained where the model is hardly this machine."""
@@ -47,8 +55,8 @@ def confidence_sentence(verdict: Verdict) -> str:
         case _ if verdict.proved:
             rate = percent(verdict.false_discovery_rate)
             return (
-                f"Of {verdict.put_to_proof} that were tried, at a false-discovery rate of {rate};"
-                " only firm names are the mechanism."
+                f"{verdict.put_to_proof} were tested on held-out data; of those accepted, at most"
+                f" {rate} are expected to be false. Only firm names are the mechanism."
             )
         case _:
             return _doubt(verdict)
@@ -59,8 +67,13 @@ def next_step(verdict: Verdict) -> str:
     if tone(verdict) == "good":
         return "Nothing to do. Smaller faults need a longer recording or more channels."
     if tone(verdict) == "bad":
-        names = " and ".join(name_of(cause) for cause in verdict.causes[:TOLD])
+        names = listed([name_of(cause) for cause in verdict.causes[:TOLD]])
         return f"Look at {names} on the machine, and simulate with the extended model."
+    if verdict.proved and verdict.gain is not None and verdict.gain.passed:
+        firm = [spoken(one.label) for one in verdict.proved if one.firm]
+        if firm:
+            return f"Simulate with the extended model, and look at {listed(firm[:TOLD])}."
+        return "Simulate with the extended model. A motion in which they differ settles the names."
     if verdict.law is not None and verdict.law.claimed:
         place = verdict.law.place
         return f"Look at {place} on the machine, and simulate with the law in the model."
@@ -87,7 +100,7 @@ def _nothing(verdict: Verdict) -> str:
     count = len(verdict.smallest_findable)
     if count and _lost(verdict) == count:
         return f"Nothing can be said: this recording would show none of the {count} causes."
-    return "Nothing found: what is off lies within noise and commissioning tolerances."
+    return "Nothing found: what is off lies within noise and the declared tolerances."
 
 
 def _lost(verdict: Verdict) -> int:
@@ -98,7 +111,7 @@ def _shown(verdict: Verdict) -> str:
     """What a recording in which nothing was found would have shown."""
     lost, count = _lost(verdict), len(verdict.smallest_findable)
     if lost:
-        return f"About {lost} of {count} causes this recording can say nothing."
+        return f"This recording can say nothing about {lost} of {count} causes."
     return f"Each of the {count} causes would have shown from the size listed below on."
 
 
@@ -135,13 +148,15 @@ def _proved(verdict: Verdict) -> str:
     firm = [spoken(one.label) for one in verdict.proved if one.firm]
     like = [spoken(one.label) for one in verdict.proved if not one.firm]
     count = len(verdict.proved)
-    what = "1 extension predicts" if count == 1 else f"{count} extensions predict"
-    said = f"{what} held-out data better, each beside all others."
-    for begin, names in (("Firm", firm), ("Acting like", like)):
+    what = "1 cause improves" if count == 1 else f"{count} causes improve"
+    said = f"{what} the prediction of held-out data."
+    for begin, names in (("Firm:", firm), ("Something that acts like", like)):
         more = f" and {len(names) - TOLD} more" if len(names) > TOLD else ""
-        said += f" {begin}: {', '.join(names[:TOLD])}{more}." if names else ""
+        said += f" {begin} {', '.join(names[:TOLD])}{more}." if names else ""
     if verdict.verdict is Kind.PARTIAL:
         said += " Something more stays unexplained."
+    if verdict.law is not None and verdict.law.part:
+        said += f" {verdict.law.of_rest}"
     return said
 
 

@@ -124,8 +124,9 @@ def next_sentences(verdict: Verdict) -> tuple[str, ...]:
         said.append("Record another programme on the same machine and give it as --held-out.")
     if verdict.basis.tolerances == "declared":
         said.append(
-            f"Record {FEWEST} machines in order, or this one mounted anew {FEWEST} times, and give"
-            " them as --commissioning: then the tolerances are measured."
+            "Narrow the tolerances of what you know better than declared, or measure them: give"
+            f" {FEWEST} machines in order, or this one mounted anew {FEWEST} times, as"
+            " --commissioning."
         )
     if verdict.basis.noise == "declared":
         said.append("Record the machine standing still and give it as --standstill.")

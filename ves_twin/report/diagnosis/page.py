@@ -32,6 +32,7 @@ from ves_twin.report.diagnosis.words import (
     ends_words,
     fitted_word,
     interval_words,
+    listed,
     name_of,
     size_words,
     spoken,
@@ -79,7 +80,8 @@ def diagnosis_page(verdict: Verdict, title: str = "Diagnosis", plant: str = "") 
         parts += _pictures(verdict, exhibit)
     parts += proved_parts(verdict)
     if verdict.law is not None:
-        parts.insert(1, section("A law in place of a cause", *law_parts(verdict.law)))
+        what = "A law of what the causes leave" if verdict.law.part else "A law in place of a cause"
+        parts.insert(1, section(what, *law_parts(verdict.law)))
     if verdict.rivals:
         note = paragraph(CHI2, "note")
         parts.append(section("Rivals, and why they lost", note, _rivals(verdict.rivals)))
@@ -190,7 +192,7 @@ def _pictures(verdict: Verdict, exhibit: ReportTraces) -> list[Html]:
     large = exhibit.telling[:SHOWN].tolist()
     shown = exhibit.traces[:DRAWN]
     what = (
-        f"The model with {' with '.join(map(spoken, exhibit.causes))}, beside the best that its"
+        f"The model with {listed(list(map(spoken, exhibit.causes)))}, beside the best that its"
         " tolerances alone can do, in the channels where the two differ most."
         if exhibit.causes
         else "No cause is in the model: its tolerances alone are fitted."

@@ -20,6 +20,10 @@ from ves_twin.report.plots import Band, Trace, draw_cells, draw_change, draw_tra
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
+INSIDE = 0.95
+"""Share of the rows within the envelope from which a measurement counts as inside it: the share
+that a machine in order has there."""
+
 ALONE = "best without a cause, within tolerances"
 """What the model is called that has its tolerances fitted and nothing else."""
 
@@ -62,11 +66,21 @@ def _ends(cell: EnergyCell) -> str:
 def answer_figure(exhibit: ReportTraces, fitted: str) -> Html:
     """`draw_answer` as a part of a page."""
     traces, column = _telling(exhibit)
+    off = np.abs(traces.measured[:, column] - traces.nominal[:, column])
+    inside = np.nanmean(off <= ENVELOPE_SD * traces.reach[:, column]) >= INSIDE
+    meaning = "point by point: a curve inside may still be one that no such machine draws."
+    if inside and exhibit.causes:
+        meaning = (
+            "point by point. The measurement stays inside: a look at this channel does not show"
+            f" the cause, the course of all {len(exhibit.channels)} together does."
+            if len(exhibit.channels) > 1
+            else "point by point. The measurement stays inside: not its size shows the cause, its"
+            " course in time does."
+        )
     caption = (
         f"{exhibit.channels[column].name} of {traces.name}, the channel that tells most; below, the"
         " same less the model before. Grey: where a machine in order may lie, by noise and"
-        " tolerances (95 % of the rows), point by point: a curve inside may still be one that no"
-        " such machine draws."
+        f" tolerances (95 % of the rows), {meaning}"
     )
     return svg(draw_answer(exhibit, fitted), "answer", caption)
 

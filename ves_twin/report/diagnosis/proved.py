@@ -11,14 +11,17 @@ from ves_twin.report.diagnosis.words import spoken
 from ves_twin.report.html import Html, bullets, paragraph, section, table
 
 SHOWN = 3
-"""Channels of one extension that are told: those where it takes most."""
+"""Channels of one cause that are told: those where it takes most."""
+
+UNKNOWN = 100.0
+"""Times that shares are known worse than their combination, from which on nothing is known."""
 
 
 def proved_parts(verdict: Verdict) -> list[Html]:
     """Sections of a page; none where nothing was put to proof."""
     if verdict.put_to_proof is None:
         return []
-    parts = [section("Proved extensions", *_proved(verdict))]
+    parts = [section("Causes that improve the prediction", *_proved(verdict))]
     if verdict.left:
         parts.append(section("What is left of each channel", *_left(verdict.left)))
     if verdict.inseparable:
@@ -32,14 +35,15 @@ def proof_sentence(verdict: Verdict) -> str:
         return ""
     rate = percent(verdict.false_discovery_rate)
     said = (
-        f"{verdict.put_to_proof} extensions were put to proof on held-out data and"
-        f" {len(verdict.proved)} predict better, at a false-discovery rate of {rate}."
+        f"{verdict.put_to_proof} causes were tested on held-out data;"
+        f" {len(verdict.proved)} of them improve its prediction. Of such, at most {rate} are"
+        " expected to be false."
     )
     if not verdict.proved:
         return said
     return (
-        f"{said} That an extension predicts better does not prove its name: only firm ones are"
-        " the mechanism, the others act like it."
+        f"{said} A better prediction does not prove a name: only firm ones are the mechanism,"
+        " the others act like it."
     )
 
 
@@ -50,7 +54,7 @@ def standing_words(one: Proved) -> str:
     if one.acts_like:
         like = [" with ".join(map(spoken, name.split(TOGETHER))) for name in one.acts_like]
         return f"acts like it, or like {' or '.join(like)}"
-    return "acts like it: what is left, a tolerance or another extension follows the same motion"
+    return "acts like it: what is left, a tolerance or another cause follows the same motion"
 
 
 def proved_line(one: Proved) -> str:
@@ -65,17 +69,24 @@ def proved_line(one: Proved) -> str:
 def inseparable_sentences(verdict: Verdict) -> list[str]:
     """Each combination by the names that take part in it."""
     return [
-        f"{', '.join(map(spoken, one.names))}: only a combination of them is known; how they share"
-        f" it is known {one.ratio:.0f} times worse."
+        f"{', '.join(map(spoken, one.names))}: only a combination of them is known,"
+        f" {_shares(one.ratio)}."
         for one in verdict.inseparable
     ]
+
+
+def _shares(ratio: float) -> str:
+    """How well it is known what each of some causes has of their combination."""
+    if ratio > UNKNOWN:
+        return "and nothing of the share of each"
+    return f"the share of each {ratio:.0f} times worse"
 
 
 def _proved(verdict: Verdict) -> list[Html]:
     parts = [paragraph(proof_sentence(verdict))]
     if not verdict.proved:
         return parts
-    head = ("extension", "size", "90 % interval", "error without and with it", "p", "name")
+    head = ("cause", "size", "90 % interval", "error without and with it", "p", "name")
     rows = [row for one in verdict.proved for row in _rows(one, verdict)]
     return [*parts, table(head, rows)]
 
@@ -103,7 +114,7 @@ def _rows(one: Proved, verdict: Verdict) -> list[tuple[str, ...]]:
 
 
 def _left(left: Mapping[str, Left]) -> list[Html]:
-    head = ("channel", "before", "left", "noise", "it remembers", "goes along with", "follows")
+    head = ("channel", "before", "left", "noise", "correlation time", "goes along with", "follows")
     rows = [
         (
             name,

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 
 from ves_twin.core.quantity import digits, percent, quantity
@@ -26,6 +28,11 @@ def spoken(label: str) -> str:
 def name_of(cause: Cause) -> str:
     """A cause as a person says it."""
     return spoken(f"{cause.effect}@{cause.target}")
+
+
+def listed(names: Sequence[str]) -> str:
+    """A, B and C."""
+    return " and ".join(filter(None, (", ".join(names[:-1]), names[-1])))
 
 
 def fitted_word(verdict: Verdict) -> str:

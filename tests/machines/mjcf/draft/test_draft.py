@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import tomllib
 
+import mujoco
 import numpy as np
 import pytest
 
@@ -117,6 +118,32 @@ def test_positions_too_noisy_to_differentiate_are_predicted_where_a_model_can(sw
     assert signals["joint.speed"].noise == pytest.approx(0.02, rel=0.15)
     assert rig.description.start["joint"].sd == pytest.approx(0.003, rel=0.15)
     assert min(found.explained.values()) > 0.9
+
+
+def test_a_short_log_is_predicted_from_its_torque_where_a_model_can(swing, write):
+    """Given as motion, its band leaves fewer rows than a diagnosis asks for."""
+    model = mujoco.MjModel.from_xml_path(str(swing[0]))
+    data, rows = mujoco.MjData(model), np.zeros((400, 3))
+    for k in range(len(rows)):
+        data.ctrl[0] = 0.5 * np.sin(0.06 * k)
+        rows[k] = 0.01 * k, data.ctrl[0], data.qpos[0]
+        mujoco.mj_step(model, data, 5)
+    found, rig = drafted(swing[0], write(dict(zip(("t", "tau", "q"), rows.T, strict=True))))
+    assert found.mode == "control: 4 s of motion leave 80 rows in the band of the efforts"
+    assert rig.description.rate == 100.0
+
+
+def test_a_short_log_of_a_machine_that_drifts_keeps_rows_enough(arm, columns, write):
+    whole = drafted(arm, write(columns))[1]
+    found, rig = drafted(arm, write({name: values[:500] for name, values in columns.items()}))
+    assert found.mode.startswith("motion: open loop the model explains")
+    assert 2.5 * whole.description.rate < 150.0 <= 2.5 * rig.description.rate
+
+
+def test_stretches_that_are_held_out_have_rows_enough_for_a_diagnosis(arm, columns, write):
+    found, rig = drafted(arm, write(columns))
+    assert rig.description.rate < 75.0
+    assert found.stretch * rig.description.rate >= 150.0
 
 
 def test_a_speed_that_counts_backwards_is_turned(swing, write):

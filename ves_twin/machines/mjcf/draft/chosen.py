@@ -27,6 +27,9 @@ RATES = (20.0, 100.0)
 CORNER = 1.25
 """Corner of the positions' low-pass over the band: what is compared is not rounded off."""
 
+ENOUGH = 150
+"""Rows of the analysis that a log must leave: a diagnosis asks for 100 after its low-pass."""
+
 DROWNED = 0.05
 """Share of an effort that noise of positions may make once they are differentiated twice."""
 
@@ -63,7 +66,8 @@ def chosen(
     """Choose the mode.
 
     Where motion is given, the band is that of the efforts, or the lower one in which the noise of
-    differentiated positions stays below DROWNED: it grows with the band's power of 2.5.
+    differentiated positions stays below DROWNED: it grows with the band's power of 2.5. A short
+    log, which leaves few rows in that band, is predicted from its efforts instead.
 
     Args:
         log: the columns.
@@ -95,6 +99,13 @@ def chosen(
     band = float(np.clip(band, 0.5 * RATES[0], min(0.5 * RATES[1], 0.25 / log.period)))
     share = max(_induced(m, noise, efforts, model, log, band)[1] for m in positions)
     band = max(min(band, band * (DROWNED / max(share, 1e-9)) ** 0.4), 0.5 * RATES[0])
+    length = log.period * len(moved[0])
+    if 2.0 * band * length < ENOUGH:
+        if closed is None:
+            rows = 2.0 * band * length
+            why = f"{length:.2g} s of motion leave {rows:.0f} rows in the band of the efforts"
+            return Chosen(Mode.CONTROL, why, RATES[1], check.corner, noise, True)
+        band = min(0.5 * ENOUGH / length, 0.25 / log.period)
     sharp = {m.column: _induced(m, noise, efforts, model, log, band) for m in positions}
     worst = max(sharp, key=lambda column: sharp[column][1])
     why = "every joint has a position and an effort"

@@ -17,7 +17,7 @@ from ves_twin.diagnosis.forward import Excitation
 from ves_twin.machines.mjcf.columns import read_rig_recording
 from ves_twin.machines.mjcf.description import KIND, Mode, RigDescription
 from ves_twin.machines.mjcf.draft.check import Checked, checked
-from ves_twin.machines.mjcf.draft.chosen import Chosen, chosen
+from ves_twin.machines.mjcf.draft.chosen import ENOUGH, Chosen, chosen
 from ves_twin.machines.mjcf.draft.draft_text import compared, draft_text, signal_name, used
 from ves_twin.machines.mjcf.draft.given_model import GivenModel
 from ves_twin.machines.mjcf.draft.log_columns import LogColumns
@@ -30,6 +30,9 @@ from ves_twin.machines.mjcf.machine import Rig
 HALF = 0.5
 """Share of a signal that a model must explain open loop for commands to be fed in: an arm that
 drifts off its path tells nothing."""
+
+STRETCH = 2.0
+"""Usual length of a stretch that is held out [s]."""
 
 LONGEST = 10.0
 """Stretch of a log that is predicted to say how near the model is [s]."""
@@ -57,6 +60,7 @@ class Draft:
         look: what a person should look at, a sentence each.
         mode: what is fed in, and why.
         explained: column or signal -> share of its power that the model as it is explains.
+        stretch: length of stretches to hold out [s], long enough for a diagnosis.
     """
 
     text: str
@@ -66,6 +70,7 @@ class Draft:
     look: tuple[str, ...]
     mode: str
     explained: dict[str, float]
+    stretch: float
 
 
 def draft(model: Path, logs: Sequence[Path], out: Path, rate: float | None = None) -> Draft:
@@ -108,7 +113,8 @@ def draft(model: Path, logs: Sequence[Path], out: Path, rate: float | None = Non
     left |= {m.column: "is a speed" for m in check.found if not used(m, mode)}
     look = (*given.notes, *log.notes, *check.findings)
     words = f"{mode.mode}: {mode.why}"
-    return Draft(text, given.text, _guesses(check, mode), left, look, words, explained)
+    stretch = max(STRETCH, float(np.ceil(ENOUGH / mode.rate)))
+    return Draft(text, given.text, _guesses(check, mode), left, look, words, explained, stretch)
 
 
 def _rig(text: str, given: GivenModel, out: Path) -> Rig:

@@ -1,0 +1,103 @@
+"""Laws of what proved causes leave: found against coloured model error, and not where it is all."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+import numpy as np
+import pytest
+from arm import arm, motion
+from scipy.signal import lfilter
+
+from ves_twin.core.recording.recording import Recording, RecordingInfo
+from ves_twin.diagnosis.forward import Excitation
+from ves_twin.diagnosis.settings import Settings
+from ves_twin.diagnosis.verdict import Kind
+from ves_twin.machines.diagnose import Diagnosis, diagnose
+from ves_twin.machines.mjcf.forward import MjcfForward
+from ves_twin.machines.mjcf.machine import Rig
+from ves_twin.machines.mjcf.mjcf_machine import MjcfMachine
+
+HIDDEN = {"viscous_friction@a:damping": 0.8, "coulomb_friction@b:level": 0.5}
+ERROR, MEMORY = 0.03, 0.9
+"""Model error: innovations [N m], and their share that is kept from row to row."""
+
+
+def root_of_speed(speed: np.ndarray) -> np.ndarray:
+    """What no library and no dictionary has."""
+    return -0.8 * np.sign(speed) * np.sqrt(np.abs(speed))
+
+
+def recorded(rig: Rig, seed: int, lawful: bool) -> Recording:
+    forward = MjcfForward.of(rig)
+    time, angles = motion(20.0, seed)
+    fed = Excitation("", time, {"qa": angles[:, :1], "qb": angles[:, 1:]})
+    rows = forward.simulate(fed, HIDDEN)
+    path = forward.visited(fed, {})
+    if lawful:
+        rows = rows - root_of_speed(path["speed@a"] + path["speed@b"])[:, None]
+    noise = np.random.default_rng(seed).standard_normal(rows.shape)
+    rows = rows + lfilter([1.0], [1.0, -MEMORY], ERROR * noise, axis=0)
+    signals = {**fed.drive, "ta": rows[:, :1], "tb": rows[:, 1:]}
+    return Recording(time, signals, RecordingInfo("measured", scenario=f"motion {seed}"))
+
+
+@pytest.fixture(scope="module")
+def diagnosed(tmp_path_factory: pytest.TempPathFactory) -> dict[bool, Diagnosis]:
+    folder = tmp_path_factory.mktemp("arm")
+    rig = arm(folder, {"viscous_friction": "a b", "coulomb_friction": "a b"})
+    settings = Settings(nulls=20, laws=True, cache=folder / "banks")
+    return {
+        lawful: diagnose(
+            [recorded(rig, 1, lawful)],
+            rig,
+            held_out=[recorded(rig, 2, lawful)],
+            settings=settings,
+        )
+        for lawful in (True, False)
+    }
+
+
+@pytest.mark.slow
+def test_what_causes_leave_is_a_law_of_two_joints_together(
+    diagnosed: dict[bool, Diagnosis],
+) -> None:
+    verdict = diagnosed[True].verdict
+    assert verdict.verdict is Kind.PARTIAL
+    law = verdict.law
+    assert law is not None
+    assert law.claimed
+    assert law.part
+    assert (law.place, law.of) == ("a + b", ("speed@a + b",))
+    assert law.gain is not None
+    assert law.gain.low is not None
+    assert law.gain.low > 0.9
+    speed = np.linspace(*law.seen[0], 200)
+    found = np.interp(speed, law.knots[0], law.values)
+    assert np.std(found - root_of_speed(speed)) < 0.1 * np.std(root_of_speed(speed))
+    assert "a law takes a part: an effort at a and b together" in verdict.words
+    assert "the sum of their speeds" in verdict.words
+
+
+@pytest.mark.slow
+def test_the_extended_machine_has_the_law_and_the_causes_as_fitted_beside_it(
+    diagnosed: dict[bool, Diagnosis], tmp_path: Path
+) -> None:
+    new = diagnosed[True].extended
+    assert isinstance(new, MjcfMachine)
+    new.save(tmp_path / "plant.toml")
+    rig = Rig.load(str(tmp_path / "plant.toml"))
+    assert [(law.place, law.of) for law in rig.laws] == [("a + b", ("speed@a + b",))]
+    damping = {j: float(rig.model.dof_damping[rig.model.joint(j).dofadr[0]]) for j in "ab"}
+    assert damping["a"] == pytest.approx(0.8, abs=0.05)
+    assert damping["b"] == pytest.approx(0.0, abs=0.05)
+
+
+@pytest.mark.slow
+def test_model_error_that_follows_no_motion_is_no_law(diagnosed: dict[bool, Diagnosis]) -> None:
+    verdict = diagnosed[False].verdict
+    assert verdict.verdict is Kind.PARTIAL
+    assert {cause.effect for cause in verdict.causes} == {"viscous_friction", "coulomb_friction"}
+    assert verdict.law is None
+    assert not re.search(r"\blaw\b", verdict.words)
