@@ -10,6 +10,7 @@ from ves_twin.diagnosis import preprocess
 from ves_twin.diagnosis.diagnose import diagnose
 from ves_twin.diagnosis.forward import Excitation
 from ves_twin.diagnosis.grid import AnalysisGrid
+from ves_twin.diagnosis.likeness import check_likeness
 from ves_twin.diagnosis.runs import Runs
 from ves_twin.diagnosis.settings import Settings
 from ves_twin.diagnosis.signature_library import build_bank
@@ -238,3 +239,12 @@ class Ended(Toy):
     def simulate(self, programme_, values, refined=False):
         whole = programme()
         return super().simulate(whole, values, refined)[: len(programme_.time)]
+
+
+def test_a_small_column_that_moves_against_a_wrong_model_is_no_turned_one():
+    data = record(np.random.default_rng(1))
+    seen = preprocess.preprocess(Toy(), [with_out(data, data["out"] * [-0.05, 1.0])])
+    check_likeness(seen, seen.runs.one(seen.runs.origin))
+    turned = preprocess.preprocess(Toy(), [with_out(data, data["out"] * [-0.5, 1.0])])
+    with pytest.raises(InvalidInputError, match="the other sign"):
+        check_likeness(turned, turned.runs.one(turned.runs.origin))

@@ -27,6 +27,10 @@ NEAR = 0.1
 CLEAR = 0.9
 """Correlation with the prediction that says whose column it is."""
 
+TURNED = 5.0
+"""Times that the spread of a turned column may differ from its prediction's: what a wrong model
+leaves of a torque may move against it by chance, at a tenth of its size."""
+
 WORSE = 10.0
 """How much more of a column its own prediction leaves than another's, if the two are swapped."""
 
@@ -66,7 +70,7 @@ def _oddities(seen: Dataset, nominal: SingleArray, rows: slice) -> Iterator[tupl
         if swapped and left[i, i] > WORSE * left[i, other]:
             text = f"a column that moves as {channels[other].name} should"
             yield own.name, text, "its own; columns look swapped"
-        elif match[i, i] < -CLEAR:
+        elif match[i, i] < -CLEAR and abs(np.log(spread[i] / should[i])) < np.log(TURNED):
             yield own.name, "a column that moves against the prediction", "the other sign"
         elif match[i, i] > CLEAR:
             ratio = float(spread[i] / should[i])

@@ -9,6 +9,7 @@ import pytest
 
 from ves_twin.diagnosis.build_up.build_up import _Builder, _likeliest
 from ves_twin.diagnosis.build_up.proof import prove
+from ves_twin.diagnosis.build_up.select import Selector
 from ves_twin.diagnosis.evidence import Evidence
 from ves_twin.diagnosis.forward import Excitation
 from ves_twin.diagnosis.preprocess import Dataset
@@ -104,3 +105,26 @@ def test_a_fit_begins_where_least_is_left(forward):
     true = np.array([HIDDEN.get(axis.parameter.name, 0.0) for axis in runs.coordinates])
     starts = (2.0 * true, true, runs.origin)
     assert _likeliest(evidence, starts) is true
+
+
+def test_a_round_that_leaves_more_than_the_one_before_is_not_kept(forward, monkeypatch):
+    fitted, held = seen(forward, 1), seen(forward, 2)
+    bank = SimpleNamespace(hypotheses=forward.hypotheses)
+    desk = SimpleNamespace(
+        first=SimpleNamespace(screen=SimpleNamespace(bank=bank)), progress=silent
+    )
+    builder, origin = _Builder(desk, fitted, held), fitted.runs.origin
+    rounds: list[int] = []
+
+    def run(selector: Selector, begin=()) -> list[int]:
+        rounds.append(len(begin))
+        labels = [trial.cause.label for trial in selector.regression.trials]
+        if len(rounds) > 1:
+            return [labels.index("actuator_asymmetry@valve")]
+        return [labels.index(f"actuator_{kind}@valve") for kind in ("gain", "deadband")]
+
+    monkeypatch.setattr(Selector, "run", run)
+    halves, chosen, _ = builder.chosen(builder.halves(origin, ()), origin)
+    names = {halves.regression.trials[n].cause.effect for n in chosen}
+    assert names == {"actuator_gain", "actuator_deadband"}
+    assert rounds == [0, 2]

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -60,8 +61,12 @@ class Selector:
 
     def price(self, samples: float, width: int) -> float:
         """Chi^2 that trials must take to enter."""
-        causes = len({trial.cause.label for trial in self.regression.trials})
-        return float(width * (np.log(samples) + 2.0 * np.log(max(causes, 1))))
+        return float(width * (np.log(samples) + 2.0 * np.log(max(self._causes, 1))))
+
+    @cached_property
+    def _causes(self) -> int:
+        """How many causes may be chosen."""
+        return len({trial.cause.label for trial in self.regression.trials})
 
     def _rest(self, chosen: Sequence[int]) -> list[int]:
         """Trials of causes that are not chosen yet."""
