@@ -27,6 +27,7 @@ from dataclasses import asdict, dataclass
 from multiprocessing.connection import Connection
 from pathlib import Path
 
+import ves_twin as vt
 from ves_twin.core.errors import VesTwinError, VesTwinWarning
 
 sys.path.insert(0, str(Path(__file__).resolve().parent))
@@ -77,6 +78,8 @@ def main() -> int:
     print(f"seed {first}", flush=True)
     from kinds import KINDS
 
+    # compiled before the clock of an input runs
+    vt.simulate(vt.Scenario.load("position_sine", {"run.settle": 0.1, "run.duration": 0.1}))
     chosen = [k for k in KINDS if options.kind in (None, k.name)]
     whole = sum(kind.share for kind in chosen)
     found: list[Outcome] = []

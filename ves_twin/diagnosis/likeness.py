@@ -29,7 +29,8 @@ CLEAR = 0.9
 
 TURNED = 5.0
 """Times that the spread of a turned column may differ from its prediction's: what a wrong model
-leaves of a torque may move against it by chance, at a tenth of its size."""
+leaves of a torque may move against it by chance, at a tenth of its size (chosen on the double
+pendulum, C0 by the model of A0)."""
 
 WORSE = 10.0
 """How much more of a column its own prediction leaves than another's, if the two are swapped."""

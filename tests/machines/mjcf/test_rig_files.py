@@ -2,15 +2,17 @@
 
 from __future__ import annotations
 
+import tomllib
 from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
+import tomli_w
 from two_link import programme, write_files
 
 from ves_twin.cli.main import main
-from ves_twin.core.errors import VesTwinError
+from ves_twin.core.errors import InvalidInputError, VesTwinError
 from ves_twin.core.recording.recording import POSES
 from ves_twin.core.resources import resource_folder
 from ves_twin.diagnosis.verdict import Basis, Cause, Estimate, Kind, Statistics, Verdict
@@ -78,6 +80,30 @@ def test_a_wrong_file_is_answered_with_one_line(tmp_path, capsys, old, new, word
     error = capsys.readouterr().err.strip()
     assert words in error
     assert "\n" not in error
+
+
+@pytest.mark.parametrize(
+    ("keys", "value"),
+    [
+        (("drive",), 0.5),
+        (("compare",), 0.5),
+        (("drive", "joints"), 0.5),
+        (("drive", "actuators"), ["motor"]),
+        (("signals", "cart.position", "joint"), ["rail"]),
+    ],
+)
+def test_a_part_of_another_kind_is_refused_by_name(tmp_path, keys, value):
+    path = write_files(tmp_path)
+    content = tomllib.loads(path.read_text())
+    if keys[0] == "signals":
+        del content["compare"][keys[1]]
+    part = content
+    for key in keys[:-1]:
+        part = part.setdefault(key, {})
+    part[keys[-1]] = value
+    path.write_bytes(tomli_w.dumps(content).encode())
+    with pytest.raises(InvalidInputError, match=keys[-1]):
+        Rig.load(path)
 
 
 @pytest.mark.parametrize(

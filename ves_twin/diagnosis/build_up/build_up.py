@@ -39,7 +39,8 @@ damper), with 10 two joints of TX40 are lost. 0.01, 1 and 10 were tried on TX40 
 
 MOVED = 0.05
 """Share of what is left by which a full fit may differ from the linear one, TX40 moves by less
-after two rounds; and by which a round may leave more than the one before."""
+after two rounds; and by which a round may leave more than the one before (the seven-axis arm: a
+third round lost all frictions)."""
 
 
 @dataclass(frozen=True)
@@ -128,7 +129,8 @@ class _Builder:
     ) -> tuple[Halves, Proof, FloatArray]:
         """What is proved about a few causes fitted in full, where it holds them; else the few.
 
-        A dead band hides what else acts on a command until both are where they belong.
+        A dead band hides what else acts on a command until both are where they belong (seen on the
+        excavator).
         """
         if self.fitted.runs.budget.skips("further causes beside the best pair"):
             return halves, few, point
@@ -205,7 +207,10 @@ def build_up(desk: FitContext, start: Explanation, fitted: Dataset, held: Datase
 
 
 def _likeliest(evidence: Evidence, starts: Sequence[FloatArray]) -> FloatArray:
-    """The start that leaves least: columns of finite sizes may promise what none of them keeps."""
+    """The start that leaves least: columns of finite sizes may promise what none of them keeps.
+
+    Seen on the excavator.
+    """
 
     def left(shift: FloatArray) -> float:
         rows = evidence.whitening.apply(evidence.measured - evidence.runs.one(shift))

@@ -348,8 +348,11 @@ class RigDescription(Part):
         """
         if not isinstance(content, dict) or not isinstance(content.get("signals"), dict):
             return content
-        compare, drive = dict(content.get("compare", {})), dict(content.get("drive", {}))
-        joints, actuators = dict(drive.get("joints", {})), dict(drive.get("actuators", {}))
+        compare, drive = content.get("compare", {}), content.get("drive", {})
+        parts = [drive.get(key, {}) for key in ("joints", "actuators")] if _table(drive) else []
+        if not (parts and all(map(_table, (compare, *parts)))):
+            return content  # what is no table is refused by its field
+        compare, drive, (joints, actuators) = dict(compare), dict(drive), map(dict, parts)
         for name, signal in content["signals"].items():
             if not isinstance(signal, dict):
                 continue
@@ -360,13 +363,17 @@ class RigDescription(Part):
             if name in compare:
                 raise ValueError(f"compare.{name}: signals.{name} says it already")
             compare[name] = place
-            if place.get("of", "position") == "position" and "joint" in place:
+            if place.get("of", "position") == "position" and isinstance(place.get("joint"), str):
                 joints.setdefault(place["joint"], name)
-            if "actuator" in place:
+            if isinstance(place.get("actuator"), str):
                 actuators.setdefault(place["actuator"], name)
         given = {"joints": joints, "actuators": actuators}
         drive |= {key: value for key, value in given.items() if value}
         return {**content, "compare": compare, "drive": drive}
+
+
+def _table(value: object) -> bool:
+    return isinstance(value, dict)
 
 
 def _number(value: object) -> bool:
