@@ -214,7 +214,8 @@ def _text(found: Diagnosis, folder: Path) -> str:
     for name, error in verdict.residuals.items():
         lines.append(f"  {name:<18}{error.before_si:10.3g}{error.after_si:10.3g}   {error.unit}")
     if verdict.gain is not None and verdict.gain.errors:
-        lines += ["", "  held out            before     after   (nothing tuned there)"]
+        lines += ["", "  held out            before     after   (nothing tuned there; the gain"]
+        lines += [f"{'':41}allows for what is new in each recording)"]
         for name, (before, after) in verdict.gain.errors.items():
             unit = verdict.residuals[name].unit
             lines.append(f"  {name:<18}{before:10.3g}{after:10.3g}   {unit}")

@@ -92,10 +92,10 @@ def basis_sentences(verdict: Verdict) -> tuple[str, ...]:
         "measured": "Noise: measured at a standstill.",
         "declared": "Noise: as declared; no standstill recording was given.",
     }
-    unit = "declared tolerances off"
+    unit = "tolerances"
     if basis.baseline == "measured":
-        unit = "times as far off as a machine in order may change since its baseline"
-    beyond = f" A fault is what is more than {limit:.1f} {unit}." if limit else ""
+        unit = "times what a machine in order may change since its baseline"
+    beyond = f" A deviation counts as a fault from {limit:.1f} {unit} on." if limit else ""
     scale = verdict.statistics.tolerance_scale or 0.0
     tolerances = {
         "measured": "Tolerances: measured on commissioning recordings,"

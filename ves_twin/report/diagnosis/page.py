@@ -53,8 +53,9 @@ SHOWN = 4
 """Channels drawn large: those that the cause changes most beyond what tolerances can."""
 
 CHI2 = (
-    "chi^2 is the squared error in units of noise, summed over the recordings. A rival that is"
-    " worse by about 10 or more is unlikely; one that is worse by 2 is as good."
+    "chi^2 is the squared error in units of noise, summed over the recordings, and that of each"
+    " tolerance in units of its sd. A rival that is worse by about 10 or more is unlikely; one that"
+    " is worse by 2 is as good."
 )
 """How the table of rivals is read; 2 ln 100, at which a rival is dropped, is 9.2."""
 
@@ -257,7 +258,9 @@ def _findable(verdict: Verdict) -> list[Html]:
     rows = [(spoken(label), quantity(f.value, f.unit)) for label, f in known.items()]
     parts = [
         paragraph(
-            "A cause of this size is found seven times out of ten by recordings like these.", "note"
+            "A cause of this size is seen seven times out of ten by recordings like these; to be"
+            " told from every other it may have to be larger.",
+            "note",
         ),
         table(("cause", "smallest size"), rows),
     ]
