@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -97,7 +97,8 @@ def assemble_verdict(
     named = found is not None and kind.names_causes
     causes, alternatives = _causes(findings, found) if named and found else ((), ())
     built = findings.built
-    proved = sized(built, causes) if built and named else ()
+    ends = {p.name: (p.low, p.high) for p in findings.seen.runs.forward.parameters}
+    proved = sized(built, causes, ends) if built and named else ()
     firm = {one.label: one.firm for one in proved}
     causes = tuple(replace(c, firm=firm.get(f"{c.effect}@{c.target}", c.firm)) for c in causes)
     nearest = _causes(findings, found)[0] if found and not named else ()
@@ -159,12 +160,20 @@ def _provisional(verdict: Verdict) -> Verdict:
     )
 
 
-def sized(built: BuildUp, causes: Sequence[Cause]) -> tuple[Proved, ...]:
+def sized(
+    built: BuildUp, causes: Sequence[Cause], ends: Mapping[str, tuple[float, float]]
+) -> tuple[Proved, ...]:
     """What is proved with its sizes.
 
     Firm only where it passes the test by itself, too, no commissioning error explains it either,
     and no interval holds the value that the model has already: a shape that is known so little is
-    not known by name.
+    not known by name. Nor where an interval reaches an end of its range, which then says the size
+    in place of the record.
+
+    Args:
+        built: what is proved.
+        causes: with sizes.
+        ends: of the range of each parameter.
     """
     named = {f"{cause.effect}@{cause.target}": cause for cause in causes}
     found = []
@@ -176,8 +185,14 @@ def sized(built: BuildUp, causes: Sequence[Cause]) -> tuple[Proved, ...]:
         }
         known = all(not s.low <= s.nominal <= s.high for s in sizes.values())
         known = known and one.p <= built.false_discovery_rate  # many that are sure raise its limit
+        known = known and not any(_ended(e, *ends[name]) for name, e in cause.parameters.items())
         found.append(replace(one, parameters=sizes, firm=one.firm and cause.firm and known))
     return tuple(found)
+
+
+def _ended(size: Estimate, low: float, high: float) -> bool:
+    """Whether an interval reaches an end of the range that is not what the model has already."""
+    return (size.low <= low < size.nominal) or (size.high >= high > size.nominal)
 
 
 def _lookalikes(

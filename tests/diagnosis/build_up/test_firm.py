@@ -8,13 +8,24 @@ from ves_twin.diagnosis.assemble_verdict import sized
 from ves_twin.diagnosis.build_up.result import BuildUp, Proved
 from ves_twin.diagnosis.verdict import Cause, Estimate
 
+ENDS = {"level": (0.0, 2.0)}
+
+
+@pytest.mark.parametrize(("high", "firm"), [(1.9, True), (2.0, False)])
+def test_a_size_whose_interval_reaches_the_end_of_its_range_is_not_firm(high, firm):
+    size = Estimate(1.7, 1.5, high, "N", 0.0)
+    cause = Cause("coulomb_friction", "joint", {"level": size}, 1.0, True, None)
+    one = Proved("coulomb_friction", "joint", {}, 1e-3, 20, {"torque": (2.0, 1.0)}, True)
+    (told,) = sized(BuildUp((one,), 1, 0.05, {}, {}), (cause,), ENDS)
+    assert told.firm is firm
+
 
 @pytest.mark.parametrize(("low", "firm"), [(0.2, True), (-0.2, False)])
 def test_a_size_whose_interval_holds_the_models_own_value_is_not_firm(low, firm):
     size = Estimate(1.0, low, 1.8, "N", 0.0)
     cause = Cause("coulomb_friction", "joint", {"level": size}, 1.0, True, None)
     one = Proved("coulomb_friction", "joint", {}, 1e-3, 20, {"torque": (2.0, 1.0)}, True)
-    (told,) = sized(BuildUp((one,), 1, 0.05, {}, {}), (cause,))
+    (told,) = sized(BuildUp((one,), 1, 0.05, {}, {}), (cause,), ENDS)
     assert told.parameters["level"].value == 1.0
     assert told.firm is firm
 
@@ -24,5 +35,5 @@ def test_a_name_that_only_many_sure_ones_beside_it_let_pass_is_not_firm(p, firm)
     size = Estimate(1.0, 0.5, 1.5, "N", 0.0)
     cause = Cause("coulomb_friction", "joint", {"level": size}, 1.0, True, None)
     one = Proved("coulomb_friction", "joint", {}, p, 20, {"torque": (2.0, 1.0)}, True)
-    (told,) = sized(BuildUp((one,), 7, 0.05, {}, {}), (cause,))
+    (told,) = sized(BuildUp((one,), 7, 0.05, {}, {}), (cause,), ENDS)
     assert told.firm is firm
