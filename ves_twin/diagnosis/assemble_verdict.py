@@ -168,7 +168,8 @@ def sized(
     Firm only where it passes the test by itself, too, no commissioning error explains it either,
     and no interval holds the value that the model has already: a shape that is known so little is
     not known by name. Nor where an interval reaches an end of its range, which then says the size
-    in place of the record.
+    in place of the record. What full simulation fits to nothing is left out: its column improved
+    the prediction, its effect does not.
 
     Args:
         built: what is proved.
@@ -179,6 +180,8 @@ def sized(
     found = []
     for one in built.proved:
         cause = named[one.label]
+        if all(e.value == e.nominal for e in cause.parameters.values()):
+            continue
         sizes = {
             name: Size(e.value, e.low, e.high, e.unit, e.nominal)
             for name, e in cause.shortened.parameters.items()

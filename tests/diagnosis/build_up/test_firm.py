@@ -37,3 +37,10 @@ def test_a_name_that_only_many_sure_ones_beside_it_let_pass_is_not_firm(p, firm)
     one = Proved("coulomb_friction", "joint", {}, p, 20, {"torque": (2.0, 1.0)}, True)
     (told,) = sized(BuildUp((one,), 7, 0.05, {}, {}), (cause,), ENDS)
     assert told.firm is firm
+
+
+def test_what_full_simulation_fits_to_nothing_is_not_proved():
+    size = Estimate(0.0, 0.0, 3e-4, "m", 0.0)
+    cause = Cause("backlash", "joint", {"level": size}, 1.0, True, None)
+    one = Proved("backlash", "joint", {}, 1e-3, 20, {"torque": (2.0, 1.9)}, True)
+    assert not sized(BuildUp((one,), 1, 0.05, {}, {}), (cause,), ENDS)
