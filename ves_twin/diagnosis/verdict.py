@@ -319,8 +319,8 @@ class Verdict:
         said += [f"Acts like: {'; '.join(like)}."] if like else []
         if self.verdict is Kind.PARTIAL:
             said.append("Something more stays unexplained.")
-        if self.law is not None and self.law.part:
-            said.append(self.law.of_rest)
+        if self.law is not None and self.law.part and self.law.claimed:
+            said.append(f"Of what they leave, a law takes a part: {self.law.words}.")
         return " ".join(said)
 
     @property

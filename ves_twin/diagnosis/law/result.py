@@ -97,13 +97,6 @@ class LawFinding:
         return f"{said}: {self.form}" if self.form else said
 
     @property
-    def of_rest(self) -> str:
-        """The sentence of a law of what proved causes leave."""
-        if self.claimed:
-            return f"Of what they leave, a law takes a part: {self.words}."
-        return f"What they leave comes nearest to {self.words}."
-
-    @property
     def refusal(self) -> str:
         """Why a machine with it is only a candidate; empty where it passed on held-out data."""
         return "" if self.gain is not None else "there were no held-out recordings to prove it on"

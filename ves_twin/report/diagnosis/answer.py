@@ -155,8 +155,8 @@ def _proved(verdict: Verdict) -> str:
         said += f" {begin} {', '.join(names[:TOLD])}{more}." if names else ""
     if verdict.verdict is Kind.PARTIAL:
         said += " Something more stays unexplained."
-    if verdict.law is not None and verdict.law.part:
-        said += f" {verdict.law.of_rest}"
+    if verdict.law is not None and verdict.law.part and verdict.law.claimed:
+        said += f" Of what they leave, a law takes a part: {verdict.law.words}."
     return said
 
 
