@@ -1,6 +1,7 @@
 """MAT and NumPy files: arrays, structs, and objects that are named and never opened."""
 
 import pickle
+import warnings
 
 import numpy as np
 import pytest
@@ -102,6 +103,16 @@ class Bomb:
 
     def __reduce__(self):
         return (open, (str(self.path), "w"))
+
+
+def test_a_signalling_nan_of_single_precision_is_a_hole_without_a_warning(tmp_path):
+    path = tmp_path / "lab.npz"
+    x = np.array([0x3F800000, 0x7FA00000, 0x40000000], np.uint32).view(np.float32)
+    np.savez(path, t=np.arange(3.0), x=x)
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        (block,) = open_log(path).blocks("", ["x"])
+    assert np.array_equal(block["x"], [1.0, np.nan, 2.0], equal_nan=True)
 
 
 @pytest.mark.parametrize("name", ["bomb.pkl", "bomb.csv", "bomb.npy", "bomb.npz", "bomb.mat"])

@@ -62,7 +62,11 @@ class ArrayLog(Log):
         rows, step = self.table(table).rows or 0, max(CELLS // max(len(columns), 1), 2)
         for start in range(0, rows, step):
             part = slice(start, start + step)
-            yield {n: np.asarray(self._data[table][n][part], np.float64) for n in columns}
+            with np.errstate(
+                invalid="ignore"
+            ):  # a signalling NaN of single precision is a hole, too
+                found = {n: np.asarray(self._data[table][n][part], np.float64) for n in columns}
+            yield found
 
 
 def _unit(column: str, known: Mapping[str, str]) -> str:
