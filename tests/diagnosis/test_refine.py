@@ -8,10 +8,13 @@ import numpy as np
 import pytest
 from toy import NUISANCES, SD, Toy, programme, shape
 
+from ves_twin.core.budget import Budget
+from ves_twin.core.workers import Workers
 from ves_twin.diagnosis.evidence import Evidence
 from ves_twin.diagnosis.linearise import linearise
 from ves_twin.diagnosis.metric import Metric
 from ves_twin.diagnosis.probability import probabilities
+from ves_twin.diagnosis.probe import probe
 from ves_twin.diagnosis.refine import refine
 from ves_twin.diagnosis.runs import Runs
 from ves_twin.diagnosis.whitening import ORDER, whitening_declared
@@ -55,6 +58,28 @@ def closed_form(s, residual, covariance):
     sd = 1 / np.sqrt(s @ weighted)
     size = sd**2 * (weighted @ residual)
     return size, sd, residual @ np.linalg.solve(covariance, residual) - (size / sd) ** 2
+
+
+@pytest.mark.parametrize(
+    ("probed", "left", "expected"), [(False, True, 0), (True, True, 1), (True, False, 0)]
+)
+def test_a_fit_is_probed_where_that_is_asked_for_and_there_is_time(
+    case, monkeypatch, probed, left, expected
+):
+    _, runs, evidence, local, *_ = case
+    probes = []
+
+    def counted(*given):
+        probes.append(given)
+        return probe(*given)
+
+    monkeypatch.setattr("ves_twin.diagnosis.refine.probe", counted)
+    if not left:
+        spent = iter([0.0])
+        budget = Budget(1.0, lambda: next(spent, 3600.0))
+        evidence = replace(evidence, runs=replace(runs, workers=Workers(1, budget)))
+    refine(evidence, (), runs.origin, local, probed=probed)
+    assert len(probes) == expected
 
 
 @pytest.mark.parametrize("number", range(6))
