@@ -3,6 +3,9 @@
 Needs the extra `train`. The network adds to the action of the linear controller, whose estimator is
 told the sum; so it begins where LQG ends.
 
+    python benchmarks/recipes/sac_on_lqg.py
+    ves-twin evaluate VibrationDamping-v0 --policy benchmarks/recipes/sac_on_lqg.py:Learned
+
 Source: Johannink et al., Residual reinforcement learning for robot control, ICRA 2019.
 """
 
@@ -35,6 +38,9 @@ CHECKED = range(1000, 1008)
 """Seeds of the evaluations."""
 
 WIDTH = ArmFeatures.WIDTH + 6
+
+NETWORK = "runs/sac_on_lqg.zip"
+"""Where a training ends, and where an evaluation finds it."""
 
 
 class Corrected(Lqg):
@@ -90,7 +96,7 @@ class Learned(Policy):
 
     @classmethod
     def build(cls, briefing):
-        raise NotImplementedError  # made with its model
+        return cls(briefing, SAC.load(NETWORK, device="cpu"))
 
     def begin(self, observation):
         self._policy.begin(observation)
@@ -139,7 +145,7 @@ def main() -> None:
     parser.add_argument("--steps", type=int, default=72_000)
     parser.add_argument("--every", type=int, default=6_000, help="steps between evaluations")
     parser.add_argument("--seed", type=int, default=0)
-    parser.add_argument("--out", default="runs/sac_on_lqg.zip")
+    parser.add_argument("--out", default=NETWORK)
     given = parser.parse_args()
     torch.set_num_threads(1)
     model = SAC(

@@ -77,13 +77,16 @@ def seen(forward: MjcfForward, seed: int) -> Dataset:
     return Dataset(runs, rows + 2e-4 * rng.standard_normal(rows.shape).astype(np.float32), ())
 
 
+def builder_of(forward: MjcfForward) -> _Builder:
+    """One that offers the whole library, on two drawn recordings."""
+    screen = SimpleNamespace(bank=SimpleNamespace(hypotheses=forward.hypotheses))
+    desk = SimpleNamespace(first=SimpleNamespace(screen=screen), progress=silent)
+    return _Builder(desk, seen(forward, 1), seen(forward, 2))
+
+
 def test_what_a_dead_band_hides_is_found_beside_it(forward):
-    fitted, held = seen(forward, 1), seen(forward, 2)
-    bank = SimpleNamespace(hypotheses=forward.hypotheses)
-    desk = SimpleNamespace(
-        first=SimpleNamespace(screen=SimpleNamespace(bank=bank)), progress=silent
-    )
-    builder, origin = _Builder(desk, fitted, held), fitted.runs.origin
+    builder = builder_of(forward)
+    origin = builder.fitted.runs.origin
     halves = builder.halves(origin, ())
     labels = [trial.cause.label for trial in halves.regression.trials]
     pair = [labels.index(f"actuator_{kind}@valve") for kind in ("gain", "deadband")]
@@ -92,7 +95,7 @@ def test_what_a_dead_band_hides_is_found_beside_it(forward):
     there, more, point = builder.onward(halves, few, origin)
     names = {there.regression.trials[n].cause.effect for n in more.proved}
     assert names == {"actuator_gain", "actuator_deadband", "actuator_delay"}
-    runs = fitted.runs
+    runs = builder.fitted.runs
     found = {axis.parameter.name: point[i] for i, axis in enumerate(runs.coordinates)}
     for name, size in HIDDEN.items():
         assert found[name] == pytest.approx(size, rel=0.1)
@@ -108,12 +111,8 @@ def test_a_fit_begins_where_least_is_left(forward):
 
 
 def test_a_round_that_leaves_more_than_the_one_before_is_not_kept(forward, monkeypatch):
-    fitted, held = seen(forward, 1), seen(forward, 2)
-    bank = SimpleNamespace(hypotheses=forward.hypotheses)
-    desk = SimpleNamespace(
-        first=SimpleNamespace(screen=SimpleNamespace(bank=bank)), progress=silent
-    )
-    builder, origin = _Builder(desk, fitted, held), fitted.runs.origin
+    builder = builder_of(forward)
+    origin = builder.fitted.runs.origin
     rounds: list[int] = []
 
     def run(selector: Selector, begin=()) -> list[int]:
