@@ -7,13 +7,11 @@ from typing import final
 import numpy as np
 
 from ves_twin.control.controller import ControlTask, PlatformController
+from ves_twin.control.platform_law import EMULATES, LAW, emulate
 from ves_twin.control.readings import Readings
-from ves_twin.core.compiled import compiled
 from ves_twin.core.errors import InvalidInputError
-from ves_twin.core.types import FloatArray
+from ves_twin.core.types import Block, FloatArray
 from ves_twin.mechanics.emulated import EmulatedSystem
-from ves_twin.mechanics.kinematics.rotations import matrix_from_angles
-from ves_twin.mechanics.kinematics.wrenches import rotate_wrench, sensor_to_top
 
 
 @final
@@ -36,12 +34,11 @@ class AdmittanceController(PlatformController):
         home: FloatArray,
         subtract_gravity: bool,
     ) -> None:
-        self._phi, self._gamma = phi, gamma
-        self._position = sensor_position
-        self._home = home
-        self._share = 1.0 if subtract_gravity else 0.0
-        self._state = np.zeros(12)
-        self._state[:6] = start - home
+        law = self._law = np.zeros(1, LAW)
+        law["kind"], law["phi"], law["gamma"] = EMULATES, phi, gamma
+        law["position"], law["home"] = sensor_position, home
+        law["share"] = 1.0 if subtract_gravity else 0.0
+        law["state"][0, :6] = start - home
 
     @classmethod
     def build(cls, task: ControlTask) -> AdmittanceController:
@@ -59,48 +56,24 @@ class AdmittanceController(PlatformController):
             emulated: the system.
             period: time between two cycles [s].
         """
-        self._phi, self._gamma = emulated.discretise(period)
+        self._law["phi"], self._law["gamma"] = emulated.discretise(period)
+
+    @property
+    def law(self) -> Block:
+        """Numbers and state, live."""
+        return self._law
 
     def update(self, time: float, readings: Readings) -> FloatArray:
         """Advance the emulated base by one cycle under the present wrench."""
-        return _step(
-            self._phi,
-            self._gamma,
-            self._state,
-            readings.wrench_in_sensor,
-            readings.gravity_in_sensor,
-            self._share,
-            self._position,
-            self._home,
-        )
+        state = np.empty(12)
+        pose = emulate(self._law, readings.wrench_in_sensor, readings.gravity_in_sensor, state)
+        self._law["state"] = state
+        return pose
 
     def snapshot(self) -> object:
         """Position and velocity of the emulated base (12,)."""
-        return self._state.copy()
+        return self._law["state"][0].copy()
 
     def restore(self, snapshot: object) -> None:
         """Set position and velocity of the emulated base."""
-        self._state[:] = np.asarray(snapshot)
-
-
-@compiled
-def _step(
-    phi: FloatArray,
-    gamma: FloatArray,
-    state: FloatArray,
-    reading: FloatArray,
-    gravity: FloatArray,
-    share: float,
-    position: FloatArray,
-    home: FloatArray,
-) -> FloatArray:
-    wrench = sensor_to_top(reading - share * gravity, position)
-    wrench = rotate_wrench(matrix_from_angles(home[3:] + state[3:6]), wrench)
-    following = np.zeros(12)
-    for i in range(12):
-        for j in range(12):
-            following[i] += phi[i, j] * state[j]
-        for j in range(6):
-            following[i] += gamma[i, j] * wrench[j]
-    state[:] = following
-    return home + following[:6]
+        self._law["state"] = np.asarray(snapshot)

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from ves_twin.control.belief import Belief
 from ves_twin.control.readings import Readings
 from ves_twin.core.read_only import ReadOnly
-from ves_twin.core.types import FloatArray
+from ves_twin.core.types import Block, FloatArray
 from ves_twin.mechanics.emulated import EmulatedSystem
 from ves_twin.mechanics.joint_motion import PlatformMotion
 
@@ -38,6 +38,9 @@ class ControlTask(ReadOnly):
 
 class PlatformController(abc.ABC):
     """One decision a cycle: readings in, platform pose out."""
+
+    law: Block | None = None
+    """LAW of `platform_law`, where the compiled cycle does the same; see `law_of`."""
 
     @classmethod
     @abc.abstractmethod

@@ -9,8 +9,9 @@ from typing import Protocol, final
 import numpy as np
 
 from ves_twin.control.belief import Belief
+from ves_twin.control.gravity_law import KNOWN, model_law, model_wrench, plain_law
 from ves_twin.control.readings import Readings
-from ves_twin.core.types import FloatArray
+from ves_twin.core.types import Block, FloatArray
 from ves_twin.mechanics.gravity.learned import LearnedGravity
 from ves_twin.mechanics.gravity.quick_gravity import QuickGravity
 
@@ -40,6 +41,9 @@ class GravityTask:
 
 class GravityCompensation(abc.ABC):
     """One estimate a cycle."""
+
+    law: Block | None = None
+    """LAW of `gravity_law`, where the compiled cycle does the same; see `law_of`."""
 
     subtracts: bool = True
     """Whether the estimate is taken off the reading; False leaves the reading as it is."""
@@ -71,6 +75,7 @@ class NoCompensation(_Stateless):
     """Nothing is subtracted: what weight the zeroing has not tared pushes the emulated base."""
 
     subtracts = False
+    law = plain_law(KNOWN)
 
     def wrench(self, time: float, readings: Readings) -> FloatArray:
         """Zero."""
@@ -83,6 +88,11 @@ class TruthCompensation(_Stateless):
 
     def __init__(self, port: TruthPort) -> None:
         self._port = port
+
+    @property
+    def law(self) -> Block | None:
+        """The port's, if it has one: the compiled cycle then looks at the plant itself."""
+        return getattr(self._port, "law", None)
 
     def wrench(self, time: float, readings: Readings) -> FloatArray:
         """The true gravity wrench, as the sensor's ideal axes would read it."""
@@ -99,19 +109,24 @@ class ModelCompensation(GravityCompensation):
     """
 
     def __init__(self, belief: Belief) -> None:
-        self._geometry, self._model = belief.geometry, QuickGravity.of(belief.gravity)
-        self._position = np.array(belief.sensor_position)
-        self._pose = np.zeros(6)
+        self._geometry = belief.geometry
+        self._law = model_law(QuickGravity.of(belief.gravity), belief.sensor_position)
+
+    @property
+    def law(self) -> Block:
+        """Numbers and the pose from which the next solution starts, live."""
+        return self._law
 
     def wrench(self, time: float, readings: Readings) -> FloatArray:
         """Predicted gravity wrench at the measured joints and platform pose."""
-        self._pose = self._geometry.pose(readings.leg_length, self._pose)
-        return self._model.wrench_in_sensor(readings.arm_q, self._pose[3:], self._position)
+        pose = self._geometry.pose(readings.leg_length, self._law["pose"][0])
+        self._law["pose"] = pose
+        return model_wrench(self._law, readings.arm_q, pose[3:])
 
     def snapshot(self) -> object:
         """The pose from which the next solution starts (6,)."""
-        return self._pose.copy()
+        return self._law["pose"][0].copy()
 
     def restore(self, snapshot: object) -> None:
         """Set the pose from which the next solution starts."""
-        self._pose = np.array(snapshot, dtype=float)
+        self._law["pose"] = snapshot

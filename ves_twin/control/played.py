@@ -3,14 +3,15 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import final
+from typing import ClassVar, final
 
 import numpy as np
 
 from ves_twin.control.gravity import GravityCompensation, GravityTask
+from ves_twin.control.gravity_law import KNOWN, plain_law
 from ves_twin.control.readings import Readings
 from ves_twin.core.errors import InvalidInputError
-from ves_twin.core.types import FloatArray
+from ves_twin.core.types import Block, FloatArray
 from ves_twin.mechanics.joint_motion import JointMotion, PlatformMotion
 
 AHEAD = 3
@@ -53,6 +54,7 @@ class PlayedWrench(GravityCompensation):
 
     wrenches: FloatArray
     period: float
+    law: ClassVar[Block] = plain_law(KNOWN)
 
     def wrench(self, time: float, readings: Readings) -> FloatArray:
         """Estimate of the cycle nearest to a time [s]."""

@@ -5,8 +5,10 @@ from __future__ import annotations
 from typing import final
 
 from ves_twin.control.gravity import GravityCompensation
+from ves_twin.control.gravity_law import scaled_law
+from ves_twin.control.law_of import law_of
 from ves_twin.control.readings import Readings
-from ves_twin.core.types import FloatArray
+from ves_twin.core.types import Block, FloatArray
 
 
 @final
@@ -22,6 +24,12 @@ class ScaledCompensation(GravityCompensation):
     def __init__(self, exact: GravityCompensation, share: float, since: float | None) -> None:
         self._exact, self._factor, self._since = exact, 1.0 + share, since
         self.subtracts = exact.subtracts
+        self._law = scaled_law(law_of(exact), self._factor, since)
+
+    @property
+    def law(self) -> Block | None:
+        """The other compensation's, scaled."""
+        return self._law
 
     def wrench(self, time: float, readings: Readings) -> FloatArray:
         """The estimate, and from `since` on the wrong one, sensor axes [N, N m] (6,)."""

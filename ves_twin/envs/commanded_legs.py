@@ -7,8 +7,9 @@ from typing import final
 import numpy as np
 
 from ves_twin.control.controller import ControlTask, PlatformController
+from ves_twin.control.platform_law import known_law
 from ves_twin.control.readings import Readings
-from ves_twin.core.types import FloatArray
+from ves_twin.core.types import Block, FloatArray
 from ves_twin.mechanics.joint_motion import Hold, PlatformMotion
 from ves_twin.mechanics.kinematics.stewart import StewartGeometry
 
@@ -51,6 +52,11 @@ class CommandedLegs(PlatformController):
         self._begin, self._span = begin, span
         reach = SLEW * span
         self._to = self._from + np.minimum(np.maximum(offsets - self._from, -reach), reach)
+
+    @property
+    def law(self) -> Block:
+        """The pose is known ahead, until the next command."""
+        return known_law()
 
     def update(self, time: float, readings: Readings) -> FloatArray:
         """The pose at which the legs have the commanded lengths [m, rad] (6,)."""

@@ -7,8 +7,10 @@ from typing import cast, final
 import numpy as np
 
 from ves_twin.control.gravity import GravityCompensation
+from ves_twin.control.gravity_law import KNOWN, corrected_law
+from ves_twin.control.law_of import law_of
 from ves_twin.control.readings import Readings
-from ves_twin.core.types import FloatArray
+from ves_twin.core.types import Block, FloatArray
 
 
 @final
@@ -26,6 +28,14 @@ class CorrectedGravity(GravityCompensation):
         self._inner = inner
         self.subtracts = inner.subtracts
         self.correction = np.zeros(6)
+        self._law = corrected_law(law_of(inner))
+
+    @property
+    def law(self) -> Block | None:
+        """The other compensation's with the correction of now."""
+        if self._law is not None and self._law["kind"] != KNOWN:
+            self._law["correction"] = self.correction
+        return self._law
 
     def wrench(self, time: float, readings: Readings) -> FloatArray:
         """The corrected estimate, sensor axes [N, N m] (6,)."""

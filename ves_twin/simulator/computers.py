@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections import deque
+from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
@@ -11,14 +12,20 @@ from ves_twin.control.belief import Belief
 from ves_twin.control.controller import PlatformController
 from ves_twin.control.gravity import GravityCompensation
 from ves_twin.control.gravity_feedforward import GravityFeedforward
+from ves_twin.control.law_of import law_of
+from ves_twin.control.platform_law import KNOWN
 from ves_twin.control.readings import Readings
 from ves_twin.control.safety import NOT_A_POSE
 from ves_twin.core.errors import ControllerError, VesTwinError, one_line
 from ves_twin.core.read_only import ReadOnly
 from ves_twin.core.types import Block, FloatArray
 from ves_twin.mechanics.joint_motion import JointMotion
+from ves_twin.simulator.cycles import AHEAD, pass_on
 from ves_twin.simulator.setpoints import send_setpoints
 from ves_twin.simulator.signal_bus import SignalBus
+
+LONGEST_STRETCH = 32
+"""Cycles that run without the interpreter, 0.4 s of the rig: what ctrl-C waits for."""
 
 
 @dataclass(frozen=True)
@@ -63,8 +70,9 @@ class Computers:
         self._period = period
         g = self._geometry = belief.geometry
         self._reach = (g.base, g.top, g.home, g.lengths(np.zeros(6)), belief.leg_travel)
-        self._shared: deque[FloatArray] = deque(maxlen=gravity_age + 1)
+        self._shared, self._passed = np.zeros((gravity_age + 1, 6)), np.zeros(1, np.int64)
         self._state, self._board = state, board.block
+        self._ahead = np.zeros(LONGEST_STRETCH, AHEAD)
         self.points: FloatArray = state["servo"]["points"][0]
         self._held_torque = state["servo"]["feedforward"][0]
         self._estimate = board["gravity.estimate"]
@@ -95,6 +103,33 @@ class Computers:
         self.estimate_gravity(time)
         return self.send(tick, time, self._decide(time - since))
 
+    def compiled(self, ticks: Sequence[int], tick: float) -> tuple[Any, ...] | None:
+        """What `run_cycles` takes of the computers for coming cycles, or None.
+
+        None where the interpreter is asked in each cycle: a controller or compensation of one's
+        own, feed-forward of the arm, what is known ahead and raises.
+
+        Args:
+            ticks: of the interrupts, at most LONGEST_STRETCH.
+            tick: length of one [s].
+        """
+        platform, gravity = law_of(self.controller), law_of(self.gravity)
+        if platform is None or gravity is None or self._feedforward is not None:
+            return None
+        known_pose, known_wrench = platform["kind"] == KNOWN, gravity["kind"] == KNOWN
+        rows = self._ahead
+        try:
+            for k, number in enumerate(ticks):
+                time = number * tick
+                rows["arm"][k] = self._arm.q(time + 2.0 * self._period)
+                if known_pose:
+                    rows["pose"][k] = self._decide(time)
+                if known_wrench:
+                    rows["wrench"][k] = self._gravity_wrench(time)
+        except Exception:  # it raises again in its own cycle, if that comes
+            return None
+        return rows, platform, gravity, self._shared, self._passed, *self._reach
+
     def lengths(self, pose: FloatArray) -> FloatArray:
         """Leg lengths [m] (6,) that the computers take a pose (6,) to have."""
         return self._geometry.lengths(pose)
@@ -105,8 +140,8 @@ class Computers:
         Raises:
             ControllerError: a compensation raised, or its estimate is not six finite numbers.
         """
-        self._shared.append(self._gravity_wrench(time))
-        self._estimate[:] = self._shared[0]
+        self._estimate[:] = pass_on(self._shared, self._passed, self._gravity_wrench(time))
+        self._passed += 1
         self.hold_arm()
 
     def hold_arm(self) -> None:
@@ -132,7 +167,9 @@ class Computers:
 
     def snapshot(self) -> ComputersSnapshot:
         """A copy of everything that the next cycle depends on."""
-        shared = tuple(estimate.copy() for estimate in self._shared)
+        passed, size = int(self._passed[0]), len(self._shared)
+        ages = range(max(passed - size, 0), passed)
+        shared = tuple(self._shared[n % size].copy() for n in ages)
         arm = None if self._feedforward is None else self._feedforward.snapshot()
         return ComputersSnapshot(self.controller.snapshot(), self.gravity.snapshot(), shared, arm)
 
@@ -140,8 +177,9 @@ class Computers:
         """Go back to a snapshot."""
         self.controller.restore(snapshot.controller)
         self.gravity.restore(snapshot.gravity)
-        self._shared.clear()
-        self._shared.extend(estimate.copy() for estimate in snapshot.shared)
+        self._passed[0] = len(snapshot.shared)
+        for kept, estimate in zip(self._shared, snapshot.shared, strict=False):
+            kept[:] = estimate
         if self._feedforward is not None:
             self._feedforward.restore(snapshot.feedforward)
 

@@ -62,12 +62,18 @@ def _drive_arm(
 
 
 @compiled
-def _read_truth(p: Record, s: Record, board: Record, qpos: FloatArray) -> None:
+def read_pose(p: Record, qpos: FloatArray, pose: FloatArray) -> None:
+    """Write the true pose of the platform from home [m, rad] (6,)."""
     at = p.layout.platform_qpos
     angles = angles_from_matrix(matrix_from_quaternion(qpos[at + 3 : at + 7]))
     for i in range(3):
-        board.truth_pose[i] = qpos[at + i] - p.home.position[i]
-        board.truth_pose[3 + i] = angles[i]
+        pose[i] = qpos[at + i] - p.home.position[i]
+        pose[3 + i] = angles[i]
+
+
+@compiled
+def _read_truth(p: Record, s: Record, board: Record, qpos: FloatArray) -> None:
+    read_pose(p, qpos, board.truth_pose)
     for i in range(6):
         board.truth_wrench[i] = s.sensor.true[i]
         board.truth_leg_force[i] = s.rod_force[i]

@@ -24,6 +24,9 @@ BUFFER_SECONDS = 4.0
 FLUSH_SECONDS = 0.5
 """Rows leave the buffer at least this often in wall-clock time: what a kill can cost."""
 
+Notes = tuple[FloatArray, IntArray, IntArray, FloatArray, int, int]
+"""Rows, then ticks, first rows and arm commands of cycles; how many rows and cycles are in them."""
+
 IDEAL, LEG_LAG = "reference.pose", "reference.pose_leg_lag"
 
 _NO_TIME = np.zeros(0)
@@ -139,12 +142,27 @@ class Recorder:
 
     def begin_cycle(self, tick: int, points: FloatArray) -> None:
         """Note tick and arm commands of the cycle that starts now; flush when it is time."""
-        if self._at.cycles == len(self._ticks) or monotonic() - self._flushed > FLUSH_SECONDS:
-            self._hand_over(self._at.rows, self._at.cycles)
+        self.make_room()
         cycle = self._at.cycles
         self._ticks[cycle], self._first_rows[cycle] = tick, self._at.rows
         self._points[cycle] = points
         self._at.cycles += 1
+
+    def make_room(self) -> int:
+        """Flush when it is time; how many cycles there is room for."""
+        if self._at.cycles == len(self._ticks) or monotonic() - self._flushed > FLUSH_SECONDS:
+            self._hand_over(self._at.rows, self._at.cycles)
+        return len(self._ticks) - self._at.cycles
+
+    @property
+    def notes(self) -> Notes:
+        """The buffers for the compiled cycles; what they have noted comes back by `noted`."""
+        at = self._at
+        return self.log, self._ticks, self._first_rows, self._points, at.rows, at.cycles
+
+    def noted(self, rows: int, cycles: int) -> None:
+        """So many rows and cycles are in the buffers now."""
+        self._at.rows, self._at.cycles = rows, cycles
 
     def flush(self, unfinished: bool = False) -> None:
         """Hand the waiting rows to the sink.

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import copy
 from dataclasses import dataclass
+from typing import Any
 
 import mujoco
 import numpy as np
@@ -19,10 +20,13 @@ from ves_twin.plant.plant import Plant
 from ves_twin.scenario.schema import Legs
 from ves_twin.simulator.blocks import STATE, parameter_block
 from ves_twin.simulator.clock import Clock
+from ves_twin.simulator.cycles import run_cycles, take_sample
 from ves_twin.simulator.engine import NO_CALL, address_of, handles
 from ves_twin.simulator.loop import run_ticks
 from ves_twin.simulator.noise import NoiseStreams
+from ves_twin.simulator.recorder import Notes
 from ves_twin.simulator.signal_bus import SignalBus
+from ves_twin.simulator.truth_port import GravityTruth
 
 
 @dataclass(frozen=True)
@@ -81,6 +85,7 @@ class Rig:
             self.data.ctrl,
             self.data.sensordata,
         )
+        self._truth = GravityTruth(self.model, self.data, self.layout).arrays
 
     @property
     def time(self) -> float:
@@ -113,6 +118,44 @@ class Rig:
         )
         self.tick += done
         return code, logged
+
+    def run_cycles(
+        self, count: int, notes: Notes, samples: Block, computers: tuple[Any, ...]
+    ) -> tuple[int, int, int, int]:
+        """Run ticks from an interrupt on, with the computers' cycles compiled; see `run_cycles`.
+
+        Args:
+            count: how many ticks.
+            notes: buffers of the recorder, rows and cycles in them.
+            samples: SAMPLE of the end of each cycle, where there is room.
+            computers: of `Computers.compiled`, for as many cycles.
+
+        Returns:
+            Code of `ves_twin.simulator.codes`; ticks done, fewer where a cycle is for the
+            interpreter; rows and cycles in the buffers.
+        """
+        found = run_cycles(
+            self.tick,
+            count,
+            *self._engine,
+            *self._arrays,
+            self.parameters,
+            self.state,
+            self.board.block,
+            self.board.row,
+            *self.noise.window(self.tick, count),
+            *self._truth,
+            *notes,
+            samples,
+            *computers,
+        )
+        self.tick += found[1]
+        return found
+
+    def sample(self, samples: Block) -> None:
+        """Write how the rig stands now into the first SAMPLE of an array, if it has one."""
+        if len(samples):
+            take_sample(samples, self.time, self.data.qpos, self.parameters, self.board.block)
 
     def snapshot(self) -> RigSnapshot:
         """A copy of everything that the next tick depends on."""

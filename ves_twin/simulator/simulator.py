@@ -10,6 +10,7 @@ import numpy as np
 from ves_twin.control.controller import PlatformController
 from ves_twin.control.played import Script
 from ves_twin.core.recording.recording import Event
+from ves_twin.core.types import Block
 from ves_twin.effects.registry import parse_effects
 from ves_twin.mechanics.joint_motion import JointMotion
 from ves_twin.plant.plant import Plant
@@ -24,14 +25,17 @@ from ves_twin.simulator.build import (
 )
 from ves_twin.simulator.clock import Clock, overrun
 from ves_twin.simulator.codes import RUNNING
-from ves_twin.simulator.computers import ComputersSnapshot
+from ves_twin.simulator.computers import LONGEST_STRETCH, ComputersSnapshot
+from ves_twin.simulator.cycles import SAMPLE
 from ves_twin.simulator.log_faults import LogFaults
-from ves_twin.simulator.noise import NoiseStreams
+from ves_twin.simulator.noise import BLOCK, NoiseStreams
 from ves_twin.simulator.operator import Operator, OperatorSnapshot
 from ves_twin.simulator.outcome import OUTCOME_OF_CODE, Outcome
 from ves_twin.simulator.recorder import MemorySink, Recorder, RecorderSnapshot, Sink
 from ves_twin.simulator.rig import Rig, RigSnapshot
 from ves_twin.simulator.settle import settle, settling_events
+
+_NO_SAMPLES: Block = np.zeros(0, SAMPLE)
 
 
 @dataclass(frozen=True)
@@ -142,17 +146,33 @@ class Simulator:
         if self.rig.tick >= self._end and self.outcome is None:
             self.end(Outcome.COMPLETED, f"reached {self.time:.3f} s")
 
-    def run_to(self, target: int) -> None:
-        """Run up to a tick, with a cycle of the computers at each admittance interrupt."""
+    def run_to(self, target: int, samples: Block = _NO_SAMPLES) -> int:
+        """Run up to a tick, with a cycle of the computers at each admittance interrupt.
+
+        Args:
+            target: the tick.
+            samples: SAMPLE of `cycles`, takes one of the end of each cycle while there is room.
+
+        Returns:
+            How many cycles have ended, or were ended by the end of the run.
+        """
         rig, period = self.rig, self.rig.clock.admittance
+        ended = 0
         while rig.tick < target and self.outcome is None:
             phase = rig.tick % period
-            if phase == 0 and not self._interrupt():
-                return
-            count = min(period - phase, target - rig.tick)
-            code, self.recorder.rows = rig.run(count, self.recorder.log, self.recorder.rows)
-            if code != RUNNING:
-                self._left_limits(code)
+            if phase == 0:
+                cycles = self._compiled_cycles(target - rig.tick, samples[ended:])
+                ended += cycles
+                if cycles:
+                    continue
+            if phase != 0 or self._interrupt():
+                count = min(period - phase, target - rig.tick)
+                code, self.recorder.rows = rig.run(count, self.recorder.log, self.recorder.rows)
+                if code != RUNNING:
+                    self._left_limits(code)
+            rig.sample(samples[ended:])
+            ended += 1
+        return ended
 
     def end(self, outcome: Outcome, why: str) -> None:
         """End the run with a named outcome; what was recorded is kept."""
@@ -207,6 +227,25 @@ class Simulator:
         """What was planned for the time since the last look becomes an event."""
         while self._agenda and self._agenda[0].time <= self.time:
             self.events.append(self._agenda.pop(0))
+
+    def _compiled_cycles(self, count: int, samples: Block) -> int:
+        """Run cycles of so many ticks without the interpreter, or some of them; how many ran."""
+        if self.operator is not None or self.scenario.platform.busy:
+            return 0
+        rig, recorder = self.rig, self.recorder
+        period = rig.clock.admittance
+        most = min(recorder.make_room(), LONGEST_STRETCH, BLOCK // period)
+        count = min(count, most * period)
+        ticks = range(rig.tick, rig.tick + count, period)
+        computers = self.computers.compiled(ticks, rig.clock.tick)
+        if computers is None:
+            return 0
+        notes = recorder.notes
+        code, _, rows, cycles = rig.run_cycles(count, notes, samples, computers)
+        recorder.noted(rows, cycles)
+        if code != RUNNING:
+            self._left_limits(code)
+        return cycles - notes[-1]
 
     def _interrupt(self) -> bool:
         """The clock interrupt of the computers; False if it ends the run."""

@@ -2,28 +2,38 @@
 
 from __future__ import annotations
 
+from typing import ClassVar
+
 import mujoco
 import numpy as np
 
+from ves_twin.control.gravity_law import TRUTH, plain_law
 from ves_twin.core.compiled import compiled
-from ves_twin.core.types import FloatArray
+from ves_twin.core.types import Block, FloatArray
 from ves_twin.plant.layout import Layout
 
 
 class GravityTruth:
-    """Implements `ves_twin.control.gravity.TruthPort` on a live MjData."""
+    """Implements `ves_twin.control.gravity.TruthPort` on a live MjData.
+
+    Attributes:
+        arrays: what `gravity_wrench` takes, live.
+    """
 
     def __init__(self, model: mujoco.MjModel, data: mujoco.MjData, layout: Layout) -> None:
-        self._weight = model.opt.gravity * float(model.body_subtreemass[layout.sensor_body])
-        self._live = (
+        self.arrays = (
+            model.opt.gravity * float(model.body_subtreemass[layout.sensor_body]),
             data.subtree_com[layout.sensor_body],
             data.site_xpos[layout.sensor_site],
             data.site_xmat[layout.sensor_site],
         )
 
+    law: ClassVar[Block] = plain_law(TRUTH)
+    """The compiled cycle reads `arrays` itself."""
+
     def gravity_in_sensor(self) -> FloatArray:
         """Weight of everything above the sensor and its moment, sensor axes [N, N m] (6,)."""
-        return gravity_wrench(self._weight, *self._live)
+        return gravity_wrench(*self.arrays)
 
 
 @compiled

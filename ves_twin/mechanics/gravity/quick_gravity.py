@@ -61,14 +61,15 @@ class QuickGravity:
     ) -> FloatArray:
         """The same in s about its origin, which lies at a position in t [m] (3,)."""
         numbers = self.rows, self.base, self.links, self.total_mass, self.gravity
-        return _in_sensor(*numbers, q, angles, position)
+        return in_sensor(*numbers, q, angles, position)
 
 
 @compiled
-def _in_sensor(
+def in_sensor(
     rows: FloatArray, base: FloatArray, links: FloatArray, total_mass: float, gravity: float,
     q: FloatArray, angles: FloatArray, position: FloatArray,
 ) -> FloatArray:  # fmt: skip
+    """`QuickGravity.wrench_in_sensor` of its numbers."""
     return top_to_sensor(_in_top(rows, base, links, total_mass, gravity, q, angles), position)
 
 

@@ -16,6 +16,9 @@ FK_TOLERANCE = 1e-12
 """Newton ends when every leg agrees to this [m]: round-off of double precision over 1 m."""
 FK_ITERATIONS = 50
 
+NO_POSE = 1e-9
+"""Leg error that means there is no such pose [m]; Newton stalls at round-off well below it."""
+
 
 @compiled
 def leg_lengths(
@@ -106,6 +109,18 @@ def solve_pose(
 
 
 @compiled
+def near_pose(
+    lengths: FloatArray, guess: FloatArray, base: FloatArray, top: FloatArray, home: FloatArray
+) -> tuple[FloatArray, bool]:
+    """Pose (6,) of given lengths near a guess, and whether there is one."""
+    try:
+        pose, worst = solve_pose(lengths, guess, base, top, home, FK_TOLERANCE, FK_ITERATIONS)
+    except Exception:  # Newton ran into a singular pose; compiled code knows no other class
+        return guess.copy(), False
+    return pose, worst < NO_POSE
+
+
+@compiled
 def track_poses(
     lengths: FloatArray,
     pose: FloatArray,
@@ -179,13 +194,8 @@ class StewartGeometry(ReadOnly):
         """
         start = np.zeros(6) if guess is None else np.asarray(guess, dtype=float)
         target = np.asarray(lengths, dtype=float)
-        try:
-            pose, worst = solve_pose(
-                target, start, self.base, self.top, self.home, FK_TOLERANCE, FK_ITERATIONS
-            )
-        except np.linalg.LinAlgError:  # Newton ran into a singular pose
-            pose, worst = start, np.inf
-        if not worst < 1e-9:  # Newton stalls at round-off well below this where a pose exists
+        pose, found = near_pose(target, start, self.base, self.top, self.home)
+        if not found:
             raise UnreachableError(
                 f"no platform pose near the guess has leg lengths {np.round(target, 4).tolist()} m"
             )
