@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ves_twin.core.compiled import compiled
-from ves_twin.core.types import FloatArray
+from ves_twin.core.types import Block, FloatArray
 
 FREE_SHARE = 0.9
 """Share of a limit that costs nothing; from there the cost grows linearly to 1 at the limit."""
@@ -64,11 +64,11 @@ class Costs:
         self._filter[0] = force
         self.used = np.zeros(3)
 
-    def update(self, leg_length: FloatArray, wrench: FloatArray) -> None:
-        """Take the readings of a cycle: leg lengths [m] (6,), wrench in sensor axes (6,)."""
+    def update(self, samples: Block) -> None:
+        """Take the readings of cycles: SAMPLE of `ves_twin.simulator.cycles` (k,)."""
         limits = self._limits
         _update(
-            self.used, self._filter, leg_length, wrench, limits.home_lengths, limits.travel,
+            self.used, self._filter, samples, limits.home_lengths, limits.travel,
             limits.wrench, self._keep, self._fade,
         )  # fmt: skip
 
@@ -84,8 +84,7 @@ class Costs:
 def _update(
     used: FloatArray,
     state: FloatArray,
-    leg_length: FloatArray,
-    wrench: FloatArray,
+    samples: Block,
     home_lengths: FloatArray,
     travel: float,
     limit: FloatArray,
@@ -93,15 +92,17 @@ def _update(
     fade: float,
 ) -> None:
     """Rows of the state: last force, both sections of the high-pass, mean square of the last."""
-    used[0] = used[1] = 0.0
-    for i in range(6):
-        used[0] = max(used[0], abs(leg_length[i] - home_lengths[i]) / travel)
-        used[1] = max(used[1], abs(wrench[i]) / limit[i])
-    power = 0.0
-    for k in range(3):
-        first = keep * (state[1, k] + wrench[k] - state[0, k])
-        state[2, k] = keep * (state[2, k] + first - state[1, k])
-        state[0, k], state[1, k] = wrench[k], first
-        power += state[2, k] ** 2
-    state[3, 0] = fade * state[3, 0] + (1.0 - fade) * power
+    for n in range(len(samples)):
+        leg_length, wrench = samples[n].leg_length, samples[n].wrench
+        used[0] = used[1] = 0.0
+        for i in range(6):
+            used[0] = max(used[0], abs(leg_length[i] - home_lengths[i]) / travel)
+            used[1] = max(used[1], abs(wrench[i]) / limit[i])
+        power = 0.0
+        for k in range(3):
+            first = keep * (state[1, k] + wrench[k] - state[0, k])
+            state[2, k] = keep * (state[2, k] + first - state[1, k])
+            state[0, k], state[1, k] = wrench[k], first
+            power += state[2, k] ** 2
+        state[3, 0] = fade * state[3, 0] + (1.0 - fade) * power
     used[2] = np.sqrt(state[3, 0]) / VIBRATION_LIMIT

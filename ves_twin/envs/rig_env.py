@@ -19,10 +19,11 @@ from ves_twin.envs.policy import TaskSpec
 from ves_twin.envs.rig_set import RigSet
 from ves_twin.envs.settled_rigs import Hand, SettledRig, SettledRigs
 from ves_twin.envs.task_env import Observation, TaskEnv
-from ves_twin.envs.true_state import Place, read_state, state_place, true_state
+from ves_twin.envs.true_state import true_state
 from ves_twin.mechanics.emulated import EmulatedSystem
 from ves_twin.plant.plant import Plant
 from ves_twin.scenario.schema import Scenario
+from ves_twin.simulator.cycles import SAMPLE
 from ves_twin.simulator.outcome import Outcome
 from ves_twin.simulator.recorder import Sink
 from ves_twin.simulator.signal_bus import SignalBus
@@ -68,8 +69,6 @@ class RigEnv(TaskEnv, Generic[Hand]):
     """Set of rigs that an episode's is drawn from; none if empty."""
 
     _costs: Costs
-    _place: Place
-    _readings: tuple[FloatArray, FloatArray]
 
     def __init__(
         self,
@@ -266,18 +265,13 @@ class RigEnv(TaskEnv, Generic[Hand]):
 
     def _run_cycles(self, sim: Simulator) -> float:
         """Run the cycles of a step; gives their losses, and keeps the state of the last one."""
-        poses, arm_q, times = np.empty((CYCLES, 6)), np.empty((CYCLES, 3)), []
-        lengths, wrench = self._readings
-        for k in range(CYCLES):
-            sim.run_to(sim.rig.tick + sim.rig.clock.admittance)
-            read_state(*self._place, poses[k], arm_q[k])
-            times.append(sim.time)
-            self._costs.update(lengths, wrench)
-            if sim.outcome is not None:
-                break
-        count = len(times)
-        self._state = poses[count - 1], arm_q[count - 1]
-        return self.loss(poses[:count], arm_q[:count], times)
+        rig = sim.rig
+        ended = sim.run_to(rig.tick + CYCLES * rig.clock.admittance, self._samples)
+        samples = self._samples[:ended]
+        self._costs.update(samples)
+        poses, arm_q = samples["pose"].copy(), samples["arm_q"].copy()
+        self._state = poses[-1], arm_q[-1]
+        return self.loss(poses, arm_q, samples["time"].tolist())
 
     def render(self) -> Any:
         """A picture (480, 640, 3), or the window, as the render mode asks.
@@ -316,11 +310,11 @@ class RigEnv(TaskEnv, Generic[Hand]):
             travel=number("leg.stroke") / 2.0 - number("leg.margin"),
             wrench=belief.parameters.array("sensor.range"),
         )
-        self._place, self._state = state_place(sim.rig), true_state(sim.rig)
-        self._readings = sim.rig.board["leg.length"], sim.rig.board["sensor.wrench"]
+        self._state = true_state(sim.rig)
+        self._samples = np.zeros(CYCLES, SAMPLE)
         self._geometry = belief.geometry
         self._costs = Costs(limits, self._cycle)
-        self._costs.begin(self._readings[1][:3])
+        self._costs.begin(sim.rig.board["sensor.wrench"][:3])
 
     @property
     def left(self) -> float:
