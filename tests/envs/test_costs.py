@@ -5,9 +5,17 @@ import pytest
 
 from ves_twin.envs.channels import Channel, Channels
 from ves_twin.envs.costs import VIBRATION_CORNER, VIBRATION_LIMIT, Costs, Limits
+from ves_twin.simulator.cycles import SAMPLE
 
 PERIOD = 1.0 / 75.0
 LIMITS = Limits(np.full(6, 1.5), 0.2, np.array([100.0] * 3 + [50.0] * 3))
+
+
+def sample(leg_length, wrench):
+    """Readings of one cycle."""
+    samples = np.zeros(1, SAMPLE)
+    samples["leg_length"], samples["wrench"] = leg_length, wrench
+    return samples
 
 
 def costs_after(force):
@@ -15,7 +23,7 @@ def costs_after(force):
     costs = Costs(LIMITS, PERIOD)
     costs.begin(np.array([force[0], 0.0, 0.0]))
     for value in force:
-        costs.update(np.full(6, 1.5), np.array([value, 0, 0, 0, 0, 0.0]))
+        costs.update(sample(np.full(6, 1.5), np.array([value, 0, 0, 0, 0, 0.0])))
     return costs
 
 
@@ -24,9 +32,9 @@ def test_nothing_is_free_of_cost_up_to_nine_tenths_and_one_at_the_limit():
     for share, expected in ((0.5, 0.0), (0.9, 0.0), (0.95, 0.5), (1.0, 1.0), (1.1, 2.0)):
         length = np.full(6, 1.5)
         length[2] -= share * 0.2
-        costs.update(length, np.zeros(6))
+        costs.update(sample(length, np.zeros(6)))
         assert costs.costs()["stroke"] == pytest.approx(expected, abs=1e-9)
-        costs.update(np.full(6, 1.5), np.array([0, 0, 0, 0, -share * 50.0, 0]))
+        costs.update(sample(np.full(6, 1.5), np.array([0, 0, 0, 0, -share * 50.0, 0])))
         assert costs.costs()["wrench"] == pytest.approx(expected, abs=1e-9)
 
 

@@ -3,7 +3,10 @@
 from __future__ import annotations
 
 import abc
+from collections.abc import Sequence
 from dataclasses import dataclass
+
+import numpy as np
 
 from ves_twin.control.belief import Belief
 from ves_twin.control.readings import Readings
@@ -39,8 +42,10 @@ class ControlTask(ReadOnly):
 class PlatformController(abc.ABC):
     """One decision a cycle: readings in, platform pose out."""
 
-    law: Block | None = None
-    """LAW of `platform_law`, where the compiled cycle does the same; see `law_of`."""
+    @property
+    def law(self) -> Block | None:
+        """LAW of `platform_law`, live, where the compiled cycle does the same; see `law_of`."""
+        return None
 
     @classmethod
     @abc.abstractmethod
@@ -58,6 +63,10 @@ class PlatformController(abc.ABC):
         Returns:
             Platform pose from home [m, rad] (6,).
         """
+
+    def ahead(self, times: Sequence[float], readings: Readings) -> FloatArray:
+        """Poses (n, 6) at coming times [s]; asked where `law` says that no reading matters."""
+        return np.array([self.update(time, readings) for time in times])
 
     @abc.abstractmethod
     def snapshot(self) -> object:

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import abc
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Protocol, final
 
 import numpy as np
 
 from ves_twin.control.belief import Belief
-from ves_twin.control.gravity_law import KNOWN, model_law, model_wrench, plain_law
+from ves_twin.control.gravity_law import KNOWN_LAW, model_law, model_wrench
 from ves_twin.control.readings import Readings
 from ves_twin.core.types import Block, FloatArray
 from ves_twin.mechanics.gravity.learned import LearnedGravity
@@ -42,8 +43,10 @@ class GravityTask:
 class GravityCompensation(abc.ABC):
     """One estimate a cycle."""
 
-    law: Block | None = None
-    """LAW of `gravity_law`, where the compiled cycle does the same; see `law_of`."""
+    @property
+    def law(self) -> Block | None:
+        """LAW of `gravity_law`, live, where the compiled cycle does the same; see `law_of`."""
+        return None
 
     subtracts: bool = True
     """Whether the estimate is taken off the reading; False leaves the reading as it is."""
@@ -51,6 +54,10 @@ class GravityCompensation(abc.ABC):
     @abc.abstractmethod
     def wrench(self, time: float, readings: Readings) -> FloatArray:
         """Gravity wrench of the payload on the platform, sensor axes [N, N m] (6,)."""
+
+    def ahead(self, times: Sequence[float], readings: Readings) -> FloatArray:
+        """Estimates (n, 6) at coming times [s]; asked where `law` says that no reading matters."""
+        return np.array([self.wrench(time, readings) for time in times])
 
     @abc.abstractmethod
     def snapshot(self) -> object:
@@ -75,7 +82,7 @@ class NoCompensation(_Stateless):
     """Nothing is subtracted: what weight the zeroing has not tared pushes the emulated base."""
 
     subtracts = False
-    law = plain_law(KNOWN)
+    law = KNOWN_LAW
 
     def wrench(self, time: float, readings: Readings) -> FloatArray:
         """Zero."""
@@ -88,11 +95,13 @@ class TruthCompensation(_Stateless):
 
     def __init__(self, port: TruthPort) -> None:
         self._port = port
+        law: Block | None = getattr(port, "law", None)
+        self._law = None if law is None else law.copy()
 
     @property
     def law(self) -> Block | None:
         """The port's, if it has one: the compiled cycle then looks at the plant itself."""
-        return getattr(self._port, "law", None)
+        return self._law
 
     def wrench(self, time: float, readings: Readings) -> FloatArray:
         """The true gravity wrench, as the sensor's ideal axes would read it."""

@@ -34,16 +34,18 @@ last [m, rad]; whether and by which factor the estimate is wrong from a time on 
 which wrench is added [N, N m]."""
 
 
-def plain_law(kind: int) -> Block:
-    """A law without numbers."""
-    law = np.zeros(1, LAW)
-    law["kind"] = kind
-    return law
+KNOWN_LAW: Block = np.zeros(1, LAW)
+"""Of an estimate that depends on time alone."""
+
+
+TRUTH_LAW: Block = KNOWN_LAW.copy()
+TRUTH_LAW["kind"] = TRUTH
 
 
 def model_law(model: QuickGravity, position: FloatArray) -> Block:
     """The Model Method with the sensor's origin at a position in the top frame [m] (3,)."""
-    law = plain_law(MODEL)
+    law = np.zeros(1, LAW)
+    law["kind"] = MODEL
     for name in ("rows", "base", "links", "total_mass", "gravity"):
         law[name] = getattr(model, name)
     law["position"] = position
@@ -52,7 +54,7 @@ def model_law(model: QuickGravity, position: FloatArray) -> Block:
 
 def scaled_law(law: Block | None, factor: float, since: float | None) -> Block | None:
     """The law with its estimate times a factor from a time on [s]; None where it cannot be."""
-    if law is None or law["kind"] == KNOWN:
+    if law is None or law is KNOWN_LAW:
         return law
     if law["scaled"] or law["corrected"]:
         return None
@@ -63,7 +65,7 @@ def scaled_law(law: Block | None, factor: float, since: float | None) -> Block |
 
 def corrected_law(law: Block | None) -> Block | None:
     """The law with its field `correction` added last; None where it cannot be."""
-    if law is None or law["kind"] == KNOWN:
+    if law is None or law is KNOWN_LAW:
         return law
     if law["corrected"]:
         return None

@@ -28,13 +28,14 @@ which the base is at zero [m, rad]; share of the gravity estimate that is taken 
 velocity of the base."""
 
 
-def known_law() -> Block:
-    """Of a controller whose pose depends on time alone."""
-    return np.zeros(1, LAW)
+KNOWN_LAW: Block = np.zeros(1, LAW)
+"""Of a controller whose pose depends on time alone."""
 
 
 @compiled
-def emulate(block: Block, reading: FloatArray, gravity: FloatArray, state: FloatArray) -> FloatArray:
+def emulate(
+    block: Block, reading: FloatArray, gravity: FloatArray, state: FloatArray
+) -> FloatArray:
     """The emulated base one cycle on: its state (12,) is written, its pose (6,) comes back.
 
     Args:
@@ -52,4 +53,5 @@ def emulate(block: Block, reading: FloatArray, gravity: FloatArray, state: Float
             state[i] += law.phi[i, j] * law.state[j]
         for j in range(6):
             state[i] += law.gamma[i, j] * wrench[j]
-    return law.home + state[:6]
+    pose: FloatArray = law.home + state[:6]
+    return pose

@@ -8,7 +8,7 @@ from typing import ClassVar, final
 import numpy as np
 
 from ves_twin.control.gravity import GravityCompensation, GravityTask
-from ves_twin.control.gravity_law import KNOWN, plain_law
+from ves_twin.control.gravity_law import KNOWN_LAW
 from ves_twin.control.readings import Readings
 from ves_twin.core.errors import InvalidInputError
 from ves_twin.core.types import Block, FloatArray
@@ -54,7 +54,7 @@ class PlayedWrench(GravityCompensation):
 
     wrenches: FloatArray
     period: float
-    law: ClassVar[Block] = plain_law(KNOWN)
+    law: ClassVar[Block] = KNOWN_LAW
 
     def wrench(self, time: float, readings: Readings) -> FloatArray:
         """Estimate of the cycle nearest to a time [s]."""

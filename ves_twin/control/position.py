@@ -5,15 +5,17 @@ from __future__ import annotations
 from typing import final
 
 from ves_twin.control.controller import ControlTask, PlatformController
-from ves_twin.control.platform_law import known_law
+from ves_twin.control.platform_law import KNOWN_LAW
 from ves_twin.control.readings import Readings
-from ves_twin.core.types import Block, FloatArray
+from ves_twin.core.types import FloatArray
 from ves_twin.mechanics.joint_motion import Hold, PlatformMotion
 
 
 @final
 class PositionController(PlatformController):
     """Commands the pose of a motion, open loop above the legs (thesis 2.2)."""
+
+    law = KNOWN_LAW
 
     def __init__(self, motion: PlatformMotion) -> None:
         self._motion = motion
@@ -22,11 +24,6 @@ class PositionController(PlatformController):
     def build(cls, task: ControlTask) -> PositionController:
         """Follow the task's motion, or hold its start pose."""
         return cls(task.motion or Hold(task.start))
-
-    @property
-    def law(self) -> Block:
-        """The pose is known ahead."""
-        return known_law()
 
     def update(self, time: float, readings: Readings) -> FloatArray:
         """The motion's pose at this time."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import final
 
 import numpy as np
@@ -53,21 +54,27 @@ class CommandedArm(JointMotion):
 
     def q(self, time: float) -> FloatArray:
         """Joint angles [rad] (3,) at a time [s]."""
-        s = min(max(time - self._begin, 0.0), self._span)
-        bounds = (self._low, self._high)
-        return np.asarray(_place(self._from, self._rate, self._next, *bounds, s, self._span))
+        return np.asarray(self.along((time,))[0])
+
+    def along(self, times: Sequence[float]) -> FloatArray:
+        """Joint angles [rad] (n, 3) at several times [s]."""
+        begin, span = self._begin, self._span
+        q = np.array([min(max(time - begin, 0.0), span) for time in times])[:, None].repeat(3, 1)
+        _places(self._from, self._rate, self._next, self._low, self._high, q, span)
+        return q
 
 
 @compiled
-def _place(
+def _places(
     start: FloatArray, rate: FloatArray, following: FloatArray, low: FloatArray, high: FloatArray,
-    s: float, span: float,
-) -> FloatArray:  # fmt: skip
-    q = np.empty(3)
-    for j in range(3):
-        bend = (following[j] - rate[j]) * s * s / (2.0 * span)
-        q[j] = min(max(start[j] + rate[j] * s + bend, low[j]), high[j])
-    return q
+    q: FloatArray, span: float,
+) -> None:  # fmt: skip
+    """Put joint angles (n, 3) in the place of the seconds since the step began."""
+    for k in range(len(q)):
+        for j in range(3):
+            s = q[k, j]
+            bend = (following[j] - rate[j]) * s * s / (2.0 * span)
+            q[k, j] = min(max(start[j] + rate[j] * s + bend, low[j]), high[j])
 
 
 @compiled

@@ -2,16 +2,19 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import final
 
 import numpy as np
 
 from ves_twin.control.controller import ControlTask, PlatformController
-from ves_twin.control.platform_law import known_law
+from ves_twin.control.platform_law import KNOWN_LAW
 from ves_twin.control.readings import Readings
-from ves_twin.core.types import Block, FloatArray
+from ves_twin.core.compiled import compiled
+from ves_twin.core.errors import UnreachableError
+from ves_twin.core.types import FloatArray
 from ves_twin.mechanics.joint_motion import Hold, PlatformMotion
-from ves_twin.mechanics.kinematics.stewart import StewartGeometry
+from ves_twin.mechanics.kinematics.stewart import StewartGeometry, leg_lengths, near_pose
 
 SLEW = 0.1
 """Fastest change of an offset [m/s]: what the platform does anyway, so that jumps of an action do
@@ -29,6 +32,8 @@ class CommandedLegs(PlatformController):
     Attributes:
         motion: the reference.
     """
+
+    law = KNOWN_LAW
 
     def __init__(self, geometry: StewartGeometry, start: FloatArray) -> None:
         self._geometry = geometry
@@ -53,16 +58,22 @@ class CommandedLegs(PlatformController):
         reach = SLEW * span
         self._to = self._from + np.minimum(np.maximum(offsets - self._from, -reach), reach)
 
-    @property
-    def law(self) -> Block:
-        """The pose is known ahead, until the next command."""
-        return known_law()
-
     def update(self, time: float, readings: Readings) -> FloatArray:
         """The pose at which the legs have the commanded lengths [m, rad] (6,)."""
-        reference = np.asarray(self.motion.pose(time), float)
-        lengths = self._geometry.lengths(reference) + self._offsets(time)
-        return self._geometry.pose(lengths, reference)
+        return np.asarray(self.ahead((time,), readings)[0])
+
+    def ahead(self, times: Sequence[float], readings: Readings) -> FloatArray:
+        """The same at coming times [m, rad] (n, 6).
+
+        Raises:
+            UnreachableError: no pose near a reference has the lengths.
+        """
+        references = np.asarray(self.motion.along(times), float)
+        offsets, g = np.array([self._offsets(time) for time in times]), self._geometry
+        poses = _poses(references, offsets, g.base, g.top, g.home)
+        if not np.all(np.isfinite(poses)):
+            raise UnreachableError("no platform pose near the reference has the commanded lengths")
+        return poses
 
     def _offsets(self, time: float) -> FloatArray:
         share = min(max((time - self._begin) / self._span, 0.0), 1.0)
@@ -75,3 +86,17 @@ class CommandedLegs(PlatformController):
     def restore(self, snapshot: object) -> None:
         """Go back to a snapshot."""
         self.motion, self._begin, self._span, self._from, self._to = snapshot  # type: ignore[misc]
+
+
+@compiled
+def _poses(
+    references: FloatArray, offsets: FloatArray, base: FloatArray, top: FloatArray, home: FloatArray
+) -> FloatArray:
+    """Poses (n, 6) whose leg lengths are those of references and offsets; NaN where none is."""
+    poses = np.empty_like(references)
+    for k in range(len(references)):
+        lengths = leg_lengths(references[k], base, top, home) + offsets[k]
+        poses[k], found = near_pose(lengths, references[k], base, top, home)
+        if not found:
+            poses[k] = np.nan
+    return poses

@@ -7,7 +7,7 @@ from typing import cast, final
 import numpy as np
 
 from ves_twin.control.gravity import GravityCompensation
-from ves_twin.control.gravity_law import KNOWN, corrected_law
+from ves_twin.control.gravity_law import KNOWN_LAW, corrected_law
 from ves_twin.control.law_of import law_of
 from ves_twin.control.readings import Readings
 from ves_twin.core.types import Block, FloatArray
@@ -33,7 +33,7 @@ class CorrectedGravity(GravityCompensation):
     @property
     def law(self) -> Block | None:
         """The other compensation's with the correction of now."""
-        if self._law is not None and self._law["kind"] != KNOWN:
+        if self._law is not None and self._law is not KNOWN_LAW:
             self._law["correction"] = self.correction
         return self._law
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 
 from ves_twin.core.types import FloatArray
@@ -49,4 +51,4 @@ def distance(pose: FloatArray, reference: FloatArray) -> float:
     """sqrt(|translation|^2 + (RADIUS |angles|)^2) between two poses [mm]."""
     error = pose - reference
     error[3:] *= RADIUS
-    return float(np.linalg.norm(error)) / MILLIMETRE
+    return math.sqrt(error.dot(error)) / MILLIMETRE

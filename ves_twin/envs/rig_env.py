@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import abc
 from collections.abc import Mapping, Sequence
+from functools import cached_property
 from typing import TYPE_CHECKING, Any, ClassVar, Generic
 
 import gymnasium as gym
 import numpy as np
 
 from ves_twin.core.errors import InvalidInputError, UnknownNameError
-from ves_twin.core.types import FloatArray
+from ves_twin.core.types import Block, FloatArray
 from ves_twin.envs.channels import Channels
 from ves_twin.envs.costs import Costs, Limits
 from ves_twin.envs.given import given_plant, given_scenario
@@ -69,6 +70,7 @@ class RigEnv(TaskEnv, Generic[Hand]):
     """Set of rigs that an episode's is drawn from; none if empty."""
 
     _costs: Costs
+    _samples: Block
 
     def __init__(
         self,
@@ -176,7 +178,7 @@ class RigEnv(TaskEnv, Generic[Hand]):
         """Effects of the plant."""
         return [{"kind": e.kind, "target": e.target, **e.values} for e in self.sim.plant.effects]
 
-    @property
+    @cached_property
     def span(self) -> float:
         """Length of a step [s]."""
         tick = self._plant.parameters.number("clock.tick")
@@ -189,12 +191,16 @@ class RigEnv(TaskEnv, Generic[Hand]):
         Raises:
             InvalidInputError: before the first reset.
         """
-        return self._settled().sim
+        if self._rig is None:
+            raise _before_reset()
+        return self._rig.sim
 
     @property
     def hand(self) -> Hand:
         """What actions command in the present episode."""
-        return self._settled().hand
+        if self._rig is None:
+            raise _before_reset()
+        return self._rig.hand
 
     def reset(
         self, *, seed: int | None = None, options: dict[str, Any] | None = None
@@ -327,8 +333,9 @@ class RigEnv(TaskEnv, Generic[Hand]):
         return self._board_pose
 
     def _observe(self) -> Observation:
-        board = self.sim.rig.board
-        if self.sim.outcome is not Outcome.DIVERGED:
+        sim = self.sim
+        board = sim.rig.board
+        if sim.outcome is not Outcome.DIVERGED:
             self._board_pose = self._geometry.pose(board["leg.length"], self._board_pose)
         return self.observed(self.readings(board))
 
@@ -348,10 +355,9 @@ class RigEnv(TaskEnv, Generic[Hand]):
             info["reason"] = f"{sim.events[-1].message}; {sim.outcome.advice}"
         return info
 
-    def _settled(self) -> SettledRig[Hand]:
-        if self._rig is None:
-            raise InvalidInputError("environment", "no episode", "reset before anything else")
-        return self._rig
+
+def _before_reset() -> InvalidInputError:
+    return InvalidInputError("environment", "no episode", "reset before anything else")
 
 
 def rig_env(env: gym.Env[Any, Any]) -> RigEnv[Any]:

@@ -68,7 +68,9 @@ class TaskEnv(gym.Env[Any, FloatArray], abc.ABC):
             what = f"{self.actions.width} finite numbers from -1 to 1"
             raise InvalidInputError("action", np.asarray(action).tolist(), what)
         inside = [min(max(share, -1.0), 1.0) for share in shares]
-        return np.array(inside) * self.actions.high, inside != shares
+        if inside == shares:
+            return given * self.actions.high, False
+        return np.array(inside) * self.actions.high, True
 
     def observed(self, values: Mapping[str, FloatArray]) -> Observation:
         """Values by name as an observation."""

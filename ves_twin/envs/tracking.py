@@ -104,7 +104,8 @@ class PlatformTracking(RigEnv[CommandedLegs]):
         self.hand.hold()
         self.hand.motion = goal
         self._motion, self._square, self._peak, self._cycles = goal, 0.0, 0.0, 0
-        self._away = self._distance(true_state(self.sim.rig)[0], self.sim.time)
+        self._reference = goal.pose(self.sim.time)
+        self._away = distance(true_state(self.sim.rig)[0], self._reference)
 
     def command(self, action: FloatArray, span: float) -> None:
         """Offsets [m] (6,) to reach at the end of the step."""
@@ -112,23 +113,21 @@ class PlatformTracking(RigEnv[CommandedLegs]):
 
     def loss(self, poses: FloatArray, arm_q: FloatArray, times: Sequence[float]) -> float:
         """Distances to the reference [mm]."""
-        away = [self._distance(pose, time) for pose, time in zip(poses, times, strict=True)]
+        references = self._motion.along(times)
+        away = [distance(pose, row) for pose, row in zip(poses, references, strict=True)]
+        self._reference = references[-1]
         self._away = away[-1]
         self._square += sum(distance**2 for distance in away)
         self._peak = max(self._peak, *away)
         self._cycles += len(away)
         return sum(away)
 
-    def _distance(self, pose: FloatArray, time: float) -> float:
-        return distance(pose, self._motion.pose(time))
-
     def readings(self, board: SignalBus) -> dict[str, FloatArray]:
         """Measurements, set-points, reference."""
-        now = self.sim.time
         return {
             **leg_readings(board, self.measured_pose, self._costs.home_lengths),
-            "reference.pose": self._motion.pose(now),
-            "reference.ahead": self._motion.pose(now + self.span),
+            "reference.pose": self._reference,
+            "reference.ahead": self._motion.pose(self.sim.time + self.span),
         }
 
     def truth(self) -> dict[str, FloatArray | float]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import abc
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -12,11 +12,15 @@ from ves_twin.core.types import FloatArray
 
 
 class PlatformMotion(abc.ABC):
-    """A pose over time."""
+    """A pose over time, and over nothing else: it is asked for ahead of time."""
 
     @abc.abstractmethod
     def pose(self, time: float) -> FloatArray:
         """Platform pose from home [m, rad] (6,) at a time [s]; constant before zero."""
+
+    def along(self, times: Sequence[float]) -> FloatArray:
+        """Poses (n, 6) at several times [s]."""
+        return np.array([self.pose(time) for time in times])
 
 
 @dataclass(frozen=True)
@@ -56,6 +60,15 @@ class Sine(PlatformMotion):
         angle = 2.0 * np.pi * self.frequency * time + self.phase
         return np.asarray(self.at + envelope * self.amplitude * np.sin(angle))
 
+    def along(self, times: Sequence[float]) -> FloatArray:
+        """The same at several times, to the last bit."""
+        if min(times) <= 0.0 or self.fade <= 0.0:
+            return super().along(times)
+        t = np.array(times)[:, None]
+        envelope = np.array([quintic(time / self.fade) for time in times])[:, None]
+        angle = 2.0 * np.pi * self.frequency * t + self.phase
+        return np.asarray(self.at + envelope * self.amplitude * np.sin(angle))
+
 
 @dataclass(frozen=True)
 class Move:
@@ -67,11 +80,15 @@ class Move:
 
 
 class JointMotion(abc.ABC):
-    """Joint angles over time."""
+    """Joint angles over time, and over nothing else: they are asked for ahead of time."""
 
     @abc.abstractmethod
     def q(self, time: float) -> FloatArray:
         """Joint angles [rad] (3,) at a time [s]; constant before zero."""
+
+    def along(self, times: Sequence[float]) -> FloatArray:
+        """Joint angles [rad] (n, 3) at several times [s]."""
+        return np.array([self.q(time) for time in times])
 
 
 @dataclass(frozen=True)

@@ -2,24 +2,24 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
+from ves_twin.control import gravity_law, platform_law
 from ves_twin.control.belief import Belief
 from ves_twin.control.controller import PlatformController
 from ves_twin.control.gravity import GravityCompensation
 from ves_twin.control.gravity_feedforward import GravityFeedforward
 from ves_twin.control.law_of import law_of
-from ves_twin.control.platform_law import KNOWN
 from ves_twin.control.readings import Readings
 from ves_twin.control.safety import NOT_A_POSE
 from ves_twin.core.errors import ControllerError, VesTwinError, one_line
 from ves_twin.core.read_only import ReadOnly
 from ves_twin.core.types import Block, FloatArray
 from ves_twin.mechanics.joint_motion import JointMotion
+from ves_twin.simulator.clock import Clock
 from ves_twin.simulator.cycles import AHEAD, pass_on
 from ves_twin.simulator.setpoints import send_setpoints
 from ves_twin.simulator.signal_bus import SignalBus
@@ -103,29 +103,28 @@ class Computers:
         self.estimate_gravity(time)
         return self.send(tick, time, self._decide(time - since))
 
-    def compiled(self, ticks: Sequence[int], tick: float) -> tuple[Any, ...] | None:
+    def compiled(self, first: int, count: int, clock: Clock) -> tuple[Any, ...] | None:
         """What `run_cycles` takes of the computers for coming cycles, or None.
 
         None where the interpreter is asked in each cycle: a controller or compensation of one's
-        own, feed-forward of the arm, what is known ahead and raises.
+        own, feed-forward of the arm, what is asked ahead and raises.
 
         Args:
-            ticks: of the interrupts, at most LONGEST_STRETCH.
-            tick: length of one [s].
+            first: tick of the first interrupt.
+            count: ticks from there on, of at most LONGEST_STRETCH cycles.
+            clock: periods.
         """
         platform, gravity = law_of(self.controller), law_of(self.gravity)
         if platform is None or gravity is None or self._feedforward is not None:
             return None
-        known_pose, known_wrench = platform["kind"] == KNOWN, gravity["kind"] == KNOWN
-        rows = self._ahead
+        times = [tick * clock.tick for tick in range(first, first + count, clock.admittance)]
+        rows, n = self._ahead, len(times)
         try:
-            for k, number in enumerate(ticks):
-                time = number * tick
-                rows["arm"][k] = self._arm.q(time + 2.0 * self._period)
-                if known_pose:
-                    rows["pose"][k] = self._decide(time)
-                if known_wrench:
-                    rows["wrench"][k] = self._gravity_wrench(time)
+            rows["arm"][:n] = self._arm.along([time + 2.0 * self._period for time in times])
+            if platform is platform_law.KNOWN_LAW:
+                rows["pose"][:n] = self.controller.ahead(times, self.readings)
+            if gravity is gravity_law.KNOWN_LAW:
+                rows["wrench"][:n] = self.gravity.ahead(times, self.readings)
         except Exception:  # it raises again in its own cycle, if that comes
             return None
         return rows, platform, gravity, self._shared, self._passed, *self._reach

@@ -16,9 +16,7 @@ from ves_twin.simulator.loop import read_pose, run_ticks
 from ves_twin.simulator.setpoints import send_setpoints
 from ves_twin.simulator.truth_port import gravity_wrench
 
-AHEAD = np.dtype(
-    [("arm", np.float64, 3), ("pose", np.float64, 6), ("wrench", np.float64, 6)]
-)
+AHEAD = np.dtype([("arm", np.float64, 3), ("pose", np.float64, 6), ("wrench", np.float64, 6)])
 """What is known of a cycle before it comes: the arm's command two cycles on [rad]; pose [m, rad]
 and gravity wrench [N, N m], each used where its law is of kind KNOWN."""
 
@@ -61,7 +59,8 @@ def pass_on(shared: FloatArray, passed: IntArray, wrench: FloatArray) -> FloatAr
     """
     n, size = passed[0], len(shared)
     shared[n % size] = wrench
-    return shared[(n + 1) % size if n + 1 >= size else 0]
+    oldest: FloatArray = shared[(n + 1) % size if n + 1 >= size else 0]
+    return oldest
 
 
 @compiled
@@ -142,35 +141,24 @@ def run_cycles(
     home_lengths: FloatArray,
     travel: float,
 ) -> tuple[int, int, int, int]:
-    """Run cycles from an interrupt on: gravity, pose, set-points, ticks; as often as there are rows.
+    """Run cycles from an interrupt on, each: gravity, pose, set-points, ticks.
 
-    A cycle that would refuse or raise is left undone: the interpreter does it and says why.
+    A cycle that would refuse or raise is left undone: the interpreter does it and says why. Full
+    buffers of cycles end it, too.
 
-    Args:
-        start: tick of the first interrupt.
-        count: how many ticks; the last cycle may be cut.
-        mj_step: as `run_ticks`, and so on to `slow_normal`.
-        weight: as `gravity_wrench`, and so on to `axes`.
-        log: buffer of rows (capacity, width).
-        ticks: buffer of the ticks of interrupts.
-        first_rows: buffer of the rows in `log` at each interrupt.
-        points: buffer of the arm's commands at each (capacity, 4, 3).
-        logged: rows in the buffer already.
-        noted: cycles in the buffers already.
-        samples: SAMPLE of the end of each cycle, where there is room.
-        ahead: AHEAD of each cycle.
-        platform: LAW of the platform.
-        gravity: LAW of gravity.
-        shared: as `pass_on`.
-        passed: as `pass_on`.
-        base: as `send_setpoints`, and so on to `travel`.
+    From `start`, the tick of an interrupt, `count` ticks are run, the last cycle cut if need be. Up
+    to `slow_normal` all is as `run_ticks` takes it, from `weight` to `axes` as `gravity_wrench`,
+    from `log` to `noted` of a `Recorder` (rows; ticks, first rows and arm commands of cycles; how
+    many rows and cycles there are). SAMPLE of the ends of cycles go where there is room. Then AHEAD
+    of each cycle, both LAWs, `shared` and `passed` of `pass_on`, and from `base` to `travel` what
+    `send_setpoints` takes.
 
     Returns:
         Code of the outcome, ticks done, rows and cycles in the buffers.
     """
     p, s = parameters[0], state[0]
     done, code, first = 0, RUNNING, noted
-    while done < count and code == RUNNING:
+    while done < count and code == RUNNING and noted < len(ticks):
         k, tick = noted - first, start + done
         if not _cycle(
             tick, tick * p.clock.tick, ahead[k:], platform, gravity, shared, passed, base, top,

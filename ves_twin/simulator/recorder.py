@@ -142,21 +142,15 @@ class Recorder:
 
     def begin_cycle(self, tick: int, points: FloatArray) -> None:
         """Note tick and arm commands of the cycle that starts now; flush when it is time."""
-        self.make_room()
+        self._flush_in_time()
         cycle = self._at.cycles
         self._ticks[cycle], self._first_rows[cycle] = tick, self._at.rows
         self._points[cycle] = points
         self._at.cycles += 1
 
-    def make_room(self) -> int:
-        """Flush when it is time; how many cycles there is room for."""
-        if self._at.cycles == len(self._ticks) or monotonic() - self._flushed > FLUSH_SECONDS:
-            self._hand_over(self._at.rows, self._at.cycles)
-        return len(self._ticks) - self._at.cycles
-
-    @property
     def notes(self) -> Notes:
-        """The buffers for the compiled cycles; what they have noted comes back by `noted`."""
+        """The buffers for compiled cycles, with room in them; `noted` tells what came in."""
+        self._flush_in_time()
         at = self._at
         return self.log, self._ticks, self._first_rows, self._points, at.rows, at.cycles
 
@@ -176,6 +170,10 @@ class Recorder:
             self._hand_over(at.rows, at.cycles)
         else:
             self._hand_over(int(self._first_rows[at.cycles - 1]), at.cycles - 1)
+
+    def _flush_in_time(self) -> None:
+        if self._at.cycles == len(self._ticks) or monotonic() - self._flushed > FLUSH_SECONDS:
+            self._hand_over(self._at.rows, self._at.cycles)
 
     def _hand_over(self, count: int, cycles: int) -> None:
         """Complete the first rows and hand them on; move what is left to the front."""

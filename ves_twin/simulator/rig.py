@@ -134,9 +134,7 @@ class Rig:
             Code of `ves_twin.simulator.codes`; ticks done, fewer where a cycle is for the
             interpreter; rows and cycles in the buffers.
         """
-        found = run_cycles(
-            self.tick,
-            count,
+        given: tuple[Any, ...] = (
             *self._engine,
             *self._arrays,
             self.parameters,
@@ -149,6 +147,7 @@ class Rig:
             samples,
             *computers,
         )
+        found = run_cycles(self.tick, count, *given)
         self.tick += found[1]
         return found
 

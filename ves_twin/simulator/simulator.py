@@ -104,6 +104,10 @@ class Simulator:
         self.computers = build_computers(scenario, belief, self.rig, script, controller, arm)
         played = script is not None
         self.operator = build_operator(scenario, belief, self.rig, self.computers, played)
+        self._longest = 0  # ticks without the interpreter
+        if self.operator is None and not scenario.platform.busy:
+            cycles = min(LONGEST_STRETCH, BLOCK // clock.admittance)
+            self._longest = cycles * clock.admittance
         self._standing = _at_rest(scenario, self.operator)
         self.recorder = Recorder(
             clock,
@@ -229,18 +233,15 @@ class Simulator:
             self.events.append(self._agenda.pop(0))
 
     def _compiled_cycles(self, count: int, samples: Block) -> int:
-        """Run cycles of so many ticks without the interpreter, or some of them; how many ran."""
-        if self.operator is not None or self.scenario.platform.busy:
-            return 0
+        """Run cycles of so many ticks without the interpreter, or the first of them; how many."""
         rig, recorder = self.rig, self.recorder
-        period = rig.clock.admittance
-        most = min(recorder.make_room(), LONGEST_STRETCH, BLOCK // period)
-        count = min(count, most * period)
-        ticks = range(rig.tick, rig.tick + count, period)
-        computers = self.computers.compiled(ticks, rig.clock.tick)
+        count = min(count, self._longest)
+        if count == 0:
+            return 0
+        computers = self.computers.compiled(rig.tick, count, rig.clock)
         if computers is None:
             return 0
-        notes = recorder.notes
+        notes = recorder.notes()
         code, _, rows, cycles = rig.run_cycles(count, notes, samples, computers)
         recorder.noted(rows, cycles)
         if code != RUNNING:

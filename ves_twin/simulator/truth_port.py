@@ -7,7 +7,7 @@ from typing import ClassVar
 import mujoco
 import numpy as np
 
-from ves_twin.control.gravity_law import TRUTH, plain_law
+from ves_twin.control.gravity_law import TRUTH_LAW
 from ves_twin.core.compiled import compiled
 from ves_twin.core.types import Block, FloatArray
 from ves_twin.plant.layout import Layout
@@ -21,14 +21,14 @@ class GravityTruth:
     """
 
     def __init__(self, model: mujoco.MjModel, data: mujoco.MjData, layout: Layout) -> None:
-        self.arrays = (
+        self.arrays: tuple[FloatArray, FloatArray, FloatArray, FloatArray] = (
             model.opt.gravity * float(model.body_subtreemass[layout.sensor_body]),
             data.subtree_com[layout.sensor_body],
             data.site_xpos[layout.sensor_site],
             data.site_xmat[layout.sensor_site],
         )
 
-    law: ClassVar[Block] = plain_law(TRUTH)
+    law: ClassVar[Block] = TRUTH_LAW
     """The compiled cycle reads `arrays` itself."""
 
     def gravity_in_sensor(self) -> FloatArray:
