@@ -114,8 +114,9 @@ class ArmEnv(RigEnv[CommandedArm]):
         return total
 
     def _energies(self, poses: FloatArray) -> list[float]:
-        energies: list[float] = strain_energies(poses, self._home, self._stiffness).tolist()
-        return energies
+        energies = np.zeros(len(poses))
+        strain_energies(poses, self._home, self._stiffness, energies)
+        return list(energies.tolist())
 
     def readings(self, board: SignalBus) -> dict[str, FloatArray]:
         """Measurements and set-points."""
@@ -144,15 +145,15 @@ class ArmEnv(RigEnv[CommandedArm]):
 
 
 @compiled
-def strain_energies(poses: FloatArray, home: FloatArray, stiffness: FloatArray) -> FloatArray:
-    """1/2 Y' K Y [J] (k,) of a base at poses (k, 6) that has no strain at home (6,)."""
-    energies = np.zeros(len(poses))
+def strain_energies(
+    poses: FloatArray, home: FloatArray, stiffness: FloatArray, energies: FloatArray
+) -> None:
+    """Add 1/2 Y' K Y [J] (k,) of a base at poses (k, 6) that has no strain at home (6,)."""
     for k in range(len(poses)):
         y = poses[k] - home
         for i in range(6):
             for j in range(6):
                 energies[k] += 0.5 * y[i] * stiffness[i, j] * y[j]
-    return energies
 
 
 def time_left(scenario: Scenario) -> Channel:

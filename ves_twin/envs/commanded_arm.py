@@ -47,10 +47,10 @@ class CommandedArm(JointMotion):
             begin: when the step's set-points begin [s].
             span: length of the step [s].
         """
+        self._from = self.q(begin)
         reach = self._acceleration * span
-        place = self.q(begin)
-        _turn(place, self._rate, self._next, rate, self._low, self._high, reach)
-        self._from, self._begin, self._span = place, begin, span
+        _turn(self._from, self._rate, self._next, rate, self._low, self._high, reach)
+        self._begin, self._span = begin, span
 
     def q(self, time: float) -> FloatArray:
         """Joint angles [rad] (3,) at a time [s]."""

@@ -93,10 +93,9 @@ def _poses(
     references: FloatArray, offsets: FloatArray, base: FloatArray, top: FloatArray, home: FloatArray
 ) -> FloatArray:
     """Poses (n, 6) whose leg lengths are those of references and offsets; NaN where none is."""
-    poses = np.empty_like(references)
+    poses = references.copy()
     for k in range(len(references)):
         lengths = leg_lengths(references[k], base, top, home) + offsets[k]
-        poses[k], found = near_pose(lengths, references[k], base, top, home)
-        if not found:
+        if not near_pose(lengths, poses[k], base, top, home):
             poses[k] = np.nan
     return poses

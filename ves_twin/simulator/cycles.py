@@ -74,8 +74,7 @@ def _cycle(
     known, law, base_law, b = ahead[0], gravity[0], platform[0], board[0]
     wrench, pose = known.wrench.copy(), law.pose.copy()
     if law.kind == gravity_law.MODEL:
-        pose, found = near_pose(b.leg_length.copy(), pose, base, top, home)
-        if not found:
+        if not near_pose(b.leg_length.copy(), pose, base, top, home):
             return False
         wrench = changed(law, time, model_wrench(gravity, b.arm_q, pose[3:]))
     elif law.kind == gravity_law.TRUTH:

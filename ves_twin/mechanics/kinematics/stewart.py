@@ -110,14 +110,15 @@ def solve_pose(
 
 @compiled
 def near_pose(
-    lengths: FloatArray, guess: FloatArray, base: FloatArray, top: FloatArray, home: FloatArray
-) -> tuple[FloatArray, bool]:
-    """Pose (6,) of given lengths near a guess, and whether there is one."""
+    lengths: FloatArray, pose: FloatArray, base: FloatArray, top: FloatArray, home: FloatArray
+) -> bool:
+    """Move a pose (6,) to the one near it that has given lengths; False if there is none."""
     try:
-        pose, worst = solve_pose(lengths, guess, base, top, home, FK_TOLERANCE, FK_ITERATIONS)
+        found, worst = solve_pose(lengths, pose, base, top, home, FK_TOLERANCE, FK_ITERATIONS)
     except Exception:  # Newton ran into a singular pose; compiled code knows no other class
-        return guess.copy(), False
-    return pose, worst < NO_POSE
+        return False
+    pose[:] = found
+    return worst < NO_POSE
 
 
 @compiled
@@ -192,10 +193,9 @@ class StewartGeometry(ReadOnly):
         Raises:
             UnreachableError: no pose near the guess has these lengths.
         """
-        start = np.zeros(6) if guess is None else np.asarray(guess, dtype=float)
+        pose = np.zeros(6) if guess is None else np.array(guess, dtype=float)
         target = np.asarray(lengths, dtype=float)
-        pose, found = near_pose(target, start, self.base, self.top, self.home)
-        if not found:
+        if not near_pose(target, pose, self.base, self.top, self.home):
             raise UnreachableError(
                 f"no platform pose near the guess has leg lengths {np.round(target, 4).tolist()} m"
             )
