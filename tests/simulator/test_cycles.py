@@ -65,6 +65,7 @@ def played(sim, snapshot, interpreted, samples):
     """Everything that a stretch of cycles leaves behind, by either way."""
     sim.restore(snapshot)
     with pytest.MonkeyPatch.context() as patch:
+        patch.setattr("ves_twin.simulator.recorder.FLUSH_SECONDS", np.inf)
         if interpreted:
             patch.setattr(Computers, "compiled", lambda *_: None)
         else:
