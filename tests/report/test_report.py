@@ -26,6 +26,7 @@ from ves_twin.diagnosis.settings import Settings
 from ves_twin.diagnosis.verdict import Kind
 from ves_twin.diagnosis.whitening import whitening_declared
 from ves_twin.report.diagnosis.answer import headline, next_step, tone
+from ves_twin.report.diagnosis.basis import gain_words, taken_words
 from ves_twin.report.diagnosis.credibility import Pedigree, credibility
 from ves_twin.report.diagnosis.page import diagnosis_page
 from ves_twin.report.diagnosis.pictures import answer_figure
@@ -458,6 +459,18 @@ def test_the_page_tells_how_many_were_tried_what_is_left_and_what_is_not_separat
     assert "drive.u (20 %)" in said
     assert "friction at plant, lag at plant: only a combination of them is known" in said
     assert "14 times worse" in said
+
+
+def test_where_more_than_noise_stays_the_gain_is_told_by_the_rms_and_by_units_of_noise(proven):
+    """As the damper's: the rms falls from 10.5 to 2.2 kN, its fast part is hardly touched."""
+    errors = {"force": (10505.0, 2204.0), "speed": (1.0, 1.03)}
+    gain = Gain(0.059, 0.01, 0.119, before=405.0, after=382.0, errors=errors)
+    words = gain_words(replace(proven, verdict=Kind.PARTIAL, gain=gain))
+    assert "the rms error on held-out recordings falls by 79 % (force)" in words
+    assert "grows by 3 % (speed)" in words
+    assert "in units of noise at each frequency, 6 % of its square (1 % to 12 %)" in words
+    left = gain_words(replace(proven, gain=gain))  # noise alone is left: one measure says it all
+    assert left == taken_words(gain)
 
 
 def test_what_is_proved_stands_in_the_verdict_file(proven):

@@ -5,7 +5,7 @@ from __future__ import annotations
 from ves_twin.core.quantity import percent
 from ves_twin.diagnosis.disagreement import disagree
 from ves_twin.diagnosis.verdict import Cause, Kind, Verdict
-from ves_twin.report.diagnosis.basis import taken_share
+from ves_twin.report.diagnosis.basis import gain_words, taken_share
 from ves_twin.report.diagnosis.law import worth_sentence
 from ves_twin.report.diagnosis.limits import next_sentences
 from ves_twin.report.diagnosis.words import (
@@ -212,8 +212,7 @@ def nearest_sentence(verdict: Verdict) -> str:
         names = " with ".join(map(spoken, verdict.suspect.split(" with ")))
         said = f"Nearest, and not accepted: {names}. "
         if verdict.gain is not None and verdict.gain.share is not None and verdict.gain.passed:
-            share = taken_share(verdict.gain)
-            said += f"It takes {share} of the held-out error away, and more is missing. "
+            said += f"With it {gain_words(verdict)}. More is missing. "
     if left.loud:
         top = left.loud[0]
         said += f"What is left is loudest in {top.channel} at {ends_words(top)}."
