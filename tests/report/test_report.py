@@ -178,6 +178,18 @@ def test_an_unknown_shows_the_nearest_and_does_not_accept_it(settings):
     assert "nearest cause" in top
 
 
+def test_what_predicts_held_out_data_worse_than_the_given_model_is_no_candidate(settings):
+    u = HELD.drive["drive.u"][:, 0]
+    data = record(np.random.default_rng(3), added=(u**3)[:, None] * [0.02, 0.0], fed=HELD)
+    order = record(np.random.default_rng(4))
+    verdict = diagnose(Toy(), [data], settings=settings, held_out=[order])
+    assert verdict.verdict is Kind.UNKNOWN
+    assert "out.0" in verdict.gain.worse
+    assert verdict.nearest == ()
+    assert "no candidate is written" in second_screen(diagnosis_page(verdict))
+    assert diagnose(Toy(), [data], settings=settings).nearest  # nobody has tried it elsewhere
+
+
 def test_the_traces_are_the_record_and_fit_it_better_with_the_cause(friction):
     shown = friction.exhibit.traces[0]
     data = record(np.random.default_rng(51), {"friction.size": 0.1}, spread=0.0)
@@ -421,6 +433,18 @@ def test_a_proved_extension_that_is_not_firm_acts_like_its_name_and_its_stand_in
     page = diagnosis_page(verdict)
     assert "acts like it, or like lag at plant" in page
     assert "Firm: friction at plant" in headline(proof_of(proven, firm=True))
+
+
+def test_what_ends_its_range_is_not_counted_as_proved(proven):
+    verdict = proof_of(proven, firm=False)
+    ended = replace(verdict, proved=(replace(verdict.proved[0], ended=True),))
+    said = "At the end of its range, so not proved: friction at plant"
+    assert said in headline(ended)
+    assert "No causes improve the prediction" in headline(ended)
+    assert "0 of them improve" in diagnosis_page(ended)
+    assert "0 extensions proved" in ended.words
+    assert said.partition(":")[0] in ended.words
+    assert said not in headline(verdict)
 
 
 @pytest.mark.parametrize(("sds", "inside"), [(0.5, True), (10.0, False)])

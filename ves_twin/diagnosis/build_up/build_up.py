@@ -13,11 +13,13 @@ from ves_twin.diagnosis.adequacy import cells, misfit
 from ves_twin.diagnosis.build_up.converged import converged
 from ves_twin.diagnosis.build_up.discrepancy import discrepancy
 from ves_twin.diagnosis.build_up.halves import Halves, carried_point, halves_at
+from ves_twin.diagnosis.build_up.idle import idle
 from ves_twin.diagnosis.build_up.paired import loss
 from ves_twin.diagnosis.build_up.proof import Bench, Proof, prove
 from ves_twin.diagnosis.build_up.report import report_of
 from ves_twin.diagnosis.build_up.result import BuildUp
 from ves_twin.diagnosis.build_up.select import Selector
+from ves_twin.diagnosis.build_up.simpler import simpler
 from ves_twin.diagnosis.build_up.sizes import half_widths
 from ves_twin.diagnosis.build_up.trials import Trial
 from ves_twin.diagnosis.evidence import Evidence
@@ -141,6 +143,21 @@ class _Builder:
             return halves, few, point
         return there, more, at
 
+    def at_work(
+        self, halves: Halves, proof: Proof, point: FloatArray, evidence: Evidence
+    ) -> tuple[Proof, Fit]:
+        """What is proved and still takes something away where all of it is fitted in full."""
+        while True:
+            fit = self.refined(halves, proof.proved, point, evidence, probed=True)
+            gone = idle(proof, self.fitted.runs, self.held, fit)
+            if gone is None:
+                return proof, fit
+            proof = replace(
+                proof,
+                proved=tuple(n for n in proof.proved if n != gone),
+                dropped={**proof.dropped, gone: 1.0},
+            )
+
     def refined(
         self,
         halves: Halves,
@@ -192,7 +209,7 @@ def build_up(desk: FitContext, start: Explanation, fitted: Dataset, held: Datase
     if proof.proved != first.proved:
         halves, proof, point = builder.onward(halves, proof, point)
     evidence = builder.evidence(proof.bench.fit.residual, memory=False)
-    final = builder.refined(halves, proof.proved, point, evidence, probed=True)
+    proof, final = builder.at_work(halves, simpler(proof), point, evidence)
     before = builder.refined(halves, (), point, evidence)
     final = _widened(evidence, final, desk.settings.confidence)
     plain = Evidence(fitted.runs, fitted.measured, _on(start.evidence.whitening, fitted.runs))
