@@ -14,6 +14,7 @@ from ves_twin.diagnosis.build_up.converged import converged
 from ves_twin.diagnosis.build_up.discrepancy import discrepancy
 from ves_twin.diagnosis.build_up.halves import Halves, carried_point, halves_at
 from ves_twin.diagnosis.build_up.idle import idle
+from ves_twin.diagnosis.build_up.nearest import nearest
 from ves_twin.diagnosis.build_up.paired import loss
 from ves_twin.diagnosis.build_up.proof import Bench, Proof, prove
 from ves_twin.diagnosis.build_up.report import report_of
@@ -51,7 +52,7 @@ class Built:
 
     Attributes:
         found: the explanation with everything that is proved, in units of noise as the page shows
-            it; that of before where nothing is proved.
+            it. Where nothing is proved, with the few causes that predict best, or that of before.
         before: fit of commissioning errors alone, under the same discrepancy.
         report: what was proved, what is left.
         fitted, held: recordings, or stretches of them, that it was fitted to and proved on.
@@ -158,6 +159,16 @@ class _Builder:
                 dropped={**proof.dropped, gone: 1.0},
             )
 
+    def near(self, halves: Halves, proof: Proof) -> Fit | None:
+        """Few causes that are not proved, fitted in full; None where they do not predict better."""
+        origin, regression = self.fitted.runs.origin, halves.regression
+        trials = nearest(proof.bench, Selector(regression).best())
+        if not trials:
+            return None
+        evidence = self.evidence(regression.fit(trials).residual, memory=False)
+        at_work, fit = self.at_work(halves, replace(proof, proved=trials), origin, evidence)
+        return fit if at_work.proved else None
+
     def refined(
         self,
         halves: Halves,
@@ -211,15 +222,17 @@ def build_up(desk: FitContext, start: Explanation, fitted: Dataset, held: Datase
     evidence = builder.evidence(proof.bench.fit.residual, memory=False)
     proof, final = builder.at_work(halves, simpler(proof), point, evidence)
     before = builder.refined(halves, (), point, evidence)
-    final = _widened(evidence, final, desk.settings.confidence)
-    plain = Evidence(fitted.runs, fitted.measured, _on(start.evidence.whitening, fitted.runs))
-    final, before = _in_noise(plain, final), _in_noise(plain, before)
-    found = _explained(desk, start, final) if proof.proved else start
     there = held.runs.one(carried_point(fitted.runs, held.runs, final.shift))
     ends = (
         np.asarray(bare_residual(evidence, final), float),
         np.asarray(held.measured - there, float),
     )
+    shown = final if proof.proved else builder.near(halves, proof)
+    plain = Evidence(fitted.runs, fitted.measured, _on(start.evidence.whitening, fitted.runs))
+    found, before = start, _in_noise(plain, before)
+    if shown is not None:
+        sure = _widened(evidence, shown, desk.settings.confidence)
+        found = _explained(desk, start, _in_noise(plain, sure))
     return Built(found, before, report_of(halves, proof, ends), fitted, held)
 
 

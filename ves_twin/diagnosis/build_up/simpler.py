@@ -57,7 +57,7 @@ def _fewer(proof: Proof, trial: int) -> list[int]:
 
 
 def _worse(bench: Bench, rest: Sequence[int], trial: int, other: int) -> float:
-    """What held-out rows lose by another trial in the place of one; infinite where that is clear."""
+    """What held-out rows lose by another trial in the place of one; infinite if that is clear."""
     scale = bench.scale([*rest, trial])
     losses = [loss(bench.innovations([*rest, k]), scale) for k in (other, trial)]
     told = bench.compared(trial, *losses)
