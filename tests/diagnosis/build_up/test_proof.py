@@ -263,9 +263,7 @@ def test_held_out_columns_are_simulated_for_chosen_trials_alone():
 def test_what_passes_for_discrepancy_is_looked_for_by_plain_squares_too(seed):
     """Offsets at both joints: a discrepancy learnt without them is slow enough to hide one."""
     regression = halves(PLANT, {"offset@a:size": 0.8, "offset@b:size": 0.8}, seed).regression
-    names = [
-        {regression.trials[n].cause.label for n in few} for few in Selector(regression).best()
-    ]
+    names = [{regression.trials[n].cause.label for n in few} for few in Selector(regression).best()]
     assert {"offset@a", "offset@b"} in names
     assert len(names) == len({frozenset(few) for few in names})
 
