@@ -487,12 +487,15 @@ def test_the_page_tells_how_many_were_tried_what_is_left_and_what_is_not_separat
 
 def test_where_more_than_noise_stays_the_gain_is_told_by_the_rms_and_by_units_of_noise(proven):
     """As the damper's: the rms falls from 10.5 to 2.2 kN, its fast part is hardly touched."""
-    errors = {"force": (10505.0, 2204.0), "speed": (1.0, 1.03)}
+    errors = {"force": (10505.0, 2204.0), "flow": (2.0, 1.5), "speed": (1.0, 1.03)}
     gain = Gain(0.059, 0.01, 0.119, before=405.0, after=382.0, errors=errors)
     words = gain_words(replace(proven, verdict=Kind.PARTIAL, gain=gain))
     assert "the rms error on held-out recordings falls by 79 % (force)" in words
     assert "grows by 3 % (speed)" in words
-    assert "in units of noise at each frequency, 6 % of its square (1 % to 12 %)" in words
+    assert "of its square in units of noise, 6 % (1 % to 12 %) goes" in words
+    assert "flow" not in words
+    same = replace(gain, errors={"force": (2.0, 1.0), "speed": (6.1823, 6.1825)})
+    assert "stays (speed)" in gain_words(replace(proven, verdict=Kind.PARTIAL, gain=same))
     left = gain_words(replace(proven, gain=gain))  # noise alone is left: one measure says it all
     assert left == taken_words(gain)
 

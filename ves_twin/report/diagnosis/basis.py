@@ -10,6 +10,9 @@ from ves_twin.diagnosis.verdict import Basis, Kind, Verdict
 NEARLY_ALL = 0.99
 """Share from which more digits tell nobody anything."""
 
+STAYS = 0.005
+"""Change of an rms error that no per cent tells."""
+
 GIVEN = {
     ("noise", "measured"): "noise measured at a standstill",
     ("noise", "declared"): "the declared noise",
@@ -67,18 +70,21 @@ def gain_words(verdict: Verdict) -> str:
         return taken_words(gain)
     share, low, high = _taken(gain)
     span = f" ({low} to {high})" if low else ""
-    return f"{rms_words(gain)}; in units of noise at each frequency, {share} of its square{span}"
+    return f"{rms_words(gain)}; of its square in units of noise, {share}{span} goes"
 
 
 def rms_words(gain: Gain) -> str:
     """What happens to the rms error on held-out recordings, where it falls most and least."""
     falls = {name: 1.0 - after / before for name, (before, after) in gain.errors.items() if before}
     ends = sorted(falls, key=lambda name: falls[name])
-    told = [
-        f"{'falls' if falls[name] >= 0.0 else 'grows'} by {shares(abs(falls[name]))[0]} ({name})"
-        for name in dict.fromkeys((*ends[-1:], *ends[:1]))
-    ]
+    told = [_moved(falls[name], name) for name in dict.fromkeys((*ends[-1:], *ends[:1]))]
     return f"the rms error on held-out recordings {' and '.join(told) or 'stays'}"
+
+
+def _moved(fall: float, name: str) -> str:
+    if abs(fall) < STAYS:
+        return f"stays ({name})"
+    return f"{'falls' if fall > 0.0 else 'grows'} by {shares(abs(fall))[0]} ({name})"
 
 
 def _taken(gain: Gain) -> tuple[str, str, str]:
