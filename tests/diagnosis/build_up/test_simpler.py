@@ -65,7 +65,8 @@ def told(speed: float) -> set[str]:
     proof = prove(regression, halves.held, chosen)
     assert len(proof.proved) == 1
     after = simpler(proof)
-    assert after.tested >= proof.tested
+    tried = after.tested - proof.tested  # one trial for each that could take its place
+    assert tried <= 1
     return {regression.trials[n].cause.label for n in after.proved}
 
 

@@ -25,7 +25,8 @@ def simpler(proof: Proof) -> Proof:
         for other in _fewer(told, n):
             names = [other if k == n else k for k in told.proved]
             bench = told.bench
-            tried = prove(bench.regression, bench.held, names, more=told.tested)
+            gone = told.tested - len(names)  # one trial is new, the others were put to proof
+            tried = prove(bench.regression, bench.held, names, more=gone + 1)
             told = replace(told, tested=tried.tested)
             if set(tried.proved) == set(names):
                 told = replace(tried, dropped={**told.dropped, **tried.dropped})
