@@ -36,6 +36,9 @@ takes up to nine tenths (viscous damping of a drag with the square of speed, of 
 EXPLAINED, BUILT = 0.4, 0.8
 """Shares of the time after which single causes and pairs, and then building up, must end."""
 
+AT_LIMIT = 1.0 + 1e-9
+"""Rounding of a commissioning error that a fit has held at its limit."""
+
 MANY_FROM = 2
 """Causes beyond which more may be at work than a search of single ones and pairs can see."""
 
@@ -144,7 +147,7 @@ def _within(found: Explanation, limit: float) -> Fit:
     A cause that commissioning knows too would else be in the model before, tens of sd of it, and
     naming it be worth nothing.
     """
-    if found.commissioning.pull <= limit:
+    if found.commissioning.pull <= AT_LIMIT * limit:
         return found.commissioning
     best = found.best  # held within the limit it is a better start than what was strained
     start = np.where(best.local.runs.sd > 0.0, best.shift, 0.0)
@@ -238,7 +241,16 @@ def _probed(found: Explanation, settings: Settings) -> Explanation:
     """
     evidence = found.evidence
     chosen = tuple(
-        refine(evidence, fit.causes, fit.shift, fit.local, 0, fit.step_share, probed=True)
+        refine(
+            evidence,
+            fit.causes,
+            fit.shift,
+            fit.local,
+            step_share=fit.step_share,
+            probed=True,
+            steps=0,
+            known=fit.columns,
+        )
         for fit in found.chosen
     )
     if not settings.sparse and not evidence.runs.budget.skips("profiles of sizes"):
