@@ -12,8 +12,6 @@ from ves_twin.diagnosis.evidence import Evidence
 from ves_twin.diagnosis.gain import (
     BLOCK_SECONDS,
     Gain,
-    _Axes,
-    _Carried,
     _starts,
     _stretches,
     held_out_gain,

@@ -147,7 +147,8 @@ def refine(
     if probed and np.isfinite(point.chi2) and not runs.budget.over:
         turned = probe(search, point, jacobian)
         if turned is not jacobian:
-            point, jacobian = search.descend(point, turned, ITERATIONS)
+            search.steps = ITERATIONS
+            point, jacobian = search.descend(point, turned)
     return _fit(causes, search, point, jacobian)
 
 

@@ -232,7 +232,7 @@ class Search:
         if not np.isfinite(point.chi2):
             return point, np.zeros((0, len(self.unit)))
         self.tempered = True
-        return self.descend(point, self.begun(point, before), self.steps)
+        return self.descend(point, self.begun(point, before))
 
     def begun(self, point: Point, before: CauseColumns | None) -> FloatArray:
         """The Jacobian at a point, by earlier columns of the causes if they hold there."""
@@ -242,9 +242,9 @@ class Search:
         self.raw = before.columns.copy()
         return self._with_causes()
 
-    def descend(self, point: Point, jacobian: FloatArray, steps: int) -> tuple[Point, FloatArray]:
-        """From a point with its Jacobian down to the best one, in so many steps at most."""
-        for _ in range(steps):
+    def descend(self, point: Point, jacobian: FloatArray) -> tuple[Point, FloatArray]:
+        """From a point with its Jacobian down to the best one."""
+        for _ in range(self.steps):
             if self.runs.budget.skips(BETTER_FITS):
                 break
             found = self._step(point, jacobian)
