@@ -84,6 +84,12 @@ AIMS = (
 )
 """Of a suite of every sort; those of a sort that it lacks say so."""
 
+EDITED = (
+    Aim("a cause by an edit, detected: exact", 0.85),
+    Aim("a cause by an edit, detected: a wrong name", 0.03, -1),
+)
+"""Of a suite with causes by edits as well."""
+
 SUITES = {
     "pendulum": Blind(
         "pendulum",
@@ -135,24 +141,26 @@ SUITES = {
         (Aim("held-out without the effect: the gate refuses", 0.95),),
     ),
     "ves2_fast": Blind(
-        "VES II, `fast`",
-        "--machine ves2_fast --none 8 --single 14 --outside 6 --pair 4",
-        AIMS,
-        seed=20261123,
+        "VES II, `fast`, with causes by edits of the model and of recordings",
+        "--machine ves2_fast --none 30 --single 10 --outside 4 --pair 0 --edited 8",
+        (*AIMS, *EDITED),
+        seed=20261125,
+    ),
+    "ves2_again": Blind(
+        "VES II, `fast`, another seed, with more rigs in order",
+        "--machine ves2_fast --none 170 --single 16 --outside 6 --pair 0 --edited 8",
+        (*AIMS, *EDITED),
+        seed=20261126,
     ),
     "ves2_nights": Blind(
-        "VES II, `fast`, with causes by edits of the model and of recordings",
+        "VES II, `fast`, every sort of case",
         "--machine ves2_fast --none 200 --single 150 --edited 40 --outside 32 --pair 24"
         " --confusable 24",
-        (
-            *AIMS,
-            Aim("a cause by an edit, detected: exact", 0.85),
-            Aim("a cause by an edit, detected: a wrong name", 0.03, -1),
-        ),
+        (*AIMS, *EDITED),
     ),
 }
-"""Cases of each suite. One of VES II takes minutes, so they are few; the pendulum's together take
-about an hour of processor time."""
+"""Cases of each suite. A cause in VES II takes minutes to hide and to find, so they are few; the
+pendulum's together take about an hour of processor time."""
 
 HEAD = """# Scorecard of the diagnosis
 
@@ -166,7 +174,7 @@ evenly in log d from 6 to 40, so rates are not those of faults as they occur.
 """
 
 
-HOURS = ("ves2_fast", "ves2_nights")
+HOURS = ("ves2_fast", "ves2_again", "ves2_nights")
 """Suites whose cases take minutes each: not in a tenth."""
 
 SORTS = ("none", "single", "outside", "pair", "confusable", "edited")

@@ -312,6 +312,17 @@ def test_help_needs_no_simulator():
     assert subprocess.run([sys.executable, "-c", code], check=False).returncode == 0
 
 
+@pytest.mark.parametrize("given", [None, "3"])
+def test_commands_take_one_thread_of_linear_algebra_unless_told_otherwise(given):
+    """It is read when numpy is imported, so that must not have been before."""
+    others = {name: value for name, value in os.environ.items() if not name.startswith("OPENBLAS")}
+    told = {} if given is None else {"OPENBLAS_NUM_THREADS": given}
+    script = "import sys, os, ves_twin.cli\nprint(os.environ['OPENBLAS_NUM_THREADS'], 'numpy' in sys.modules)"
+    words = [sys.executable, "-c", script]
+    done = subprocess.run(words, env=others | told, capture_output=True, text=True, check=True)
+    assert done.stdout.split() == [given or "1", "False"]
+
+
 @pytest.mark.parametrize(
     ("stiffness", "says"), [("1e18", "pole"), ("-1e12", "runs away|finite|pole")]
 )

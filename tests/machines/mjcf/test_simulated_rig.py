@@ -201,3 +201,15 @@ def test_a_gap_is_crossed_before_the_driven_side_follows():
     assert np.all(y[101:121] == y[100])
     assert y[-1] == pytest.approx(0.1)
     assert Backlash("swing").edit_position(x) is x
+
+
+@pytest.mark.parametrize("mode", [Mode.CONTROL, Mode.MOTION])
+def test_a_prediction_leaves_nothing_to_the_next(machine, mode):
+    """Not even one that fell out of MuJoCo's range, nor one that was begun in between."""
+    forward, fed = MjcfForward.of(machine, mode), programme()
+    before = forward.simulate(fed, {})
+    wild = {name: 1e9 * rows for name, rows in fed.drive.items()}
+    with np.errstate(all="ignore"):
+        forward.simulate(Excitation("wild", TIME, wild), {"viscous_asymmetry@rail:slope": 2.0})
+    Work.begin(machine, fed, {"body_mass@cart:mass": 1.0}).data.qpos[:] = 1.0
+    assert np.array_equal(forward.simulate(Excitation("again", TIME, fed.drive), {}), before)

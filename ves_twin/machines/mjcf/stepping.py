@@ -123,7 +123,6 @@ def _failed(data: mujoco.MjData) -> bool:
 def _start(work: Work) -> mujoco.MjData:
     """State of the first row."""
     data = work.data
-    mujoco.mj_resetData(work.model, data)
     for joint in work.rig.description.start:
         at = work.model.joint(joint)
         position, speed = _measured_start(work, joint)

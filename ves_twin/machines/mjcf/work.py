@@ -5,7 +5,8 @@ from __future__ import annotations
 import copy
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from functools import cached_property, partial
+from functools import lru_cache, partial
+from threading import get_ident
 
 import mujoco
 import numpy as np
@@ -24,6 +25,9 @@ from ves_twin.machines.mjcf.places import SINGLE, tendon_joints, typical_speed
 SMOOTH = 0.0005
 """Share of the typical speed over which a sign is smoothed, chosen on EMPS: four times as much
 makes its 20 N of dry friction read 0.8 % high and its 200 N s/m of damping 0.8 % low."""
+
+KEPT = 4
+"""Rigs, and threads, whose data MuJoCo need not make anew."""
 
 
 @dataclass(frozen=True)
@@ -65,10 +69,12 @@ class Work:
             mujoco.mj_setConst(model, work.data)
         return work
 
-    @cached_property
+    @property
     def data(self) -> mujoco.MjData:
-        """Of the model; made once, since that takes longer than a hundred steps."""
-        return mujoco.MjData(self.model)
+        """Of the model, in its default state; what was there of another prediction is gone."""
+        data = _data(self.rig.model, get_ident())
+        mujoco.mj_resetData(self.model, data)
+        return data
 
     def at(self, element: Element, name: str) -> list[tuple[Effect, Place]]:
         """Effects on one target."""
@@ -168,6 +174,12 @@ class Work:
             if effect.element is Element.SIGNAL and (_covers(name, signal) or _of(name, signal)):
                 reading = effect.edit_reading(reading, true, self.programme.time, place)
         return reading
+
+
+@lru_cache(maxsize=KEPT)
+def _data(model: mujoco.MjModel, thread: int) -> mujoco.MjData:
+    """Made once: that takes longer than a hundred steps, and effects leave all sizes alone."""
+    return mujoco.MjData(model)
 
 
 def variables(model: mujoco.MjModel, time: FloatArray, path: FloatArray) -> dict[str, FloatArray]:
