@@ -145,10 +145,10 @@ def refine(
         if before - point.chi2 < WORTH * point.chi2:
             break
     if probed and np.isfinite(point.chi2) and not runs.budget.over:
-        turned = probe(search, point, jacobian)
-        if turned is not jacobian:
+        righted = probe(search, point, jacobian)
+        if righted is not jacobian:
             search.steps = ITERATIONS
-            point, jacobian = search.descend(point, turned)
+            point, jacobian = search.descend(point, righted)
     return _fit(causes, search, point, jacobian)
 
 
