@@ -93,6 +93,19 @@ def test_columns_are_computed_at_a_fit_that_is_not_clear(first, monkeypatch):
     assert asked == [1]  # one near suspect, which was fitted with the commissioning errors
 
 
+def test_what_is_clear_and_yet_leaves_more_than_noise_gets_columns_at_its_fit(first, monkeypatch):
+    asked = []
+
+    def noted(evidence, fits, desk):
+        asked.append(len(fits))
+        return fits
+
+    monkeypatch.setattr("ves_twin.diagnosis.explain.settled", noted)
+    monkeypatch.setattr("ves_twin.diagnosis.explain._clear", lambda *_: True)
+    explain(first, replace(LEVELS, misfit=-10.0), DEAR, together=False)
+    assert asked[0] == 1
+
+
 def test_clear_is_one_fit_that_leaves_noise_without_a_strained_error(first):
     desk = FitContext(first, LEVELS, DEAR, silent)
     (fit,) = tried(desk, first.suspects[:1])

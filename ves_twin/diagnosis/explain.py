@@ -77,17 +77,23 @@ def _singles(desk: FitContext, together: bool) -> Explanation | None:
     if _far(desk, fits):
         found = replace(judge(desk, fits, far=True), far=True)
     else:
-        found = judge(desk, fits) if desk.settings.sparse and _clear(desk, fits) else None
-        if found is None or not found.adequate:
-            fits = settled(desk.first.evidence, fits, desk)
-            found = judge(desk, fits)
+        fits, found = _weighed(desk, fits)
         others = tried(desk, rest) if rest and not found.adequate else []
         fits = [*fits, *others]
         if any(is_near(fit, min(fits, key=_chi2)) for fit in others):
-            fits = settled(desk.first.evidence, fits, desk)
-            found = judge(desk, fits)
+            fits, found = _weighed(desk, fits)
     judged = {fit.causes for fit in found.fits}
     return replace(found, hopeless=tuple(fit for fit in fits if fit.causes not in judged))
+
+
+def _weighed(desk: FitContext, fits: list[Fit]) -> tuple[list[Fit], Explanation]:
+    """Judged by columns at the leader's fit; as they are where runs are dear and that will do."""
+    if desk.settings.sparse and _clear(desk, fits):
+        found = judge(desk, fits)
+        if found.adequate:
+            return fits, found
+    fits = settled(desk.first.evidence, fits, desk)
+    return fits, judge(desk, fits)
 
 
 def _fitted_already(desk: FitContext, suspect: Candidate) -> bool:
