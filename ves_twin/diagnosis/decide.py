@@ -24,6 +24,7 @@ from ves_twin.diagnosis.preprocess import Dataset, preprocess
 from ves_twin.diagnosis.profile import profiled
 from ves_twin.diagnosis.refine import ROUGH, Fit, refine
 from ves_twin.diagnosis.runs import Runs
+from ves_twin.diagnosis.search import ITERATIONS
 from ves_twin.diagnosis.settings import Settings
 from ves_twin.diagnosis.signature_library import SignatureLibrary, build_bank, cached_bank
 from ves_twin.diagnosis.verdict import Kind
@@ -237,9 +238,10 @@ def _ahead(
 def _probed(found: Explanation, settings: Settings) -> Explanation:
     """The chosen fits once more, with runs along what they know least of their causes.
 
-    Their sizes are profiled where runs are cheap.
+    Where runs are cheap they are first searched once more by columns of their own, and then their
+    sizes are profiled.
     """
-    evidence = found.evidence
+    evidence, dear = found.evidence, settings.sparse
     chosen = tuple(
         refine(
             evidence,
@@ -248,8 +250,8 @@ def _probed(found: Explanation, settings: Settings) -> Explanation:
             fit.local,
             step_share=fit.step_share,
             probed=True,
-            steps=0,
-            known=fit.columns,
+            steps=0 if dear else ITERATIONS,
+            known=fit.columns if dear else None,
         )
         for fit in found.chosen
     )
