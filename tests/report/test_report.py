@@ -26,6 +26,7 @@ from ves_twin.diagnosis.settings import Settings
 from ves_twin.diagnosis.verdict import Kind
 from ves_twin.diagnosis.whitening import whitening_declared
 from ves_twin.report.diagnosis.answer import headline, next_step, tone
+from ves_twin.report.diagnosis.basis import gain_words, taken_words
 from ves_twin.report.diagnosis.credibility import Pedigree, credibility
 from ves_twin.report.diagnosis.page import diagnosis_page
 from ves_twin.report.diagnosis.pictures import answer_figure
@@ -175,6 +176,18 @@ def test_an_unknown_shows_the_nearest_and_does_not_accept_it(settings):
     page = diagnosis_page(verdict)
     assert "Nearest, and not accepted" in second_screen(page)
     assert "nearest cause" in top
+
+
+def test_what_predicts_held_out_data_worse_than_the_given_model_is_no_candidate(settings):
+    u = HELD.drive["drive.u"][:, 0]
+    data = record(np.random.default_rng(3), added=(u**3)[:, None] * [0.02, 0.0], fed=HELD)
+    order = record(np.random.default_rng(4))
+    verdict = diagnose(Toy(), [data], settings=settings, held_out=[order])
+    assert verdict.verdict is Kind.UNKNOWN
+    assert "out.0" in verdict.gain.worse
+    assert verdict.nearest == ()
+    assert "no candidate is written" in second_screen(diagnosis_page(verdict))
+    assert diagnose(Toy(), [data], settings=settings).nearest  # nobody has tried it elsewhere
 
 
 def test_the_traces_are_the_record_and_fit_it_better_with_the_cause(friction):
@@ -422,6 +435,18 @@ def test_a_proved_extension_that_is_not_firm_acts_like_its_name_and_its_stand_in
     assert "Firm: friction at plant" in headline(proof_of(proven, firm=True))
 
 
+def test_what_ends_its_range_is_not_counted_as_proved(proven):
+    verdict = proof_of(proven, firm=False)
+    ended = replace(verdict, proved=(replace(verdict.proved[0], ended=True),))
+    said = "At the end of its range, so not proved: friction at plant"
+    assert said in headline(ended)
+    assert "No causes improve the prediction" in headline(ended)
+    assert "0 of them improve" in diagnosis_page(ended)
+    assert "0 extensions proved" in ended.words
+    assert said.partition(":")[0] in ended.words
+    assert said not in headline(verdict)
+
+
 @pytest.mark.parametrize(("sds", "inside"), [(0.5, True), (10.0, False)])
 def test_a_measurement_inside_the_envelope_is_said_not_to_show_the_cause(friction, sds, inside):
     (traces,) = friction.exhibit.traces
@@ -458,6 +483,21 @@ def test_the_page_tells_how_many_were_tried_what_is_left_and_what_is_not_separat
     assert "drive.u (20 %)" in said
     assert "friction at plant, lag at plant: only a combination of them is known" in said
     assert "14 times worse" in said
+
+
+def test_where_more_than_noise_stays_the_gain_is_told_by_the_rms_and_by_units_of_noise(proven):
+    """As the damper's: the rms falls from 10.5 to 2.2 kN, its fast part is hardly touched."""
+    errors = {"force": (10505.0, 2204.0), "flow": (2.0, 1.5), "speed": (1.0, 1.03)}
+    gain = Gain(0.059, 0.01, 0.119, before=405.0, after=382.0, errors=errors)
+    words = gain_words(replace(proven, verdict=Kind.PARTIAL, gain=gain))
+    assert "the rms error on held-out recordings falls by 79 % (force)" in words
+    assert "grows by 3 % (speed)" in words
+    assert "of its square in units of noise, 6 % (1 % to 12 %) goes" in words
+    assert "flow" not in words
+    same = replace(gain, errors={"force": (2.0, 1.0), "speed": (6.1823, 6.1825)})
+    assert "stays (speed)" in gain_words(replace(proven, verdict=Kind.PARTIAL, gain=same))
+    left = gain_words(replace(proven, gain=gain))  # noise alone is left: one measure says it all
+    assert left == taken_words(gain)
 
 
 def test_what_is_proved_stands_in_the_verdict_file(proven):

@@ -181,7 +181,7 @@ def _plant_sentence(found: Diagnosis) -> str:
 
 def _text(found: Diagnosis, folder: Path) -> str:
     from ves_twin.report.diagnosis.answer import confidence_sentence, next_step, verdict_sentence
-    from ves_twin.report.diagnosis.basis import rests_on, taken_words
+    from ves_twin.report.diagnosis.basis import gain_words, rests_on
     from ves_twin.report.diagnosis.law import law_sentences
     from ves_twin.report.diagnosis.proved import (
         inseparable_sentences,
@@ -201,8 +201,8 @@ def _text(found: Diagnosis, folder: Path) -> str:
     for cause in () if verdict.proved else verdict.causes:
         for name, size in cause.largest.items():
             lines.append(f"size      {name_of(cause)}: {name}, 90 % {interval_words(size)}")
-    if verdict.gain is not None and verdict.gain.share is not None:
-        lines.append(f"gain      {taken_words(verdict.gain)}")
+    if gain_words(verdict):
+        lines.append(f"gain      {gain_words(verdict)}")
     if verdict.law is not None:
         said = law_sentences(verdict.law)
         first, *rest = said[2:] if verdict.law.claimed else said

@@ -98,10 +98,12 @@ def assemble_verdict(
     causes, alternatives = _causes(findings, found) if named and found else ((), ())
     built = findings.built
     ends = {p.name: (p.low, p.high) for p in findings.seen.runs.forward.parameters}
-    proved = sized(built, causes, ends) if built and named else ()
+    row = _row(findings.seen)
+    proved = sized(built, causes, ends, row) if built and named else ()
     firm = {one.label: one.firm for one in proved}
     causes = tuple(replace(c, firm=firm.get(f"{c.effect}@{c.target}", c.firm)) for c in causes)
-    nearest = _causes(findings, found)[0] if found and not named else ()
+    worse = findings.gain is not None and bool(findings.gain.worse)
+    nearest = _causes(findings, found)[0] if found and not named and not worse else ()
     exhibit = exhibit_of(findings.seen, first, findings.fitted, findings.before)
     least = first.limit(limits.effect)
     sizes = findable_sizes(first.screen, least)
@@ -161,20 +163,25 @@ def _provisional(verdict: Verdict) -> Verdict:
 
 
 def sized(
-    built: BuildUp, causes: Sequence[Cause], ends: Mapping[str, tuple[float, float]]
+    built: BuildUp,
+    causes: Sequence[Cause],
+    ends: Mapping[str, tuple[float, float]],
+    row: float = 0.0,
 ) -> tuple[Proved, ...]:
     """What is proved with its sizes.
 
     Firm only where it passes the test by itself, too, no commissioning error explains it either,
     and no interval holds the value that the model has already: a shape that is known so little is
     not known by name. Nor where an interval reaches an end of its range, which then says the size
-    in place of the record. What full simulation fits to nothing is left out: its column improved
-    the prediction, its effect does not.
+    in place of the record, nor a delay below a row, which the clock of the recordings may have.
+    What full simulation fits to nothing is left out: its column improved the prediction, its
+    effect does not.
 
     Args:
         built: what is proved.
         causes: with sizes.
         ends: of the range of each parameter.
+        row: from one row of the recordings to the next [s].
     """
     named = {f"{cause.effect}@{cause.target}": cause for cause in causes}
     found = []
@@ -188,14 +195,27 @@ def sized(
         }
         known = all(not s.low <= s.nominal <= s.high for s in sizes.values())
         known = known and one.p <= built.false_discovery_rate  # many that are sure raise its limit
-        known = known and not any(_ended(e, *ends[name]) for name, e in cause.parameters.items())
-        found.append(replace(one, parameters=sizes, firm=one.firm and cause.firm and known))
+        ended = any(_ended(e, *ends[name]) for name, e in cause.parameters.items())
+        below = any(_below(name, e, row) for name, e in cause.parameters.items())
+        firm = one.firm and cause.firm and known and not (ended or below)
+        found.append(replace(one, parameters=sizes, firm=firm, ended=ended, below_row=below))
     return tuple(found)
 
 
 def _ended(size: Estimate, low: float, high: float) -> bool:
     """Whether an interval reaches an end of the range that is not what the model has already."""
     return (size.low <= low < size.nominal) or (size.high >= high > size.nominal)
+
+
+def _below(name: str, size: Estimate, row: float) -> bool:
+    """Whether this is a delay of less than a row."""
+    return name.rpartition(":")[2] == "delay" and abs(size.value - size.nominal) < row
+
+
+def _row(seen: Dataset) -> float:
+    """The longest step between rows of the recordings [s]; poses have none."""
+    clocked = [programme.time for programme in seen.runs.programmes if not programme.poses]
+    return max((float(np.median(np.diff(time))) for time in clocked), default=0.0)
 
 
 def _lookalikes(

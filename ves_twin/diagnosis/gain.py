@@ -29,6 +29,9 @@ DRAWS = 2000
 LEAST_EXCESS = 0.25
 """Of a resample, as a share of the whole's: what a share is taken of must not vanish."""
 
+GROWN = 0.01
+"""Growth of a channel's rms error that counts: less is told by no record of minutes."""
+
 INVISIBLE = 0.02
 """Excess of mean z^2 over noise below which the held-out recording does not show the effect."""
 
@@ -80,6 +83,12 @@ class Gain:
         better, by d^2 of its own loudness there, and one that was fitted to noise as much worse.
         """
         return self.after > self.before if self.share is None else not self.passed
+
+    @property
+    def worse(self) -> tuple[str, ...]:
+        """Channels that the extended model predicts worse than the model as it was given."""
+        limit = 1.0 + GROWN
+        return tuple(n for n, (before, after) in self.errors.items() if after > limit * before)
 
     @property
     def carries_on(self) -> bool:

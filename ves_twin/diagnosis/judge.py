@@ -16,7 +16,7 @@ from ves_twin.diagnosis.fits import again, is_near, refined, start_of, within_re
 from ves_twin.diagnosis.forward import Hypothesis
 from ves_twin.diagnosis.linearise import renewed
 from ves_twin.diagnosis.probability import probabilities
-from ves_twin.diagnosis.refine import Fit, bare_residual, residual_about
+from ves_twin.diagnosis.refine import Fit, bare_residual, refine, residual_about
 from ves_twin.diagnosis.screen import Candidate, Screen
 from ves_twin.diagnosis.search import FARTHEST
 from ves_twin.diagnosis.signature_library import build_bank
@@ -56,6 +56,9 @@ def judge(desk: FitContext, fits: list[Fit], far: bool = False) -> Explanation:
     evidence = Evidence(runs, first.evidence.measured, own)
     commissioning, rough = _commissioning(desk, evidence, leader, far)
     ranked = _ranked(desk, evidence, leader, [fit for fit in fits if is_near(fit, leader)], far)
+    limit_of_pull = pull_limit(first.screen.bank, settings.alpha)
+    if not far and ranked[0].pull > limit_of_pull:
+        ranked = sorted([_relaxed(evidence, ranked[0]), *ranked[1:]], key=lambda fit: fit.chi2)
     best = ranked[0]
     taken = max(commissioning.chi2 - best.chi2, 0.0)
     sure = min(taken, best.power) if rough else taken
@@ -69,7 +72,7 @@ def judge(desk: FitContext, fits: list[Fit], far: bool = False) -> Explanation:
     second = None if far else _second(desk, evidence, chosen[0], beside)
     limit = desk.thresholds.effect + beside
     fall = commissioning.chi2 - chosen[0].chi2 - (taken - sure)
-    strained = chosen[0].pull > pull_limit(first.screen.bank, settings.alpha)
+    strained = chosen[0].pull > limit_of_pull
     enough = fall > LEAST * desk.thresholds.effect and not strained and second is not None
     return Explanation(
         evidence=evidence,
@@ -96,6 +99,17 @@ def _ranked(
     rivals = [FitJob.again(evidence, fit, target=target) for fit in fits if fit is not leader]
     ranked = [best, *refined([replace(job, rough=rough) for job in rivals], desk, what)]
     return sorted(ranked, key=lambda fit: fit.chi2)
+
+
+def _relaxed(evidence: Evidence, fit: Fit) -> Fit:
+    """A strained fit gone on with along what it knows least; as it was where that leaves more.
+
+    Columns that are a little off bind a direction that the record leaves open: a crane's forces and
+    masses of one share stayed 4 % low, 3.9 sd of a gain, where friction alone leaves noise.
+    """
+    at = (fit.shift, fit.local, 0, fit.step_share)
+    probed = refine(evidence, fit.causes, *at, probed=True)
+    return min(fit, probed, key=lambda one: one.chi2)
 
 
 def _commissioning(

@@ -244,6 +244,7 @@ class Search:
 
     def descend(self, point: Point, jacobian: FloatArray) -> tuple[Point, FloatArray]:
         """From a point with its Jacobian down to the best one."""
+        self.damping = 0.0  # what another Jacobian's steps were worth says nothing of these
         for _ in range(self.steps):
             if self.runs.budget.skips(BETTER_FITS):
                 break

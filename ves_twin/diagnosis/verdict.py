@@ -198,7 +198,8 @@ class Verdict:
     by itself, where all together have no explanation. `proved` are the causes that held-out data
     prove one by one, out of `put_to_proof`, with the false-discovery rate that this keeps; `left`
     is what then stays of each channel, `inseparable` what is known only in combination. `nearest`
-    are the causes that come nearest where none is named. `law` is what was found where no cause
+    are the causes that come nearest where none is named, unless they predict a held-out channel
+    worse than the model as it was given. `law` is what was found where no cause
     explains the record and a law was looked for; if it is claimed, `tuned`, `residuals`,
     `leftover` and `gain` are with it. A law that is a `part` stands beside the causes, and `tuned`
     has their sizes as they were fitted together with it. `exhibit` has the traces of the report,
@@ -311,12 +312,16 @@ class Verdict:
         names = {f"{c.effect}@{c.target}": self._name(i) for i, c in enumerate(self.causes)}
         firm = [names[one.label] for one in self.proved if one.firm]
         like = [
-            " or ".join([names[one.label], *one.acts_like]) for one in self.proved if not one.firm
+            " or ".join([names[one.label], *one.acts_like])
+            for one in self.proved
+            if not (one.firm or one.ended)
         ]
-        count = len(self.proved)
-        said = [f"{count} extension{'s' * (count > 1)} proved to predict held-out data better."]
+        ended = [names[one.label] for one in self.proved if one.ended]
+        count = len(firm) + len(like)
+        said = [f"{count} extension{'s' * (count != 1)} proved to predict held-out data better."]
         said += [f"Named: {'; '.join(firm)}."] if firm else []
         said += [f"Acts like: {'; '.join(like)}."] if like else []
+        said += [f"At the end of its range, so not proved: {'; '.join(ended)}."] if ended else []
         if self.verdict is Kind.PARTIAL:
             said.append("Something more stays unexplained.")
         if self.law is not None and self.law.part and self.law.claimed:

@@ -18,6 +18,19 @@ def test_a_size_whose_interval_reaches_the_end_of_its_range_is_not_firm(high, fi
     one = Proved("coulomb_friction", "joint", {}, 1e-3, 20, {"torque": (2.0, 1.0)}, True)
     (told,) = sized(BuildUp((one,), 1, 0.05, {}, {}), (cause,), ENDS)
     assert told.firm is firm
+    assert told.ended is not firm
+
+
+@pytest.mark.parametrize(("value", "firm"), [(0.0008, False), (0.0021, True)])
+def test_a_delay_of_less_than_a_row_is_not_firm(value, firm):
+    """When in its row a log stamps each column is not known (EMPS, 0.8 ms in rows of 1 ms)."""
+    size = Estimate(value, 0.9 * value, 1.1 * value, "s", 0.0)
+    cause = Cause("actuator_delay", "motor", {"actuator_delay@motor:delay": size}, 1.0, True, None)
+    one = Proved("actuator_delay", "motor", {}, 1e-9, 20, {"torque": (2.0, 1.0)}, True)
+    ends = {"actuator_delay@motor:delay": (0.0, 0.05)}
+    (told,) = sized(BuildUp((one,), 1, 0.05, {}, {}), (cause,), ends, row=0.001)
+    assert told.firm is firm
+    assert told.below_row is not firm
 
 
 @pytest.mark.parametrize(("low", "firm"), [(0.2, True), (-0.2, False)])

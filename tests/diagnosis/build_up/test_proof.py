@@ -11,6 +11,7 @@ from linear import KINDS, Linear, drawn, halves, recorded, seen
 from ves_twin.diagnosis.build_up.discrepancy import discrepancy
 from ves_twin.diagnosis.build_up.halves import halves_at, split
 from ves_twin.diagnosis.build_up.inseparable import inseparable
+from ves_twin.diagnosis.build_up.nearest import nearest
 from ves_twin.diagnosis.build_up.paired import paired
 from ves_twin.diagnosis.build_up.proof import FALSE_SHARE, prove
 from ves_twin.diagnosis.build_up.report import report_of
@@ -256,3 +257,30 @@ def test_held_out_columns_are_simulated_for_chosen_trials_alone():
     assert set(both.held.columns.known) == {0, 2}
     assert len(both.regression.half.columns.known) == len(both.regression.trials) > 2
     assert proof.tested == 2
+
+
+@pytest.mark.parametrize("seed", [1, 3])
+def test_what_passes_for_discrepancy_is_looked_for_by_plain_squares_too(seed):
+    """Offsets at both joints: a discrepancy learnt without them is slow enough to hide one."""
+    regression = halves(PLANT, {"offset@a:size": 0.8, "offset@b:size": 0.8}, seed).regression
+    names = [{regression.trials[n].cause.label for n in few} for few in Selector(regression).best()]
+    assert {"offset@a", "offset@b"} in names
+    assert len(names) == len({frozenset(few) for few in names})
+
+
+def test_nearest_leaves_no_channel_more_than_nothing_does():
+    """Of a machine whose friction at the second joint is of the other sign where it is held out."""
+    there = {"coulomb@a:size": 0.8, "coulomb@b:size": -0.6}
+    one, two = (
+        seen(PLANT, recorded(PLANT, hidden, seed))
+        for hidden, seed in (({**there, "coulomb@b:size": 0.6}, 5), (there, 6))
+    )
+    both = halves_at(one, two, one.runs.origin, PLANT.hypotheses)
+    labels = [trial.cause.label for trial in both.regression.trials]
+    first, second = labels.index("coulomb@a"), labels.index("coulomb@b")
+    bench = prove(both.regression, both.held, [first, second]).bench
+    assert nearest(bench, [[first], [second], [first, second]]) == (first,)
+    assert nearest(bench, [[second], [first, second]]) == ()
+    same = halves_at(one, one, one.runs.origin, PLANT.hypotheses)
+    bench = prove(same.regression, same.held, [first, second]).bench
+    assert nearest(bench, [[first], [second], [first, second]]) == (first, second)

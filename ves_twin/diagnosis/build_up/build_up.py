@@ -13,11 +13,14 @@ from ves_twin.diagnosis.adequacy import cells, misfit
 from ves_twin.diagnosis.build_up.converged import converged
 from ves_twin.diagnosis.build_up.discrepancy import discrepancy
 from ves_twin.diagnosis.build_up.halves import Halves, carried_point, halves_at
+from ves_twin.diagnosis.build_up.idle import idle
+from ves_twin.diagnosis.build_up.nearest import nearest
 from ves_twin.diagnosis.build_up.paired import loss
 from ves_twin.diagnosis.build_up.proof import Bench, Proof, prove
 from ves_twin.diagnosis.build_up.report import report_of
 from ves_twin.diagnosis.build_up.result import BuildUp
 from ves_twin.diagnosis.build_up.select import Selector
+from ves_twin.diagnosis.build_up.simpler import simpler
 from ves_twin.diagnosis.build_up.sizes import half_widths
 from ves_twin.diagnosis.build_up.trials import Trial
 from ves_twin.diagnosis.evidence import Evidence
@@ -49,7 +52,7 @@ class Built:
 
     Attributes:
         found: the explanation with everything that is proved, in units of noise as the page shows
-            it; that of before where nothing is proved.
+            it. Where nothing is proved, with the few causes that predict best, or that of before.
         before: fit of commissioning errors alone, under the same discrepancy.
         report: what was proved, what is left.
         fitted, held: recordings, or stretches of them, that it was fitted to and proved on.
@@ -141,6 +144,31 @@ class _Builder:
             return halves, few, point
         return there, more, at
 
+    def at_work(
+        self, halves: Halves, proof: Proof, point: FloatArray, evidence: Evidence
+    ) -> tuple[Proof, Fit]:
+        """What is proved and still takes something away where all of it is fitted in full."""
+        while True:
+            fit = self.refined(halves, proof.proved, point, evidence, probed=True)
+            gone = idle(proof, self.fitted.runs, self.held, fit)
+            if gone is None:
+                return proof, fit
+            proof = replace(
+                proof,
+                proved=tuple(n for n in proof.proved if n != gone),
+                dropped={**proof.dropped, gone: 1.0},
+            )
+
+    def near(self, halves: Halves, proof: Proof) -> Fit | None:
+        """Few causes that are not proved, fitted in full; None where they do not predict better."""
+        origin, regression = self.fitted.runs.origin, halves.regression
+        trials = nearest(proof.bench, Selector(regression).best())
+        if not trials:
+            return None
+        evidence = self.evidence(regression.fit(trials).residual, memory=False)
+        at_work, fit = self.at_work(halves, replace(proof, proved=trials), origin, evidence)
+        return fit if at_work.proved else None
+
     def refined(
         self,
         halves: Halves,
@@ -192,17 +220,19 @@ def build_up(desk: FitContext, start: Explanation, fitted: Dataset, held: Datase
     if proof.proved != first.proved:
         halves, proof, point = builder.onward(halves, proof, point)
     evidence = builder.evidence(proof.bench.fit.residual, memory=False)
-    final = builder.refined(halves, proof.proved, point, evidence, probed=True)
+    proof, final = builder.at_work(halves, simpler(proof), point, evidence)
     before = builder.refined(halves, (), point, evidence)
-    final = _widened(evidence, final, desk.settings.confidence)
-    plain = Evidence(fitted.runs, fitted.measured, _on(start.evidence.whitening, fitted.runs))
-    final, before = _in_noise(plain, final), _in_noise(plain, before)
-    found = _explained(desk, start, final) if proof.proved else start
     there = held.runs.one(carried_point(fitted.runs, held.runs, final.shift))
     ends = (
         np.asarray(bare_residual(evidence, final), float),
         np.asarray(held.measured - there, float),
     )
+    shown = final if proof.proved else builder.near(halves, proof)
+    plain = Evidence(fitted.runs, fitted.measured, _on(start.evidence.whitening, fitted.runs))
+    found, before = start, _in_noise(plain, before)
+    if shown is not None:
+        sure = _widened(evidence, shown, desk.settings.confidence)
+        found = _explained(desk, start, _in_noise(plain, sure))
     return Built(found, before, report_of(halves, proof, ends), fitted, held)
 
 

@@ -37,6 +37,10 @@ class Proved:
             same motion, and no commissioning error explains it.
         acts_like: causes that do as well in its place on held-out data; or the few, with TOGETHER
             between, whose columns together are its own.
+        ended: whether an interval of its sizes reaches an end of its range. The range then says the
+            size: it improves the prediction in the place of something else, and is not proved.
+        below_row: whether it is a delay of less than a row of the recordings, which their clock
+            explains as well.
     """
 
     effect: str
@@ -47,6 +51,8 @@ class Proved:
     takes: Mapping[str, tuple[float, float]]
     firm: bool
     acts_like: tuple[str, ...] = ()
+    ended: bool = False
+    below_row: bool = False
 
     @property
     def label(self) -> str:

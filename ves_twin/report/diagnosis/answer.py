@@ -5,7 +5,7 @@ from __future__ import annotations
 from ves_twin.core.quantity import percent
 from ves_twin.diagnosis.disagreement import disagree
 from ves_twin.diagnosis.verdict import Cause, Kind, Verdict
-from ves_twin.report.diagnosis.basis import taken_share
+from ves_twin.report.diagnosis.basis import gain_words, taken_share
 from ves_twin.report.diagnosis.law import worth_sentence
 from ves_twin.report.diagnosis.limits import next_sentences
 from ves_twin.report.diagnosis.words import (
@@ -146,11 +146,13 @@ def _beyond(verdict: Verdict) -> str:
 def _proved(verdict: Verdict) -> str:
     """Of causes that were proved one by one: firm names, those that act like one, what is left."""
     firm = [spoken(one.label) for one in verdict.proved if one.firm]
-    like = [spoken(one.label) for one in verdict.proved if not one.firm]
-    count = len(verdict.proved)
-    what = "1 cause improves" if count == 1 else f"{count} causes improve"
+    like = [spoken(one.label) for one in verdict.proved if not (one.firm or one.ended)]
+    ended = [spoken(one.label) for one in verdict.proved if one.ended]
+    count = len(firm) + len(like)
+    what = "1 cause improves" if count == 1 else f"{count or 'No'} causes improve"
     said = f"{what} the prediction of held-out data."
-    for begin, names in (("Firm:", firm), ("Something that acts like", like)):
+    begins = ("Firm:", "Something that acts like", "At the end of its range, so not proved:")
+    for begin, names in zip(begins, (firm, like, ended), strict=True):
         more = f" and {len(names) - TOLD} more" if len(names) > TOLD else ""
         said += f" {begin} {', '.join(names[:TOLD])}{more}." if names else ""
     if verdict.verdict is Kind.PARTIAL:
@@ -212,8 +214,10 @@ def nearest_sentence(verdict: Verdict) -> str:
         names = " with ".join(map(spoken, verdict.suspect.split(" with ")))
         said = f"Nearest, and not accepted: {names}. "
         if verdict.gain is not None and verdict.gain.share is not None and verdict.gain.passed:
-            share = taken_share(verdict.gain)
-            said += f"It takes {share} of the held-out error away, and more is missing. "
+            said += f"With it {gain_words(verdict)}. More is missing. "
+        if verdict.gain is not None and verdict.gain.worse:
+            worse = listed(verdict.gain.worse[:TOLD])
+            said += f"It predicts {worse} worse than the model as given: no candidate is written. "
     if left.loud:
         top = left.loud[0]
         said += f"What is left is loudest in {top.channel} at {ends_words(top)}."

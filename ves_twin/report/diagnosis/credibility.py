@@ -11,7 +11,7 @@ from enum import StrEnum
 from ves_twin.core.quantity import digits
 from ves_twin.diagnosis.rivals import Standing
 from ves_twin.diagnosis.verdict import Verdict
-from ves_twin.report.diagnosis.basis import taken_share
+from ves_twin.report.diagnosis.basis import gain_words
 
 
 class Pedigree(StrEnum):
@@ -68,10 +68,9 @@ def _validation(verdict: Verdict) -> Factor:
     passed = gain is not None and gain.passed and not verdict.unconfirmed
     external = basis.recordings == "external"
     if external and basis.held_out != "none" and named and passed and gain is not None:
-        share = taken_share(gain)
         said = (
-            f"On external recordings that were held out, the extended model takes {share} of the"
-            " error beyond noise away. Beyond motions like those nothing is shown."
+            f"External recordings were held out; gain of the extended model: {gain_words(verdict)}."
+            " Beyond motions like those nothing is shown."
         )
         return Factor("validation", Pedigree.VALIDATED, said)
     why = []

@@ -36,7 +36,8 @@ def proof_sentence(verdict: Verdict) -> str:
     rate = percent(verdict.false_discovery_rate)
     said = (
         f"{verdict.put_to_proof} causes were tested on held-out data;"
-        f" {len(verdict.proved)} of them improve its prediction. Of such, at most {rate} are"
+        f" {sum(not one.ended for one in verdict.proved)} of them improve its prediction. Of such,"
+        f" at most {rate} are"
         " expected to be false."
     )
     if not verdict.proved:
@@ -51,6 +52,10 @@ def standing_words(one: Proved) -> str:
     """How sure a name is."""
     if one.firm:
         return "firm"
+    if one.ended:
+        return "at the end of its range, so not proved: it stands for something else"
+    if one.below_row:
+        return "less than a row of the log: its clock explains that as well"
     if one.acts_like:
         like = [" with ".join(map(spoken, name.split(TOGETHER))) for name in one.acts_like]
         return f"acts like it, or like {' or '.join(like)}"

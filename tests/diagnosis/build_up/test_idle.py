@@ -1,0 +1,70 @@
+"""What is proved must still take something away where all of it is fitted in full."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from linear import Linear, recorded, seen
+
+from ves_twin.diagnosis.build_up.halves import halves_at
+from ves_twin.diagnosis.build_up.idle import idle
+from ves_twin.diagnosis.build_up.proof import prove
+from ves_twin.diagnosis.evidence import Evidence
+from ves_twin.diagnosis.linearise import linearise
+from ves_twin.diagnosis.refine import refine
+from ves_twin.diagnosis.whitening import whitening_declared
+
+HIDDEN = {"viscous@a:size": 1.0, "coulomb@b:size": 0.8}
+
+
+@pytest.fixture(scope="module")
+def proved():
+    """Two causes that held-out data prove, their full fit, and both halves."""
+    plant = Linear(kinds=("viscous", "coulomb"))
+    one, two = (seen(plant, recorded(plant, HIDDEN, seed)) for seed in (5, 6))
+    runs = one.runs
+    halves = halves_at(one, two, runs.origin, plant.hypotheses)
+    labels = [trial.cause.label for trial in halves.regression.trials]
+    chosen = [labels.index(name) for name in ("viscous@a", "coulomb@b")]
+    proof = prove(halves.regression, halves.held, chosen)
+    assert len(proof.proved) == 2
+    causes = tuple(halves.regression.trials[n].cause for n in proof.proved)
+    evidence = Evidence(runs, one.measured, whitening_declared(runs))
+    fit = refine(evidence, causes, runs.origin, linearise(runs, runs.origin), 1)
+    return proof, fit, runs, two
+
+
+def moved(proof, fit, runs, size):
+    """The same fit with the second cause at another size."""
+    shift = fit.shift.copy()
+    cause = proof.bench.regression.trials[proof.proved[1]].cause
+    shift[runs.indices(cause)] = size
+    return replace(fit, shift=shift)
+
+
+def test_causes_that_take_something_away_stay(proved):
+    proof, fit, runs, held = proved
+    assert idle(proof, runs, held, fit) is None
+
+
+@pytest.mark.parametrize("size", [0.0, -0.8, 3.0])
+def test_a_cause_that_takes_nothing_away_at_its_size_is_told(proved, size):
+    proof, fit, runs, held = proved
+    assert idle(proof, runs, held, moved(proof, fit, runs, size)) == proof.proved[1]
+
+
+def test_a_size_at_which_the_plant_fails_is_not_taken_for_idle(proved, monkeypatch):
+    proof, fit, runs, held = proved
+    first = runs.indices(proof.bench.regression.trials[proof.proved[0]].cause)
+
+    class Failing:
+        def __getattr__(self, name):
+            return getattr(held.runs, name)
+
+        def one(self, shift):
+            rows = held.runs.one(shift)
+            return rows if np.any(shift[first]) else np.full_like(rows, np.nan)
+
+    assert idle(proof, runs, replace(held, runs=Failing()), fit) is None

@@ -1,0 +1,75 @@
+"""A cause with numbers that do nothing is told as the one without them."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+import pytest
+from linear import JOINTS, PERIOD, Linear, recorded, seen
+
+from ves_twin.diagnosis.build_up.halves import halves_at
+from ves_twin.diagnosis.build_up.proof import prove
+from ves_twin.diagnosis.build_up.simpler import simpler
+from ves_twin.diagnosis.build_up.trials import Trial
+from ves_twin.diagnosis.forward import Excitation, Hypothesis, Parameter
+
+
+@dataclass(frozen=True)
+class Falling(Linear):
+    """With dry friction that falls by exp(-(v / speed)^2)."""
+
+    kinds: tuple[str, ...] = ("viscous", "coulomb")
+
+    @property
+    def parameters(self) -> tuple[Parameter, ...]:
+        more = [
+            Parameter(f"falling@{j}:{name}", "1", 0.0, -50.0, 50.0)
+            for j in JOINTS
+            for name in ("level", "speed")
+        ]
+        return (*super().parameters, *more)
+
+    @property
+    def hypotheses(self) -> tuple[Hypothesis, ...]:
+        names = {j: (f"falling@{j}:level", f"falling@{j}:speed") for j in JOINTS}
+        more = tuple(
+            Hypothesis("falling", j, names[j], (0.1, 0.1), (2.0, 30.0), starts=((1.0, 1.0),))
+            for j in JOINTS
+        )
+        return (*super().hypotheses, *more)
+
+    def simulate(
+        self, programme: Excitation, values: Mapping[str, float], refined: bool = False
+    ) -> np.ndarray:
+        rows = super().simulate(programme, values, refined)
+        for c, joint in enumerate(JOINTS):
+            level, speed = (values.get(f"falling@{joint}:{n}", 0.0) for n in ("level", "speed"))
+            v = np.gradient(programme.drive["q"][:, c], PERIOD)
+            if level and speed:
+                rows[:, c] += level * np.tanh(v / 0.02) * np.exp(-np.square(v / speed))
+        return rows
+
+
+def told(speed: float) -> set[str]:
+    """What a proof of falling friction comes to, of a machine whose friction falls over a speed."""
+    plant = Falling()
+    hidden = {"falling@a:level": 0.8, "falling@a:speed": speed}
+    one, two = (seen(plant, recorded(plant, hidden, seed)) for seed in (5, 6))
+    cause = next(h for h in plant.hypotheses if h.label == "falling@a")
+    present = (Trial(cause, (0.8, speed), positive=True),)
+    halves = halves_at(one, two, one.runs.origin, plant.hypotheses, present)
+    regression = halves.regression
+    chosen = [n for n, trial in enumerate(regression.trials) if trial in present]
+    proof = prove(regression, halves.held, chosen)
+    assert len(proof.proved) == 1
+    after = simpler(proof)
+    tried = after.tested - proof.tested  # one trial for each that could take its place
+    assert tried <= 1
+    return {regression.trials[n].cause.label for n in after.proved}
+
+
+@pytest.mark.parametrize(("speed", "label"), [(30.0, "coulomb@a"), (0.6, "falling@a")])
+def test_friction_that_falls_beyond_the_speeds_of_a_record_is_coulomb_friction(speed, label):
+    assert told(speed) == {label}

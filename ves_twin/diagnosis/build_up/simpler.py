@@ -1,0 +1,65 @@
+"""simpler: a proof in which a cause with numbers that do nothing is the one without them."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+from ves_twin.diagnosis.build_up.paired import loss
+from ves_twin.diagnosis.build_up.proof import Bench, Proof, prove
+from ves_twin.diagnosis.build_up.stand_ins import SIGNIFICANT
+
+INEFFECTIVE = 0.1
+"""Share of a cause's held-out improvement up to which further numbers are worth none."""
+
+
+def simpler(proof: Proof) -> Proof:
+    """The proof with the simplest cause at each place that predicts as well as the proved one.
+
+    Stribeck friction that falls beyond the speeds of a record is Coulomb friction. What the further
+    numbers of a cause improve on held-out rows must be clear of zero, or more than INEFFECTIVE of
+    the whole; and all that takes its place must be proved as everything is.
+    """
+    told = proof
+    for n in proof.proved:
+        for other in _fewer(told, n):
+            names = [other if k == n else k for k in told.proved]
+            bench = told.bench
+            gone = told.tested - len(names)  # one trial is new, the others were put to proof
+            tried = prove(bench.regression, bench.held, names, more=gone + 1)
+            told = replace(told, tested=tried.tested)
+            if set(tried.proved) == set(names):
+                told = replace(tried, dropped={**told.dropped, **tried.dropped})
+                break
+    return told
+
+
+def _fewer(proof: Proof, trial: int) -> list[int]:
+    """Trials of causes with fewer numbers at the same place that do as well, the best first."""
+    regression = proof.bench.regression
+    trials, kept = regression.trials, list(proof.proved)
+    used = {trials[k].cause.label for k in kept}
+    cause = trials[trial].cause
+    others = [
+        k
+        for k, one in enumerate(trials)
+        if one.cause.target == cause.target
+        and len(one.cause.parameters) < len(cause.parameters)
+        and one.cause.label not in used
+    ]
+    if not others:
+        return []
+    rest = [k for k in kept if k != trial]
+    fit = regression.solve([*kept, *others], proof.bench.fit.whitening)
+    bench = replace(proof.bench, fit=fit)
+    worse = {k: _worse(bench, rest, trial, k) for k in others}
+    limit = INEFFECTIVE * proof.differences[trial].total
+    return sorted((k for k in others if worse[k] <= limit), key=lambda k: worse[k])
+
+
+def _worse(bench: Bench, rest: Sequence[int], trial: int, other: int) -> float:
+    """What held-out rows lose by another trial in the place of one; infinite if that is clear."""
+    scale = bench.scale([*rest, trial])
+    losses = [loss(bench.innovations([*rest, k]), scale) for k in (other, trial)]
+    told = bench.compared(trial, *losses)
+    return told.total if told.p > SIGNIFICANT else float("inf")
