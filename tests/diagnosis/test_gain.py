@@ -12,8 +12,6 @@ from ves_twin.diagnosis.evidence import Evidence
 from ves_twin.diagnosis.gain import (
     BLOCK_SECONDS,
     Gain,
-    _Axes,
-    _Carried,
     _starts,
     _stretches,
     held_out_gain,
@@ -172,24 +170,6 @@ def test_what_a_gain_must_show(changed, passed, carries_on):
     assert (gain.passed, gain.carries_on) == (passed, carries_on)
 
 
-def test_carried_columns_in_tolerances_are_those_of_a_commissioning_sd(fitted):
-    """What a fit knows better than commissioning is given back its commissioning sd."""
-    extended = fitted[1]
-    runs = Runs(Toy(), (programme(2),), (0, 1))
-    axes = _Axes.of(runs, extended)
-    found = _Carried.of(runs, extended, None)._in_tolerances(axes)
-    where = np.concatenate([axes.carried, axes.new])
-    names = [runs.coordinates[i].parameter.name for i in where]
-    assert sorted(names) == ["friction.size", *sorted(p.name for p in NUISANCES)]
-    usual = linearise(runs, runs.origin)
-    for name, column, i in zip(names, found[:-1], where, strict=True):
-        if name == "friction.size":  # commissioning leaves none of it open
-            assert np.all(column == 0.0)
-        else:
-            expected = usual.columns[np.flatnonzero(runs.nuisances == i)[0]]
-            np.testing.assert_allclose(column, expected, rtol=SINGLE, atol=1e-4)
-
-
 def test_columns_that_are_known_at_nominal_serve_where_they_do_not_bend(fitted, held_out):
     _, runs, measured, whitening, gain = held_out
     known = held_out_gain(runs, measured, whitening, *fitted, base=linearise(runs, runs.origin))
@@ -233,7 +213,7 @@ class Turning(Toy):
         return rows + 3.0 * u * [np.sin(turn), np.cos(turn)]
 
 
-def test_columns_that_bend_between_two_fits_are_computed_at_each():
+def test_the_model_before_is_far_off_by_whichever_columns():
     known = replace(NUISANCES[0], sd=0.0)
     plant = Turning(nuisances=(known, *NUISANCES[1:]))
     first, second = programme(1), programme(2)

@@ -25,6 +25,10 @@ GAIN, MASS, LEVEL = 1.003, 0.996, 0.4
 PRIOR = {"plant.gain": 0.002, "plant.mass": 0.005}
 
 
+LEAK = Parameter("leak.size", "1", 0.0, 0.0, 1.0, sd=1e-3)
+"""What is not there cannot become less."""
+
+
 class Driven(Toy):
     """(gain u - friction sign u) / mass: all three scaled together, it moves the same."""
 
@@ -33,13 +37,14 @@ class Driven(Toy):
         value = {p.name: p.nominal for p in self.parameters} | dict(values)
         force = 100.0 * value["plant.gain"] * u[:, None] * [0.3, 1.0]
         force = force - 100.0 * value["friction.size"] * shape("friction", u, time)
-        return force / value["plant.mass"]
+        return (force + value.get(LEAK.name, 0.0) * shape("bump", u, time)) / value["plant.mass"]
 
 
-@pytest.fixture(scope="module")
-def evidence():
+@pytest.fixture(scope="module", params=[(), (LEAK,)], ids=["free", "at a bound"])
+def evidence(request):
     fed = programme()
     nuisances = tuple(Parameter(n, "1", 1.0, 0.0, 2.0, sd=sd) for n, sd in PRIOR.items())
+    nuisances = (*nuisances, *request.param)
     plant = Driven(causes=("friction",), with_gain=False, nuisances=nuisances)
     runs = Runs(plant, (fed,), (0, 1))
     rows = plant.simulate(fed, {"plant.gain": GAIN, "plant.mass": MASS, "friction.size": LEVEL})

@@ -24,6 +24,7 @@ from ves_twin.diagnosis.preprocess import Dataset, preprocess
 from ves_twin.diagnosis.profile import profiled
 from ves_twin.diagnosis.refine import ROUGH, Fit, refine
 from ves_twin.diagnosis.runs import Runs
+from ves_twin.diagnosis.search import ITERATIONS
 from ves_twin.diagnosis.settings import Settings
 from ves_twin.diagnosis.signature_library import SignatureLibrary, build_bank, cached_bank
 from ves_twin.diagnosis.verdict import Kind
@@ -35,6 +36,9 @@ takes up to nine tenths (viscous damping of a drag with the square of speed, of 
 
 EXPLAINED, BUILT = 0.4, 0.8
 """Shares of the time after which single causes and pairs, and then building up, must end."""
+
+AT_LIMIT = 1.0 + 1e-9
+"""Rounding of a commissioning error that a fit has held at its limit."""
 
 MANY_FROM = 2
 """Causes beyond which more may be at work than a search of single ones and pairs can see."""
@@ -144,7 +148,7 @@ def _within(found: Explanation, limit: float) -> Fit:
     A cause that commissioning knows too would else be in the model before, tens of sd of it, and
     naming it be worth nothing.
     """
-    if found.commissioning.pull <= limit:
+    if found.commissioning.pull <= AT_LIMIT * limit:
         return found.commissioning
     best = found.best  # held within the limit it is a better start than what was strained
     start = np.where(best.local.runs.sd > 0.0, best.shift, 0.0)
@@ -238,11 +242,21 @@ def _ahead(
 def _probed(found: Explanation, settings: Settings) -> Explanation:
     """The chosen fits once more, with runs along what they know least of their causes.
 
-    Their sizes are profiled where runs are cheap.
+    Where runs are cheap they are first searched once more by columns of their own, and then their
+    sizes are profiled.
     """
-    evidence = found.evidence
+    evidence, dear = found.evidence, settings.sparse
     chosen = tuple(
-        refine(evidence, fit.causes, fit.shift, fit.local, 0, fit.step_share, probed=True)
+        refine(
+            evidence,
+            fit.causes,
+            fit.shift,
+            fit.local,
+            step_share=fit.step_share,
+            probed=True,
+            steps=0 if dear else ITERATIONS,
+            known=fit.columns if dear else None,
+        )
         for fit in found.chosen
     )
     if not settings.sparse and not evidence.runs.budget.skips("profiles of sizes"):

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from ves_twin.diagnosis.assess import STRANGE, Assessment
+from ves_twin.diagnosis.adequacy import cells, misfit
+from ves_twin.diagnosis.assess import STRANGE, Assessment, pull_limit
 from ves_twin.diagnosis.explanation import Explanation
 from ves_twin.diagnosis.fit_context import FitContext
 from ves_twin.diagnosis.fits import CLOSE, is_near, settled, tried
@@ -13,6 +14,7 @@ from ves_twin.diagnosis.null import Thresholds
 from ves_twin.diagnosis.pairs import pairs, strained_pair
 from ves_twin.diagnosis.refine import Fit
 from ves_twin.diagnosis.runs import Progress, silent
+from ves_twin.diagnosis.screen import Candidate
 from ves_twin.diagnosis.settings import Settings
 
 FAR = 0.5
@@ -56,14 +58,16 @@ def explain(
 def _singles(desk: FitContext, together: bool) -> Explanation | None:
     """Suspects near the likeliest, two at least; all, where none of those leaves noise.
 
-    Two, so that the page has a rival to show. Where runs are dear the pair that the likeliest asks
-    for comes first.
+    Two, so that the page has a rival to show. Where runs are dear one does that was fitted with the
+    commissioning errors, the pair that the likeliest asks for comes first, and columns are
+    computed at the fit only where a verdict hangs on them.
     """
     suspects = desk.first.suspects[: desk.settings.candidates]
     if not suspects:
         return None
     reach = suspects[0].score - max(FAR * suspects[0].score, CLOSE)
-    near = [suspect for n, suspect in enumerate(suspects) if n < 2 or suspect.score >= reach]
+    least = 1 if desk.settings.sparse and _fitted_already(desk, suspects[0]) else 2
+    near = [one for n, one in enumerate(suspects) if n < least or one.score >= reach]
     rest, fits = suspects[len(near) :], tried(desk, near)
     double = strained_pair(desk, fits) if together and desk.settings.sparse else None
     if double is not None:
@@ -73,15 +77,39 @@ def _singles(desk: FitContext, together: bool) -> Explanation | None:
     if _far(desk, fits):
         found = replace(judge(desk, fits, far=True), far=True)
     else:
-        fits = settled(desk.first.evidence, fits, desk)
-        found = judge(desk, fits)
+        fits, found = _weighed(desk, fits)
         others = tried(desk, rest) if rest and not found.adequate else []
         fits = [*fits, *others]
         if any(is_near(fit, min(fits, key=_chi2)) for fit in others):
-            fits = settled(desk.first.evidence, fits, desk)
-            found = judge(desk, fits)
+            fits, found = _weighed(desk, fits)
     judged = {fit.causes for fit in found.fits}
     return replace(found, hopeless=tuple(fit for fit in fits if fit.causes not in judged))
+
+
+def _weighed(desk: FitContext, fits: list[Fit]) -> tuple[list[Fit], Explanation]:
+    """Judged by columns at the leader's fit; as they are where runs are dear and that will do."""
+    if desk.settings.sparse and _clear(desk, fits):
+        found = judge(desk, fits)
+        if found.adequate:
+            return fits, found
+    fits = settled(desk.first.evidence, fits, desk)
+    return fits, judge(desk, fits)
+
+
+def _fitted_already(desk: FitContext, suspect: Candidate) -> bool:
+    """Whether a suspect was fitted with the commissioning errors, and left noise."""
+    first = desk.first
+    cause = first.screen.bank.hypotheses[suspect.hypothesis]
+    return first.beside is not None and first.beside.causes == (cause,)
+
+
+def _clear(desk: FitContext, fits: list[Fit]) -> bool:
+    """Whether one fit leaves noise without a strained commissioning error, and none comes near."""
+    leader = min(fits, key=_chi2)
+    left = misfit(cells(desk.first.evidence.whitening, leader.residual))
+    limit = pull_limit(desk.first.screen.bank, desk.settings.alpha)
+    rivals = sum(is_near(fit, leader) for fit in fits) - 1
+    return rivals == 0 and left < desk.thresholds.misfit and leader.pull <= limit
 
 
 def _chi2(fit: Fit) -> float:

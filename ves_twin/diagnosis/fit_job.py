@@ -11,6 +11,7 @@ from ves_twin.diagnosis.evidence import Evidence
 from ves_twin.diagnosis.forward import Hypothesis
 from ves_twin.diagnosis.linearise import Linearisation
 from ves_twin.diagnosis.refine import ROUGH, Fit, refine
+from ves_twin.diagnosis.search import FARTHEST, CauseColumns
 
 FEW = 5
 """Steps of a rough fit: what is far from the record mimics it by ever smaller ones."""
@@ -28,6 +29,8 @@ class FitJob:
         step_share: of the discretisation column, to begin at.
         rough: for a first impression: no more than FEW steps, ended by ROUGH.
         target: chi^2 that it must be able to come down to.
+        known: columns of the causes as an earlier fit left them.
+        farthest: commissioning sd within which nuisances are held.
     """
 
     evidence: Evidence
@@ -37,19 +40,21 @@ class FitJob:
     step_share: float
     rough: bool = False
     target: float = np.inf
+    known: CauseColumns | None = None
+    farthest: float = FARTHEST
 
     @staticmethod
     def again(
         evidence: Evidence, fit: Fit, local: Linearisation | None = None, target: float = np.inf
     ) -> FitJob:
         """From where a fit ended, under another noise or with other columns."""
-        share, where = fit.step_share, fit.shift
-        return FitJob(evidence, fit.causes, where, local or fit.local, share, target=target)
+        at = (fit.shift, local or fit.local, fit.step_share)
+        return FitJob(evidence, fit.causes, *at, target=target, known=fit.columns)
 
     @staticmethod
     def run(job: FitJob) -> Fit:
         """The fit."""
-        at = (job.shift, job.local, 0, job.step_share)
+        at = (job.shift, job.local, 0, job.step_share, job.farthest)
         if job.rough:
-            return refine(job.evidence, job.causes, *at, enough=ROUGH, steps=FEW)
-        return refine(job.evidence, job.causes, *at, target=job.target)
+            return refine(job.evidence, job.causes, *at, enough=ROUGH, steps=FEW, known=job.known)
+        return refine(job.evidence, job.causes, *at, target=job.target, known=job.known)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -30,6 +30,10 @@ def tried(desk: FitContext, suspects: list[Candidate]) -> list[Fit]:
     jobs, owner = [], []
     for n, suspect in enumerate(suspects):
         hypothesis = first.screen.bank.hypotheses[suspect.hypothesis]
+        if first.beside is not None and first.beside.causes == (hypothesis,):
+            jobs.append(replace(FitJob.again(first.evidence, first.beside), rough=True))
+            owner.append(n)
+            continue
         for sizes in _starts(first, suspect):
             jobs.append(job(first.evidence, (hypothesis,), [sizes], begin))
             owner.append(n)
@@ -124,18 +128,16 @@ def again(evidence: Evidence, fit: Fit, rounds: int) -> Fit:
     local = fit.local
     if rounds and not near(local, fit.shift):
         local, rounds = renewed(local, fit.shift, fit.prediction), rounds - 1
-    return refine(evidence, fit.causes, fit.shift, local, rounds, fit.step_share)
+    at = (fit.shift, local, rounds, fit.step_share)
+    return refine(evidence, fit.causes, *at, known=fit.columns)
 
 
 def _starts(first: Assessment, suspect: Candidate) -> list[FloatArray]:
     """The screen's scaled size, and the unscaled size of the bank nearest to the record.
 
-    One is enough of a cause that is linear: any size leads to the same. Of one that was fitted
-    before, that size is nearer than either.
+    One is enough of a cause that is linear: any size leads to the same.
     """
     hypothesis = first.screen.bank.hypotheses[suspect.hypothesis]
-    if first.beside is not None and first.beside.causes == (hypothesis,):
-        return [first.beside.sizes]
     if hypothesis.linear:
         return [suspect.sizes]
     rows = first.screen.bank.entries(suspect.hypothesis)

@@ -156,46 +156,44 @@ def held_out_gain(
 
 @dataclass(frozen=True)
 class _Known:
-    """Columns at some point of the held-out recordings, some of which hold at others too.
+    """Columns at some point of the held-out recordings, which serve at others too.
 
     Attributes:
         local: prediction there, and the columns.
         place: coordinate -> its column.
         sd: for how much of the coordinate each column is.
-        usual: the same columns for one commissioning sd; none of what has no such sd.
     """
 
     local: Linearisation
     place: Mapping[int, int]
     sd: FloatArray
-    usual: Linearisation
 
     @staticmethod
     def of(base: Linearisation) -> _Known:
         """Of a linearisation over all commissioning tolerances."""
         runs = base.runs
         place = {int(i): n for n, i in enumerate(runs.nuisances)}
-        return _Known(base, place, runs.sd[runs.nuisances], base)
+        return _Known(base, place, runs.sd[runs.nuisances])
 
-    def at(self, axes: _Axes) -> _Carried:
-        """Carried over by these columns: those that bend on the way, or are new, are computed."""
+    def at(self, axes: _Axes, renewing: bool = True) -> _Carried:
+        """Carried over by these columns; those that bend on the way are computed, if wanted."""
         runs = self.local.runs
-        where = np.concatenate([axes.carried, axes.new])
-        sd = np.concatenate([axes.sd, axes.drawn])
+        where, sd, bends = axes.where, np.concatenate([axes.sd, axes.drawn]), axes.bends
         rows = np.array([self.place.get(int(i), -1) for i in where], int)
         share = np.where(rows >= 0, sd / self.sd[rows], 0.0).astype(np.float32)
         columns = self.local.columns[[*rows, -1]]
         columns[:-1] *= share[:, None, None]
-        strange = strangeness(self.usual, runs.one(axes.point))
-        told = np.minimum(sd / np.maximum(runs.sd[where], 1e-30), 1.0)  # of a commissioning sd
-        bent = np.flatnonzero((axes.bends * told * strange > STIFF) | (rows < 0))
-        some = where[bent], sd[bent]
-        there = linearise(runs, axes.point, axes=some, forward_step=FORWARD_STEP)
-        columns[[*bent, -1]] = there.columns
-        bends = np.append(axes.bends, 0.0)
-        return _Carried(
-            Linearisation(runs, axes.point, there.prediction, columns, bends), axes.root
-        )
+        prediction, anew = runs.one(axes.point), rows < 0
+        if renewing:
+            told = np.minimum(sd / np.maximum(runs.sd[where], 1e-30), 1.0)  # of a commissioning sd
+            anew |= bends * told * strangeness(self.local, prediction) > STIFF
+        bent = np.flatnonzero(anew)
+        if renewing or len(bent):
+            some = where[bent], sd[bent]
+            there = linearise(runs, axes.point, axes=some, forward_step=FORWARD_STEP)
+            columns[[*bent, -1]] = there.columns
+        local = Linearisation(runs, axes.point, prediction, columns, np.append(bends, 0.0))
+        return _Carried(local, axes.root)
 
 
 @dataclass(frozen=True)
@@ -215,19 +213,22 @@ class _Carried:
         axes = _Axes.of(runs, fit)
         if base is not None:
             return _Known.of(base).at(axes)
-        every = np.concatenate([axes.carried, axes.new]), np.concatenate([axes.sd, axes.drawn])
+        every = axes.where, np.concatenate([axes.sd, axes.drawn])
         return _Carried(
             linearise(runs, axes.point, axes=every, forward_step=FORWARD_STEP), axes.root
         )
 
     def beside(self, one: Fit, other: Fit) -> _Carried:
-        """Another fit, by the columns of this one."""
+        """Another fit, by the columns of this one.
+
+        They are wrong where the two are far apart. The other then leaves far more than noise, of
+        which what columns can take is a small share.
+        """
         runs = self.local.runs
         mine = _Axes.of(runs, one)
-        place = {int(i): n for n, i in enumerate([*mine.carried, *mine.new])}
-        usual = replace(self.local, columns=self._in_tolerances(mine))
-        known = _Known(self.local, place, np.concatenate([mine.sd, mine.drawn]), usual)
-        return known.at(_Axes.of(runs, other))
+        place = {int(i): n for n, i in enumerate(mine.where)}
+        known = _Known(self.local, place, np.concatenate([mine.sd, mine.drawn]))
+        return known.at(_Axes.of(runs, other), renewing=False)
 
     def without(self, fit: Fit) -> _Carried:
         """The same with the causes of the fit taken out: nominal there, all else as carried."""
@@ -237,12 +238,6 @@ class _Carried:
             where = runs.indices(cause)
             point[where] = runs.origin[where]
         return replace(self, local=replace(self.local, prediction=runs.one(point)))
-
-    def _in_tolerances(self, mine: _Axes) -> SingleArray:
-        """Columns for one commissioning sd, none of what has no such sd."""
-        share = self.local.runs.sd[mine.carried] / mine.sd
-        every = np.concatenate([share, np.ones(len(mine.new)), [1.0]]).astype(np.float32)
-        return np.asarray(self.local.columns * every[:, None, None])
 
     def left(self, measured: SingleArray, whitening: Whitening) -> FloatArray:
         """What the nuisances cannot explain, whitened (samples,)."""
@@ -297,6 +292,11 @@ class _Axes:
     new: IntArray
     drawn: FloatArray
     bends: FloatArray
+
+    @property
+    def where(self) -> IntArray:
+        """All coordinates, carried and new."""
+        return np.concatenate([self.carried, self.new])
 
     @staticmethod
     def of(runs: Runs, fit: Fit) -> _Axes:

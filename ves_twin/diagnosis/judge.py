@@ -18,6 +18,7 @@ from ves_twin.diagnosis.linearise import renewed
 from ves_twin.diagnosis.probability import probabilities
 from ves_twin.diagnosis.refine import Fit, bare_residual, refine, residual_about
 from ves_twin.diagnosis.screen import Candidate, Screen
+from ves_twin.diagnosis.search import FARTHEST
 from ves_twin.diagnosis.signature_library import build_bank
 
 LEAST = 0.7
@@ -117,15 +118,18 @@ def _commissioning(
     """The best fit without a cause, from the first look and beside the leader; whether it is rough.
 
     Beside the leader: what it moves, where commissioning may have moved it too, stays. Columns are
-    computed anew only where the cause takes off little.
+    computed anew only where the cause takes off little. Where runs are dear it is a rough fit of
+    errors that a rig in order may have, gone on with only where that, too, is little.
     """
     first, runs = desk.first, evidence.runs
     shift, begin = np.where(runs.sd > 0.0, leader.shift, 0.0), start_of(first)
     sparse, last = desk.settings.sparse, first.commissioning
-    job = FitJob(evidence, (), shift, leader.local, leader.step_share, sparse)
+    farthest = pull_limit(first.screen.bank, desk.settings.alpha) if sparse else FARTHEST
+    job = FitJob(evidence, (), shift, leader.local, leader.step_share, sparse, farthest=farthest)
     best = refined([job], desk, "commissioning errors alone")[0]
-    if not sparse or last is None or last.chi2 < WORSE_START * best.chi2:
-        job = FitJob(evidence, (), begin.shift, begin.local, begin.step_share, sparse)
+    elsewhere = first.beside is None or first.beside.causes != leader.causes
+    if not sparse or last is None or (elsewhere and last.chi2 < WORSE_START * best.chi2):
+        job = replace(job, shift=begin.shift, local=begin.local, step_share=begin.step_share)
         alone = refined([job], desk, "commissioning errors alone")[0]
         best = min(best, alone, key=lambda fit: fit.chi2)
     clear = leader.chi2 + CLEAR * desk.thresholds.effect

@@ -11,8 +11,8 @@ REACH = 6.0
 """Sd to either side of the fit that are simulated: what sticks and slips by chance, some 5 sigma,
 is then below one sd."""
 
-LEAST_REACH = 0.3
-"""Sd that bounds must leave room for."""
+LEAST = 0.05
+"""Share of its way that bounds must leave to the parameter itself."""
 
 PROBES = 6
 """Directions at most that are tried for each parameter of a cause."""
@@ -29,7 +29,8 @@ def probe(search: Search, point: Point, jacobian: FloatArray) -> FloatArray:
     cancel: they pass for information, and the fit stops short of where the priors would have it.
     So for each parameter of a cause the direction along which it varies, v = S e / sqrt(e'S e)
     with S = (J'J + priors)^-1, is simulated to either side, d = (f(x + t v) - f(x - t v)) / 2t;
-    J becomes J + (d - J v) v' / v'v, until |d|^2 + v' priors v is the 1 that it is by J.
+    J becomes J + (d - J v) v' / v'v, until |d|^2 is what it is by J, of the 1 that it is with the
+    priors' part, v being as much of it as bounds let.
 
     Args:
         search: whose evidence, axes and units count.
@@ -43,49 +44,46 @@ def probe(search: Search, point: Point, jacobian: FloatArray) -> FloatArray:
             covariance = np.linalg.pinv(search.hessian(jacobian), hermitian=True)
             if not covariance[n, n] > 0.0:  # nothing shows it, as a limit that nothing reaches
                 break
-            direction = covariance[:, n] / np.sqrt(covariance[n, n])
-            seen = _change(search, point, jacobian, direction)
-            if seen is None:
+            found = _change(search, point, covariance[:, n] / np.sqrt(covariance[n, n]))
+            if found is None or abs(found[0][n]) < LEAST * np.sqrt(covariance[n, n]):
                 break
-            jacobian = jacobian + _secant(search, jacobian, direction, seen)
-            errors = direction[len(search.free) :]
-            if abs(float(seen @ seen + errors @ errors) - 1.0) < TRUE:
+            direction, seen = found
+            seen = seen + jacobian[:, -1] * direction[-1]
+            told, prior = jacobian @ direction, np.sum(direction[len(search.free) :] ** 2)
+            jacobian = jacobian + _secant(search, direction, seen - told)
+            if abs(seen @ seen - told @ told) < TRUE * (told @ told + prior):
                 break
     return jacobian
 
 
 def _change(
-    search: Search, point: Point, jacobian: FloatArray, direction: FloatArray
-) -> FloatArray | None:
-    """Whitened change along a direction, for one of it; None where bounds leave no room."""
+    search: Search, point: Point, asked: FloatArray
+) -> tuple[FloatArray, FloatArray] | None:
+    """Direction as far as bounds let, and whitened change along it; None where the plant fails.
+
+    What stands at a bound, as a leak that is not there, moves to one side.
+    """
     axes = np.concatenate([search.free, search.nuisances])
-    move = (direction * search.unit)[:-1]
-    here = point.shift[axes]
-    room = np.minimum(search.high[axes] - here, here - search.low[axes])
-    reach = float(np.min(room / np.maximum(np.abs(move), 1e-300), initial=REACH))
-    if reach < LEAST_REACH:
-        return None
-    ends = []
-    for share in (reach, -reach):
+    ends, stacks = [], []
+    for share in (REACH, -REACH):
         shift = point.shift.copy()
-        shift[axes] += share * move
-        ends.append(search.runs.one(shift))
-    if not np.all(np.isfinite(ends)):
+        shift[axes] += share * (asked * search.unit)[:-1]
+        ends.append(np.clip(shift, search.low, search.high))
+        stacks.append(search.runs.one(ends[-1]))
+    if not np.all(np.isfinite(stacks)):
         return None
-    change = search.evidence.whitening.apply(ends[0] - ends[1]) / (2.0 * reach)
-    return np.asarray(change + jacobian[:, -1] * direction[-1])
+    moved = (ends[0] - ends[1])[axes] / search.unit[:-1] / (2.0 * REACH)
+    change = search.evidence.whitening.apply(stacks[0] - stacks[1]) / (2.0 * REACH)
+    return np.append(moved, asked[-1]), np.asarray(change)
 
 
-def _secant(
-    search: Search, jacobian: FloatArray, direction: FloatArray, seen: FloatArray
-) -> FloatArray:
+def _secant(search: Search, direction: FloatArray, surprise: FloatArray) -> FloatArray:
     """What makes the columns agree with a change; those that are known stay as they are.
 
     What zeroing leaves differs by chance between two runs, so the surprise is taken without it.
     """
     known = len(search.free) + search.known
-    surprise = seen - jacobian @ direction
-    basis = jacobian[:, known]
+    basis = search.columns[:, search.known]
     surprise = surprise - basis @ (search.solved @ (basis.T @ surprise))
     turning = direction.copy()
     turning[known] = 0.0

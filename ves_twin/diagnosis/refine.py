@@ -11,7 +11,14 @@ from ves_twin.diagnosis.evidence import Evidence
 from ves_twin.diagnosis.forward import Hypothesis
 from ves_twin.diagnosis.linearise import STEP_SD, Linearisation, renewed
 from ves_twin.diagnosis.probe import probe
-from ves_twin.diagnosis.search import FARTHEST, ITERATIONS, RELATIVE_CONVERGENCE, Point, Search
+from ves_twin.diagnosis.search import (
+    FARTHEST,
+    ITERATIONS,
+    RELATIVE_CONVERGENCE,
+    CauseColumns,
+    Point,
+    Search,
+)
 
 NEAR = 0.3
 """Commissioning sd within which nuisance columns are taken to hold; absent parameters: 6 %."""
@@ -48,6 +55,7 @@ class Fit:
         free: whitened direction of each free parameter (samples, k).
         local: linearisation that was used last.
         prediction: channels at that point (rows, c), without the discretisation share.
+        columns: of the causes, to go on with; None where they would be computed anew.
     """
 
     causes: tuple[Hypothesis, ...]
@@ -62,6 +70,7 @@ class Fit:
     free: FloatArray
     local: Linearisation
     prediction: SingleArray
+    columns: CauseColumns | None = None
 
     @property
     def pull(self) -> float:
@@ -90,6 +99,7 @@ def refine(
     enough: float = RELATIVE_CONVERGENCE,
     steps: int = ITERATIONS,
     target: float = np.inf,
+    known: CauseColumns | None = None,
 ) -> Fit:
     """Fit causes and nuisances with the full forward.
 
@@ -108,6 +118,7 @@ def refine(
         steps: at most from one linearisation; fewer than usual are for a first impression, for
             which what the integration step is worth at the fit does not count.
         target: chi^2 that counts: a search ends where it falls too slowly to come down to it.
+        known: columns of the causes as an earlier fit left them.
     """
     runs = evidence.runs
     free = (
@@ -117,14 +128,14 @@ def refine(
     )
     search = Search(evidence, free, local, farthest, enough, steps, target)
     start = np.clip(shift, search.low, search.high)
-    point, jacobian = search.run(search.at(start, step_share))
+    point, jacobian = search.run(search.at(start, step_share), known)
     whole = steps == ITERATIONS and np.isfinite(point.chi2)
     if whole and not near(search.local, point.shift) and not runs.budget.over:
         last, local = _kept(search), _stepped(search, point)
         search = Search(evidence, free, local, farthest, enough, target=target)
         point, jacobian = search.run(search.at(point.shift, point.delta), last)
     for _ in range(rounds):
-        if near(search.local, point.shift) or runs.budget.over:
+        if near(search.local, point.shift) or runs.budget.over or not np.isfinite(point.chi2):
             break
         before, last = point.chi2, _kept(search)
         turned = replace(search.local, columns=search.turned)
@@ -134,7 +145,10 @@ def refine(
         if before - point.chi2 < WORTH * point.chi2:
             break
     if probed and np.isfinite(point.chi2) and not runs.budget.over:
-        point, jacobian = search.descend(point, probe(search, point, jacobian))
+        righted = probe(search, point, jacobian)
+        if righted is not jacobian:
+            search.steps = ITERATIONS
+            point, jacobian = search.descend(point, righted)
     return _fit(causes, search, point, jacobian)
 
 
@@ -160,12 +174,13 @@ def _fit(causes: tuple[Hypothesis, ...], search: Search, point: Point, jacobian:
         free=jacobian[:, :count],
         local=replace(search.local, columns=search.turned),
         prediction=point.prediction,
+        columns=_kept(search) if np.isfinite(point.chi2) else None,
     )
 
 
-def _kept(search: Search) -> Search | None:
-    """The search, if what its runs have turned the columns of the causes to is worth keeping."""
-    return search if len(search.free) <= TURNED else None
+def _kept(search: Search) -> CauseColumns | None:
+    """Columns of the causes, if what the search's runs have turned them to is worth keeping."""
+    return search.of_causes if len(search.free) <= TURNED else None
 
 
 def _stepped(search: Search, point: Point) -> Linearisation:

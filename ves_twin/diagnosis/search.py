@@ -60,6 +60,25 @@ ATTEMPTS = 4
 
 
 @dataclass(frozen=True)
+class CauseColumns:
+    """Columns of the causes as a search left them, its runs having turned them.
+
+    Attributes:
+        columns: change of the channels for one `unit` of each free parameter (k, rows, c).
+        unit: of each: half the span over which the column was computed (k,).
+        about: departures in its middle (k,).
+    """
+
+    columns: SingleArray
+    unit: FloatArray
+    about: FloatArray
+
+    def hold(self, sizes: FloatArray) -> bool:
+        """Whether all sizes are within the spans."""
+        return bool(np.all(np.abs(sizes - self.about) <= self.unit))
+
+
+@dataclass(frozen=True)
 class Point:
     """Where a search is.
 
@@ -172,7 +191,13 @@ class Search:
             self.unit[n] = 0.5 * (ends[1][i] - ends[0][i]) or 1.0
             raw.append(np.float32(0.5) * (stacks[1] - stacks[0]))
         self.raw = np.array(raw, np.float32).reshape(-1, *point.prediction.shape)
+        self.about = point.shift[self.free]
         return self._with_causes()
+
+    @property
+    def of_causes(self) -> CauseColumns:
+        """Columns of the causes as they are now."""
+        return CauseColumns(self.raw, self.unit[: len(self.free)], self.about)
 
     def _with_causes(self) -> FloatArray:
         """Columns of the causes and of the nuisances, whitened."""
@@ -197,22 +222,25 @@ class Search:
         prior[: len(self.free)] = 0.0
         return np.asarray(jacobian.T @ jacobian + np.diag(prior))
 
-    def run(self, point: Point, before: Search | None = None) -> tuple[Point, FloatArray]:
+    def run(self, point: Point, before: CauseColumns | None = None) -> tuple[Point, FloatArray]:
         """The best point, and the Jacobian there.
 
         Args:
             point: to begin at.
-            before: the search that ended there, whose columns of the causes are taken over as its
-                runs have turned them; they are computed anew if None.
+            before: columns of the causes, which serve where they hold.
         """
         if not np.isfinite(point.chi2):
             return point, np.zeros((0, len(self.unit)))
         self.tempered = True
-        if before is None:
-            return self.descend(point, self.jacobian(point))
-        count = len(self.free)
-        self.unit[:count], self.raw = before.unit[:count], before.raw
-        return self.descend(point, self._with_causes())
+        return self.descend(point, self.begun(point, before))
+
+    def begun(self, point: Point, before: CauseColumns | None) -> FloatArray:
+        """The Jacobian at a point, by earlier columns of the causes if they hold there."""
+        if before is None or not before.hold(point.shift[self.free]):
+            return self.jacobian(point)
+        self.unit[: len(self.free)], self.about = before.unit, before.about
+        self.raw = before.columns.copy()
+        return self._with_causes()
 
     def descend(self, point: Point, jacobian: FloatArray) -> tuple[Point, FloatArray]:
         """From a point with its Jacobian down to the best one."""
