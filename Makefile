@@ -73,7 +73,8 @@ bench: .venv/.dev
 	$(BIN)/python benchmarks/diagnosis_time.py
 	$(BIN)/python benchmarks/diagnosis_runs.py
 
-# into site/; warnings are errors. The variable silences an advertisement of the theme's.
+# into site/; warnings are errors. It runs the notebooks (RUN_NOTEBOOKS=no: pages without outputs). The
+# other variable silences an advertisement of the theme's.
 docs: .venv/.dev
 	NO_MKDOCS_2_WARNING=1 $(BIN)/mkdocs build
 

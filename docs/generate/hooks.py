@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from pathlib import Path
 
 from commands_page import commands_page
@@ -16,13 +17,13 @@ from notebook_pages import notebook_pages
 def on_files(files: Files, config: MkDocsConfig) -> Files:
     """Add home, commands, credibility, file formats with their schemas, and notebooks."""
     root = Path(config.config_file_path).parent
-    pages = {
+    pages: dict[str, str | bytes] = {
         "index.md": home_page(root),
         "rigs.md": rigs_page(root),
         "commands.md": commands_page(),
         "credibility.md": credibility_page(root),
         **format_pages(),
-        **notebook_pages(root / "notebooks"),
+        **notebook_pages(root / "notebooks", os.environ.get("RUN_NOTEBOOKS") != "no"),
     }
     for name, text in pages.items():
         files.append(File.generated(config, name, content=text))
