@@ -26,6 +26,10 @@ LONGEST = 600
 """Time a cell may take [s]; the first one on a machine may compile."""
 
 
+QUIET = ["--log-level=ERROR"]
+"""Of the kernel, which warns of its transport."""
+
+
 def notebook_pages(folder: Path, run: bool) -> dict[str, str | bytes]:
     """Name of a page -> its text, and a list of them; pictures beside them.
 
@@ -40,7 +44,9 @@ def notebook_pages(folder: Path, run: bool) -> dict[str, str | bytes]:
         if run:
             with tempfile.TemporaryDirectory() as where:
                 resources = {"metadata": {"path": where}}
-                NotebookClient(notebook, timeout=LONGEST, resources=resources).execute()
+                NotebookClient(
+                    notebook, timeout=LONGEST, resources=resources, extra_arguments=QUIET
+                ).execute()
         text = "\n\n".join(_cell(cell, f"notebooks/{path.stem}", pages) for cell in notebook.cells)
         title = notebook.cells[0].source.splitlines()[0].removeprefix("# ")
         pages[f"notebooks/{path.stem}.md"] = f"{text}\n\n*`notebooks/{path.name}`*\n"
@@ -53,13 +59,15 @@ def _cell(cell: nbformat.NotebookNode, stem: str, pages: dict[str, str | bytes])
     if cell.cell_type == "markdown":
         return str(cell.source)
     parts = [f"```python\n{cell.source}\n```"]
+    said = ""
     for output in cell.outputs:
         data = output.get("data", {})
         if "image/png" in data:
-            name = f"{stem}_{sum(name.endswith('.png') for name in pages) + 1}.png"
+            name = f"{stem}_{sum(name.startswith(stem) for name in pages) + 1}.png"
             pages[name] = base64.b64decode(data["image/png"])
             parts.append(f"![What the cell draws]({Path(name).name})")
         elif output.get("name") != "stderr":
-            said = _COLOURS.sub("", output.get("text", data.get("text/plain", ""))).rstrip()
-            parts.append(f"```text\n{said}\n```")
+            said += _COLOURS.sub("", output.get("text", data.get("text/plain", "")))
+    if said:
+        parts.insert(1, f"```text\n{said.rstrip()}\n```")
     return "\n\n".join(parts)
