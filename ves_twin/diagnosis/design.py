@@ -271,12 +271,11 @@ def _climbed(
         minimize(cost, best, method="COBYLA", bounds=box, options=options)
         value, best = max(tried, key=lambda one: one[0])
         found = _told(value, space.excitation(best, "designed"))
-        more = _counting(desk.runs(found), desk.question, progress)
-        if trials.names is None or more is None or set(more) <= set(trials.names):
-            break
-        trials = replace(trials, names=tuple(dict.fromkeys((*trials.names, *more))))
-        tried.clear()
-        best = min((best, *ranked[:AGAIN]), key=cost)
+        more = _counting(desk.runs(found), desk.question, progress) if rounds > 1 else None
+        if trials.names is not None and more is not None and not set(more) <= set(trials.names):
+            trials = replace(trials, names=tuple(dict.fromkeys((*trials.names, *more))))
+            tried.clear()
+            best = min((best, *ranked[:AGAIN]), key=cost)
     return found, trials, count
 
 
