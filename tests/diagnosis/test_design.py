@@ -11,7 +11,7 @@ from ves_twin.cli.design_text import design_text
 from ves_twin.core.errors import InvalidInputError, UnknownNameError
 from ves_twin.diagnosis import design as module
 from ves_twin.diagnosis.design import design_excitation, score
-from ves_twin.diagnosis.forward import Excitation, Parameter
+from ves_twin.diagnosis.forward import Excitation
 from ves_twin.diagnosis.linearise import linearise
 from ves_twin.diagnosis.runs import Runs
 from ves_twin.diagnosis.separation import Question, separation, size_of
@@ -119,35 +119,6 @@ def test_a_shorter_design_is_held_against_the_menu_s_best_of_its_own_length_too(
     words = design_text(replace(found, after=None))
     told = found.times > 1.0
     assert ("times as much (chi^2) as the menu's best in the same time" in words) == told
-
-
-class Masked(Toy):
-    """A tolerance stands for the friction wherever the input is slow, where friction tells most."""
-
-    @property
-    def parameters(self):
-        return (*super().parameters, Parameter("plant.mask", "1", 0.0, -5.0, 5.0, sd=1.0))
-
-    def simulate(self, programme, values, refined=False):
-        u, time = programme.drive["drive.u"][:, 0], programme.time
-        rows = super().simulate(programme, {n: v for n, v in values.items() if n != "plant.mask"})
-        slow = np.std(np.gradient(u, time)) < 5.0
-        return rows + slow * values.get("plant.mask", 0.0) * shape("friction", u, time)
-
-
-@pytest.mark.parametrize(("rounds", "told"), [(1, False), (4, True)])
-def test_a_search_by_few_tolerances_does_not_end_where_another_one_hides_all(
-    few, monkeypatch, rounds, told
-):
-    """Of many the search takes those that count in the menu: there the mask is nothing."""
-    monkeypatch.setattr(module, "EACH", 10)
-    monkeypatch.setattr(module, "NUISANCES", 2)
-    monkeypatch.setattr(module, "ROUNDS", rounds)
-    toy = Masked(causes=("lag", "friction"))
-    question = Question.of(toy, ["lag", "friction"])
-    menu = [Box().excitation(np.array([0.9, 0.0]), "quick")]
-    found = design_excitation(toy, question, menu, Box(), settings=Settings())
-    assert (found.designed.score > 0.5) == told
 
 
 def test_what_no_programme_parts_is_refused(few):

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Sequence
-from dataclasses import asdict, dataclass, replace
+from dataclasses import asdict, dataclass
 from typing import Protocol
 
 import numpy as np
@@ -38,13 +38,6 @@ SCATTERED = 12
 
 EACH = 4
 """Points that are tried for each number of a point, from the best on."""
-
-ROUNDS = 4
-"""Searches in turn, each with half as many points, where of many tolerances a few are taken: after
-each those that count at its best are added, since a search gets around the others."""
-
-AGAIN = 4
-"""Scattered points that are tried again with them."""
 
 REACH = 0.3
 """First step of the search from the best point, the box being 2 wide."""
@@ -169,12 +162,12 @@ def design_excitation(
     with Workers(settings.workers) as workers:
         desk = _Desk(forward, question, recorded, workers, settings)
         trials = Trials(_counting(desk.runs(menu[0]), question, progress))
-        found, trials, tried = _climbed(desk, trials, space, progress)
         values = []
         for k, one in enumerate(menu):
             progress(k / len(menu), "menu")
             values.append(desk.value(one, trials))
         best = menu[int(np.argmax(values))]
+        found, tried = _climbed(desk, trials, space, progress)
         usual, known = desk.judged(best, progress)
         designed, bank = desk.judged(found, progress)
         after = _after(bank, question, usual.score)
@@ -241,49 +234,33 @@ class _Desk:
 
 def _climbed(
     desk: _Desk, trials: Trials, space: DesignSpace, progress: Progress
-) -> tuple[Excitation, Trials, int]:
-    """The best programme of a space that is found, what it was tried by, and how many were.
+) -> tuple[Excitation, int]:
+    """The best programme of a space that is found, and how many were tried.
 
     Scattered points first; then from the best one on, by linear models of the cost, which need
     the fewest runs for each number of a point.
     """
-    rounds = 1 if trials.names is None else ROUNDS
-    each = EACH * space.size // min(rounds, 2)
     tried: list[tuple[float, FloatArray]] = []
-    count = 0
 
     def cost(point: FloatArray) -> float:
-        nonlocal count
         inside = np.clip(point, -1.0, 1.0)
-        progress(min(count / (SCATTERED + rounds * each), 1.0), "design")
+        progress(min(len(tried) / (SCATTERED + EACH * space.size), 1.0), "design")
         made = space.excitation(inside, "design")
         value = 0.0 if made is None else desk.value(made, trials)
         tried.append((value, inside))
-        count += 1
         return -float(np.log(value)) if value > 0.0 else NOTHING
 
     scattered = 2.0 * qmc.LatinHypercube(space.size, rng=0).random(SCATTERED) - 1.0
-    ranked = sorted(scattered, key=cost)
-    best = ranked[0]
-    options = {"maxiter": each, "rhobeg": REACH, "tol": 0.05 * REACH}
+    first = min(scattered, key=cost)
+    options = {"maxiter": EACH * space.size, "rhobeg": REACH, "tol": 0.05 * REACH}
     box = [(-1.0, 1.0)] * space.size
-    for _ in range(rounds):
-        minimize(cost, best, method="COBYLA", bounds=box, options=options)
-        value, best = max(tried, key=lambda one: one[0])
-        found = _told(value, space.excitation(best, "designed"))
-        more = _counting(desk.runs(found), desk.question, progress) if rounds > 1 else None
-        if trials.names is not None and more is not None and not set(more) <= set(trials.names):
-            trials = replace(trials, names=tuple(dict.fromkeys((*trials.names, *more))))
-            tried.clear()
-            best = min((best, *ranked[:AGAIN]), key=cost)
-    return found, trials, count
-
-
-def _told(value: float, found: Excitation | None) -> Excitation:
+    minimize(cost, first, method="COBYLA", bounds=box, options=options)
+    value, best = max(tried, key=lambda one: one[0])
+    found = space.excitation(best, "designed")
     if found is None or value == 0.0:
         came = "no programme that keeps the machine's limits and tells anything"
         raise InvalidInputError("design", came, "typical sizes and ranges that leave room")
-    return found
+    return found, len(tried)
 
 
 def _counting(runs: Runs, question: Question, progress: Progress) -> tuple[str, ...] | None:
@@ -303,7 +280,7 @@ def _counting(runs: Runs, question: Question, progress: Progress) -> tuple[str, 
     gram = white.T @ metric.project(white)
     sizes = np.linalg.norm(metric.columns[:, :-1], axis=0)
     share = np.zeros(len(names))
-    for i, j in (order for pair in question.pairs for order in (pair, pair[::-1])):
+    for i, j in question.pairs:
         rest = white[:, i] - gram[i, j] / max(gram[j, j], 1e-12) * white[:, j]
         share = np.maximum(share, np.abs(metric.nuisances(rest)[:-1]) * sizes)
     ranked = [n for n in np.argsort(-share) if plain[n] and names[n] not in own][:NUISANCES]
