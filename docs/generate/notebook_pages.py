@@ -25,7 +25,6 @@ _COLOURS = re.compile(r"\x1b\[[0-9;]*m")
 LONGEST = 600
 """Time a cell may take [s]; the first one on a machine may compile."""
 
-
 QUIET = ["--log-level=ERROR"]
 """Of the kernel, which warns of its transport."""
 

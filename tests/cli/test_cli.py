@@ -317,7 +317,10 @@ def test_commands_take_one_thread_of_linear_algebra_unless_told_otherwise(given)
     """It is read when numpy is imported, so that must not have been before."""
     others = {name: value for name, value in os.environ.items() if not name.startswith("OPENBLAS")}
     told = {} if given is None else {"OPENBLAS_NUM_THREADS": given}
-    script = "import sys, os, ves_twin.cli\nprint(os.environ['OPENBLAS_NUM_THREADS'], 'numpy' in sys.modules)"
+    script = (
+        "import os, sys, ves_twin.cli;"
+        "print(os.environ['OPENBLAS_NUM_THREADS'], 'numpy' in sys.modules)"
+    )
     words = [sys.executable, "-c", script]
     done = subprocess.run(words, env=others | told, capture_output=True, text=True, check=True)
     assert done.stdout.split() == [given or "1", "False"]

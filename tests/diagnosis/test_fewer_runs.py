@@ -80,27 +80,28 @@ def test_a_clear_cause_takes_a_third_of_the_runs_and_is_told_the_same(first, mon
     assert few <= many / 3
 
 
-def test_columns_are_computed_at_a_fit_that_is_not_clear(first, monkeypatch):
-    asked = []
+@pytest.fixture
+def asked(monkeypatch):
+    """How many fits each time columns were asked for at them; none are computed."""
+    counts = []
 
     def noted(evidence, fits, desk):
-        asked.append(len(fits))
+        counts.append(len(fits))
         return fits
 
     monkeypatch.setattr("ves_twin.diagnosis.explain.settled", noted)
+    return counts
+
+
+def test_columns_are_computed_at_a_fit_that_is_not_clear(first, asked, monkeypatch):
     monkeypatch.setattr("ves_twin.diagnosis.explain._clear", lambda *_: False)
     explain(first, LEVELS, DEAR)
     assert asked == [1]  # one near suspect, which was fitted with the commissioning errors
 
 
-def test_what_is_clear_and_yet_leaves_more_than_noise_gets_columns_at_its_fit(first, monkeypatch):
-    asked = []
-
-    def noted(evidence, fits, desk):
-        asked.append(len(fits))
-        return fits
-
-    monkeypatch.setattr("ves_twin.diagnosis.explain.settled", noted)
+def test_what_is_clear_and_yet_leaves_more_than_noise_gets_columns_at_its_fit(
+    first, asked, monkeypatch
+):
     monkeypatch.setattr("ves_twin.diagnosis.explain._clear", lambda *_: True)
     explain(first, replace(LEVELS, misfit=-10.0), DEAR, together=False)
     assert asked[0] == 1

@@ -60,8 +60,8 @@ def taken_words(gain: Gain) -> str:
 def gain_words(verdict: Verdict) -> str:
     """How much an extension takes away on held-out recordings; empty where none shows it.
 
-    Two measures where more than noise stays. They differ where that is fast: much in units of
-    noise, little of the rms error (the damper: 6 and 79 %).
+    Two measures where more than noise stays, since they differ (the damper: 6 and 79 %): the second
+    counts every frequency in units of its own noise.
     """
     gain = verdict.gain
     if gain is None or gain.share is None:
