@@ -133,7 +133,9 @@ def test_a_folder_of_another_sweep_is_refused(capsys, tmp_path):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("how", [signal.SIGINT, signal.SIGKILL])
+@pytest.mark.parametrize(
+    "how", [pytest.param(signal.SIGINT, marks=pytest.mark.nightly), signal.SIGKILL]
+)
 def test_a_sweep_that_is_stopped_goes_on_where_it_was(tmp_path, how):
     command = [
         *(sys.executable, "-m", "ves_twin.cli.main", "sweep", "position_sine", "--workers", "1"),

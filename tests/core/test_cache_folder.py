@@ -126,7 +126,7 @@ if __name__ == "__main__":
         ["info"],
         pytest.param(
             ["run", "position_sine", "--set", "run.duration=0.1", "--out", "out"],
-            marks=pytest.mark.slow,  # it compiles, where no cache is left of an earlier test
+            marks=pytest.mark.nightly,  # compiles the whole loop
         ),
         pytest.param(["reproduce", "fig-5-3", "--out", "out"], marks=pytest.mark.slow),
     ],

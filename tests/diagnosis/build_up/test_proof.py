@@ -105,7 +105,7 @@ def test_nothing_is_proved_where_nothing_is_hidden():
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("count", [0, 3, 6])
+@pytest.mark.parametrize("count", [0, 3, pytest.param(6, marks=pytest.mark.nightly)])
 def test_the_false_discovery_rate_is_kept_over_draws(count):
     wrong, right, hid = rates(40, count)
     # three sd of a binomial above the rate
