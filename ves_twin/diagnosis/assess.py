@@ -138,7 +138,7 @@ def assess(
         if look.score <= BEYOND * look.limit(effect):
             continue
         if steps == GLANCE:
-            beside = _beside(first, look)
+            beside = _beside(first, look, pull)
             if beside is not None:
                 own = whitening.adapted(whitening.apply(bare_residual(look.evidence, beside)))
                 screen = Screen(bank, own, shaped=shaped)
@@ -150,8 +150,11 @@ def assess(
     return look
 
 
-def _beside(first: Assessment, look: Assessment) -> Fit | None:
+def _beside(first: Assessment, look: Assessment, pull: float) -> Fit | None:
     """The likeliest cause fitted with the commissioning errors; None if it leaves more than noise.
+
+    None, too, if it strains one: of three rigs in order a cause that was not there left noise, with
+    commissioning errors of 7 to 10 sd beside it.
 
     Commissioning errors alone, held against a loud fault, take hundreds of runs to mimic it, and
     tell no more of its name.
@@ -165,7 +168,7 @@ def _beside(first: Assessment, look: Assessment) -> Fit | None:
         cause = look.screen.bank.hypotheses[suspect.hypothesis]
         shift = base.runs.depart(base.runs.origin, base.runs.indices(cause), suspect.sizes)
         fit = refine(seen.evidence, (cause,), shift, base, enough=ROUGH)
-        if fit.chi2 < STRANGE * len(fit.residual):
+        if fit.chi2 < STRANGE * len(fit.residual) and fit.pull <= pull:
             return fit
     return None
 

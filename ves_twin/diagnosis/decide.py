@@ -27,6 +27,7 @@ from ves_twin.diagnosis.runs import Runs
 from ves_twin.diagnosis.search import ITERATIONS
 from ves_twin.diagnosis.settings import Settings
 from ves_twin.diagnosis.signature_library import SignatureLibrary, build_bank, cached_bank
+from ves_twin.diagnosis.spread import spread
 from ves_twin.diagnosis.verdict import Kind
 from ves_twin.diagnosis.whitening import Whitening, whitening_of
 
@@ -243,7 +244,7 @@ def _probed(found: Explanation, settings: Settings) -> Explanation:
     """The chosen fits once more, with runs along what they know least of their causes.
 
     Where runs are cheap they are first searched once more by columns of their own, and then their
-    sizes are profiled.
+    sizes are profiled. In the end what they leave says how sure they are.
     """
     evidence, dear = found.evidence, settings.sparse
     chosen = tuple(
@@ -261,6 +262,7 @@ def _probed(found: Explanation, settings: Settings) -> Explanation:
     )
     if not settings.sparse and not evidence.runs.budget.skips("profiles of sizes"):
         chosen = tuple(profiled(evidence, fit) for fit in chosen)
+    chosen = tuple(spread(evidence, fit, settings.confidence) for fit in chosen)
     better = {fit.causes: fit for fit in chosen}
     fits = tuple(better.get(fit.causes, fit) for fit in found.fits)
     return replace(found, chosen=chosen, fits=fits)
