@@ -95,6 +95,7 @@ SUITES = {
         "pendulum",
         "--none 200 --single 160 --outside 32 --pair 24 --confusable 24",
         AIMS,
+        seed=20261127,  # drawn anew after intervals were changed on other seeds
     ),
     "pendulum_loose": Blind(
         "pendulum, commissioned 2.5 times worse than declared",
