@@ -229,3 +229,14 @@ def test_a_fit_tells_while_noise_is_most_of_what_the_best_leaves(bank):
 def test_the_limit_of_the_pull_is_passed_by_any_error_with_alpha(bank, alpha):
     count = len(bank.base.runs.nuisances)
     assert 2.0 * count * norm.sf(pull_limit(bank, alpha)) == pytest.approx(alpha, rel=1e-9)
+
+
+def test_a_cause_beside_strained_commissioning_errors_is_not_taken(bank):
+    whitening = whitening_declared(bank.base.runs)
+    record = rows({"friction.size": 0.3, "plant.gain": 1.05})
+    taken = assess(record, bank, whitening, *LIMITS)
+    assert taken.beside is not None
+    assert [cause.effect for cause in taken.beside.causes] == ["friction"]
+    effect, level, _ = LIMITS
+    strained = assess(record, bank, whitening, effect, level, 0.9 * taken.beside.pull)
+    assert strained.beside is None
