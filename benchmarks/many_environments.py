@@ -1,4 +1,4 @@
-"""Eight environments in processes against one, beside what two processes gain at bare mj_step.
+"""Eight environments on all cores against one, beside what two processes gain at bare mj_step.
 
 Run by `make bench`. Rounds in turn: one environment here, eight by `ChunkedVectorEnv`, eight by
 Gymnasium's `AsyncVectorEnv`, bare mj_step in one process and in all. Prints medians over rounds of
@@ -114,7 +114,7 @@ def measure(name: str, plant: str, rounds: int) -> str:
         "one": (lambda: stepped(one, actions[0], 2 * steps), [here], 2 * steps),
         "shared": (
             lambda: [shared.step(actions) for _ in range(steps)],
-            [here, *(p.pid for p in shared.processes)],
+            [here],
             COPIES * steps,
         ),
         "async": (
@@ -148,6 +148,7 @@ def measure(name: str, plant: str, rounds: int) -> str:
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--rounds", type=int, default=8)
+    parser.add_argument("--names", nargs="+", default=RIG_ENVIRONMENTS, choices=RIG_ENVIRONMENTS)
     parser.add_argument("--plants", nargs="+", default=list(STEPS), choices=list(STEPS))
     given = parser.parse_args()
     print(f"{CORES} cores, load {os.getloadavg()[0]:.1f} before it began")
@@ -155,7 +156,7 @@ def main() -> None:
         f"{'environment':<31}{'plant':<9}{'one/s':>6} {'eight, ChunkedVectorEnv':>19}"
         f"{'eight, Async':>22}{f'bare, {CORES} processes':>23}   ms: one, shared, async"
     )
-    for name in RIG_ENVIRONMENTS:
+    for name in given.names:
         for plant in given.plants:
             print(measure(name, plant, given.rounds), flush=True)
 

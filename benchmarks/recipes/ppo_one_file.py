@@ -1,6 +1,6 @@
 """Proximal policy optimisation in one file of PyTorch, in the manner of CleanRL.
 
-Needs the extra `train`, for torch alone. The environments share processes by `ChunkedVectorEnv`.
+Needs the extra `train`, for torch alone. The environments share cores by `ChunkedVectorEnv`.
 
 Source: Schulman et al., Proximal Policy Optimization Algorithms, 2017, eqs 7, 9, 11.
 """
@@ -103,5 +103,5 @@ def main() -> None:
     envs.close()
 
 
-if __name__ == "__main__":  # processes are spawned
+if __name__ == "__main__":
     main()

@@ -1,5 +1,7 @@
 """ChunkedVectorEnv: as Gymnasium's own vectors, and as single environments, to the last bit."""
 
+import threading
+
 import gymnasium as gym
 import numpy as np
 import pytest
@@ -10,7 +12,36 @@ from ves_twin.envs.chunked_vector_env import ChunkedVectorEnv
 from ves_twin.envs.wrappers import LateObservations
 
 DAMPING = "VesTwin/VibrationDamping-v0"
-COUNT = 3  # over two processes: shares of one and of two
+COUNT = 3  # over two threads: shares of one and of two
+
+
+seen: list[tuple[str, int]] = []
+
+
+class Told(gym.Wrapper):
+    """Tells in which thread it is used."""
+
+    def reset(self, **words):
+        seen.append(("reset", threading.get_ident()))
+        return super().reset(**words)
+
+    def step(self, action):
+        seen.append(("step", threading.get_ident()))
+        return super().step(action)
+
+    def render(self):
+        seen.append(("render", threading.get_ident()))
+        return super().render()
+
+    def close(self):
+        seen.append(("close", threading.get_ident()))
+        super().close()
+
+
+def refused_in_a_share(env):
+    if threading.current_thread() is not threading.main_thread():
+        raise RuntimeError("of a thread")
+    return env
 
 
 def late(env):
@@ -35,7 +66,7 @@ def envs():
     made = ChunkedVectorEnv(
         DAMPING,
         COUNT,
-        processes=2,
+        threads=2,
         wrappers=[late],
         plant="ves2_fast",
         scenario=short("vibration_damping"),
@@ -92,7 +123,7 @@ def test_what_is_refused_moves_nothing(envs):
     np.testing.assert_array_equal(*rows)
 
 
-def test_an_error_of_a_process_arrives_as_what_it_is(envs):
+def test_an_error_of_a_share_arrives_as_what_it_is(envs):
     with pytest.raises(UnknownNameError, match="did you mean 'plant'"):
         envs.reset(options={"plnt": "ves2"})
     with pytest.raises(InvalidInputError, match="reset_mask"):
@@ -112,18 +143,22 @@ def test_attributes_are_told_and_set_in_order(envs):
         envs.set_attr("marked", [1, 2])
 
 
-def test_what_cannot_be_made_leaves_no_process():
+def test_what_cannot_be_made_leaves_no_thread():
+    before = threading.active_count()
     with pytest.raises(UnknownNameError, match="ves3"):
         ChunkedVectorEnv(DAMPING, 2, plant="ves3")
     with pytest.raises(InvalidInputError, match="num_envs"):
         ChunkedVectorEnv(DAMPING, 0)
     with pytest.raises(UnknownNameError, match="did you mean 'NextStep'"):
         ChunkedVectorEnv(DAMPING, 2, autoreset_mode="next_step")
+    with pytest.raises(VesTwinError, match="of a thread"):
+        ChunkedVectorEnv(DAMPING, 2, threads=2, wrappers=[refused_in_a_share], plant="ves2_fast")
+    assert threading.active_count() == before
 
 
 def test_within_the_last_step_and_when_closed():
     options = {"plant": "ves2_fast", "scenario": short("vibration_damping")}
-    found = ChunkedVectorEnv(DAMPING, 2, processes=2, autoreset_mode="SameStep", **options)
+    found = ChunkedVectorEnv(DAMPING, 2, threads=2, autoreset_mode="SameStep", **options)
     mode = {"autoreset_mode": "SameStep"}
     expected = gym.make_vec(
         DAMPING, num_envs=2, vectorization_mode="sync", vector_kwargs=mode, **options
@@ -142,12 +177,22 @@ def test_within_the_last_step_and_when_closed():
         found.step(actions)
 
 
-def test_a_process_that_dies_is_told_and_the_others_end():
+def test_they_are_made_stepped_drawn_and_closed_in_the_thread_of_their_share():
+    """A picture's context belongs to the thread that made it."""
+    seen.clear()
     envs = ChunkedVectorEnv(
-        DAMPING, 2, processes=2, plant="ves2_fast", scenario=short("vibration_damping")
-    )
-    envs.processes[0].kill()
-    envs.processes[0].join()
-    with pytest.raises(VesTwinError, match="make them anew"):
-        envs.reset(seed=1)
-    assert not any(process.is_alive() for process in envs.processes)
+        DAMPING, 3, threads=2, wrappers=[Told], plant="ves2_fast",
+        scenario=short("vibration_damping"), render_mode="rgb_array",
+    )  # fmt: skip
+    envs.reset(seed=1)
+    envs.step(np.zeros((3, 3)))
+    (a, b, c) = envs.render()
+    envs.close()
+    assert a.shape == b.shape == c.shape
+    alone = {verb for verb, _ in seen}
+    assert alone == {"reset", "step", "render", "close"}
+    for verb in ("reset", "step", "render"):
+        threads = [thread for one, thread in seen if one == verb]
+        assert len(threads) == 3
+        assert len(set(threads)) == 2
+        assert threading.get_ident() not in threads

@@ -1,24 +1,22 @@
-"""ChunkedVectorEnv: environments side by side, shared out over a few processes."""
+"""ChunkedVectorEnv: environments side by side, shared out over a few threads."""
 
 from __future__ import annotations
 
-import multiprocessing
 import os
 from collections.abc import Callable, Sequence
+from concurrent.futures import ThreadPoolExecutor, wait
 from functools import partial
 from itertools import pairwise
-from multiprocessing.connection import Connection
 from typing import Any
 
 import gymnasium as gym
 import numpy as np
-from gymnasium.vector import AutoresetMode, VectorEnv
-from gymnasium.vector.utils import CloudpickleWrapper, batch_space
+from gymnasium.vector import AutoresetMode, SyncVectorEnv, VectorEnv
+from gymnasium.vector.utils import batch_space
 
-from ves_twin.core.errors import InvalidInputError, UnknownNameError, VesTwinError
+from ves_twin.core.errors import InvalidInputError, UnknownNameError, VesTwinError, one_line
 from ves_twin.core.types import FloatArray
-from ves_twin.core.workers import single_threads
-from ves_twin.envs.share import Batch, joined, serve_share
+from ves_twin.envs.batched_infos import batched_infos
 
 MODES = (AutoresetMode.NEXT_STEP.value, AutoresetMode.SAME_STEP.value)
 """When an environment that is over begins anew: by the next step, or within the last one."""
@@ -29,18 +27,15 @@ Wrap = Callable[[gym.Env[Any, Any]], gym.Env[Any, Any]]
 class ChunkedVectorEnv(VectorEnv[FloatArray, FloatArray, Any]):
     """Environments of one kind, each equal to a single one to the last bit.
 
-    A process steps its share one after another. Gymnasium's `AsyncVectorEnv` has a process for
-    each environment: with more of them than cores they take turns, and each step of each
-    environment costs two messages and a cold cache. Seeds, resets, infos and the batch are as
-    there. Values that `call` and `get_attr` give travel, so they must be picklable.
-
-    Attributes:
-        processes: those that share the environments.
+    A thread steps its share one after another, and makes, draws and closes it, too. The compiled
+    loop runs beside other threads (it holds no lock of the interpreter), and what a step gives
+    travels nowhere. Gymnasium's `AsyncVectorEnv` has a process for each environment: each step of
+    each costs two messages and a cold cache. Seeds, resets, infos and the batch are as there.
 
     Args:
         name: id of the environment.
         num_envs: how many.
-        processes: how many share them; one for each core if left out.
+        threads: how many share them; one for each core if left out.
         wrappers: put around each environment, the innermost first.
         autoreset_mode: one of MODES.
         **options: for the environment, as `gym.make` takes them.
@@ -53,14 +48,14 @@ class ChunkedVectorEnv(VectorEnv[FloatArray, FloatArray, Any]):
         self,
         name: str,
         num_envs: int,
-        processes: int | None = None,
+        threads: int | None = None,
         wrappers: Sequence[Wrap] = (),
         autoreset_mode: str = AutoresetMode.NEXT_STEP.value,
         **options: Any,
     ) -> None:
-        self._pipes: list[Connection] = []
-        self.processes: list[Any] = []
-        for what, count in (("num_envs", num_envs), ("processes", processes)):
+        self._pools: list[ThreadPoolExecutor] = []
+        self._parts: list[Any] = []
+        for what, count in (("num_envs", num_envs), ("threads", threads)):
             if count is not None and (type(count) is not int or count < 1):
                 raise InvalidInputError(what, count, "a whole number, 1 or more")
         if autoreset_mode not in MODES:
@@ -68,20 +63,17 @@ class ChunkedVectorEnv(VectorEnv[FloatArray, FloatArray, Any]):
         mode = AutoresetMode(autoreset_mode)
         make = partial(_made, name, tuple(wrappers), options)
         self._describe(make(), num_envs, mode)
-        count = min(processes or os.cpu_count() or 1, num_envs)
+        count = min(threads or os.cpu_count() or 1, num_envs)
         ends = [num_envs * k // count for k in range(count + 1)]
         self._shares = [slice(a, b) for a, b in pairwise(ends)]
-        context = multiprocessing.get_context("spawn")  # libraries' threads do not survive a fork
-        with single_threads():
-            for share in self._shares:
-                ours, theirs = context.Pipe()
-                given = (CloudpickleWrapper(make), share.stop - share.start, mode, theirs)
-                process = context.Process(target=serve_share, args=given, daemon=True)
-                process.start()
-                theirs.close()
-                self._pipes.append(ours)
-                self.processes.append(process)
-        self._ask("begin", [None] * count)
+        self._pools = [ThreadPoolExecutor(1) for _ in self._shares]
+        share = partial(_Share, copy=False, autoreset_mode=mode)
+        made = [[make] * (one.stop - one.start) for one in self._shares]
+        try:
+            self._parts = self._each([partial(share, one) for one in made])
+        except VesTwinError:
+            self.close()
+            raise
 
     def _describe(self, one: gym.Env[Any, Any], num_envs: int, mode: AutoresetMode) -> None:
         self.num_envs = num_envs
@@ -117,9 +109,9 @@ class ChunkedVectorEnv(VectorEnv[FloatArray, FloatArray, Any]):
             )
         if len(seeds) != self.num_envs:
             raise InvalidInputError("seed", seed, f"a number, or {self.num_envs} of them")
-        said = [(list(seeds[share]), options) for share in self._shares]
-        batches = self._ask("reset", said)
-        return np.concatenate([b.observations for b in batches]), self._infos(batches)
+        given = [{"seed": list(seeds[share]), "options": options} for share in self._shares]
+        observations, infos = zip(*self._ask("reset", named=given), strict=True)
+        return np.concatenate(observations), _batched(infos)
 
     def step(self, actions: FloatArray) -> tuple[FloatArray, FloatArray, Any, Any, dict[str, Any]]:
         """A step of each.
@@ -134,19 +126,16 @@ class ChunkedVectorEnv(VectorEnv[FloatArray, FloatArray, Any]):
         if given.shape != self.action_space.shape or not np.all(np.isfinite(given)):
             what = f"finite numbers of shape {self.action_space.shape}"
             raise InvalidInputError("actions", given.tolist(), what)
-        batches: list[Batch] = self._ask("step", [given[share] for share in self._shares])
-        return (
-            np.concatenate([b.observations for b in batches]),
-            np.concatenate([b.rewards for b in batches]),
-            np.concatenate([b.terminations for b in batches]),
-            np.concatenate([b.truncations for b in batches]),
-            self._infos(batches),
-        )
+        said = self._ask("step", [(given[share],) for share in self._shares])
+        *rows, infos = zip(*said, strict=True)
+        observations, rewards, terminations, truncations = map(np.concatenate, rows)
+        return observations, rewards, terminations, truncations, _batched(infos)
 
     def call(self, name: str, *args: Any, **kwargs: Any) -> tuple[Any, ...]:
         """What a method of each gives, or an attribute."""
-        said = [(name, args, kwargs)] * len(self._shares)
-        return tuple(value for values in self._ask("call", said) for value in values)
+        count = len(self._shares)
+        said = self._ask("call", [(name, *args)] * count, [kwargs] * count)
+        return tuple(value for values in said for value in values)
 
     def get_attr(self, name: str) -> tuple[Any, ...]:
         """An attribute of each."""
@@ -164,31 +153,47 @@ class ChunkedVectorEnv(VectorEnv[FloatArray, FloatArray, Any]):
         return self.call("render")
 
     def close_extras(self, **kwargs: Any) -> None:
-        """End the processes."""
-        for pipe in self._pipes:
-            pipe.close()  # a process ends when its pipe does
-        for process in self.processes:
-            process.join()
+        """Close the environments, each in its thread, and end the threads."""
+        for pool, part in zip(self._pools, self._parts, strict=False):
+            pool.submit(part.close)
+        for pool in self._pools:
+            pool.shutdown()
 
-    def _infos(self, batches: Sequence[Batch]) -> dict[str, Any]:
-        return joined([batch.infos for batch in batches], [len(b.observations) for b in batches])
-
-    def _ask(self, what: str, said: Sequence[Any]) -> list[Any]:
-        """Answers of the processes, which work at the same time; all are heard before any error."""
+    def _ask(
+        self, verb: str, said: Sequence[Any] = (), named: Sequence[dict[str, Any]] = ()
+    ) -> list[Any]:
+        """What a verb of each share gives."""
         if self.closed:
             raise InvalidInputError("environments", "closed", "open ones")
-        answers: list[Any] = []
-        try:
-            for pipe, words in zip(self._pipes, said, strict=True):
-                pipe.send((what, words))
-            answers = [pipe.recv() for pipe in self._pipes]
-        except (EOFError, ConnectionError) as error:
-            self.close()
-            raise VesTwinError("a process of the environments has ended; make them anew") from error
+        count = len(self._parts)
+        words = zip(self._parts, said or [()] * count, named or [{}] * count, strict=True)
+        return self._each([partial(getattr(part, verb), *one, **keys) for part, one, keys in words])
+
+    def _each(self, works: Sequence[Callable[[], Any]]) -> list[Any]:
+        """Works of all shares at the same time; all are at their end before any error is told."""
+        answers = [pool.submit(work) for pool, work in zip(self._pools, works, strict=True)]
+        wait(answers)
         for answer in answers:
-            if isinstance(answer, VesTwinError):
-                raise answer
-        return answers
+            error = answer.exception()
+            if isinstance(error, VesTwinError):
+                raise error
+            if error is not None:
+                what = f"environment: {type(error).__name__}: {one_line(error)}"
+                raise VesTwinError(what) from error
+        return [answer.result() for answer in answers]
+
+
+class _Share(SyncVectorEnv[Any, Any]):
+    """The environments of one thread; infos are put together once, of all shares."""
+
+    def _add_info(self, vector_infos: Any, env_info: dict[str, Any], env_num: int) -> Any:
+        vector_infos.setdefault(env_num, {}).update(env_info)
+        return vector_infos
+
+
+def _batched(infos: Sequence[dict[int, dict[str, Any]]]) -> dict[str, Any]:
+    """Of shares, whose infos are by the number of the environment in each."""
+    return batched_infos([one[n] for one in infos for n in range(len(one))])
 
 
 def _made(name: str, wrappers: Sequence[Wrap], options: dict[str, Any]) -> gym.Env[Any, Any]:
