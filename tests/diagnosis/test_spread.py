@@ -36,7 +36,7 @@ def missed(colour: float, loud: float) -> FloatArray:
         slow *= loud * np.array(SD) * np.sqrt((1.0 + colour) / (1.0 - colour))
         evidence = Evidence(runs, (clean + noise + slow).astype(np.float32), whitening)
         fit = refine(evidence, (FRICTION,), runs.origin, base)
-        wide = spread(evidence, fit, 0.9)
+        wide = spread(evidence, fit)
         off = fit.sizes[0] - SIZE
         found.append([off / np.sqrt(one.covariance[0, 0]) for one in (fit, wide)])
     return np.array(found)
@@ -64,7 +64,7 @@ def test_everything_but_the_covariance_of_sizes_stays() -> None:
     clean = Toy().simulate(FED, {"friction.size": SIZE})
     evidence = Evidence(runs, clean.astype(np.float32), whitening_declared(runs))
     fit = refine(evidence, (FRICTION,), runs.origin, linearise(runs, runs.origin))
-    wide = spread(evidence, fit, 0.9)
+    wide = spread(evidence, fit)
     assert wide.posterior is fit.posterior
     assert replace(wide, covariance=fit.covariance) == fit
     assert wide.covariance[0, 0] >= fit.covariance[0, 0]

@@ -10,10 +10,11 @@ from scipy.stats import norm
 from ves_twin.core.types import FloatArray, SingleArray
 from ves_twin.diagnosis.adequacy import cells, misfit
 from ves_twin.diagnosis.evidence import Evidence
+from ves_twin.diagnosis.linearise import Linearisation
 from ves_twin.diagnosis.prewhitened import Prewhitened
 from ves_twin.diagnosis.refine import ROUGH, Fit, bare_residual, refine, residual_about
 from ves_twin.diagnosis.screen import Candidate, Screen
-from ves_twin.diagnosis.search import ITERATIONS, RELATIVE_CONVERGENCE
+from ves_twin.diagnosis.search import FARTHEST, ITERATIONS, RELATIVE_CONVERGENCE
 from ves_twin.diagnosis.signature_library import SignatureLibrary
 from ves_twin.diagnosis.whitening import Whitening
 
@@ -129,7 +130,8 @@ def assess(
         if sparse and rounds and _left(look) > FAR:
             break
         rough = sparse and _left(look) > STRANGE
-        fit = _fitted(look, rounds, steps, ROUGH if rough else RELATIVE_CONVERGENCE)
+        within = pull if steps == GLANCE else FARTHEST  # few steps may lead far astray
+        fit = _fitted(look, rounds, steps, ROUGH if rough else RELATIVE_CONVERGENCE, within)
         own = whitening.adapted(whitening.apply(bare_residual(look.evidence, fit)))
         look = _look(Evidence(runs, measured, own), Screen(bank, own, shaped=shaped), fit)
         look = replace(look, bends=bends)
@@ -194,14 +196,14 @@ def _left(look: Assessment) -> float:
     return 0.0 if fit is None else fit.chi2 / len(fit.residual)
 
 
-def _fitted(look: Assessment, rounds: int, steps: int, enough: float) -> Fit:
+def _fitted(look: Assessment, rounds: int, steps: int, enough: float, within: float) -> Fit:
     """Commissioning errors alone, from where the last look left them."""
     base = look.screen.bank.base
-    if look.commissioning is None:
-        return refine(look.evidence, (), base.runs.origin, base, rounds, steps=steps, enough=enough)
-    last = look.commissioning
-    at = (last.shift, last.local, rounds, last.step_share)
-    return refine(look.evidence, (), *at, steps=steps, enough=enough)
+    at: tuple[FloatArray, Linearisation, int, float] = (base.runs.origin, base, rounds, 0.0)
+    if look.commissioning is not None:
+        last = look.commissioning
+        at = (last.shift, last.local, rounds, last.step_share)
+    return refine(look.evidence, (), *at, farthest=within, steps=steps, enough=enough)
 
 
 def _look(evidence: Evidence, screen: Screen, fit: Fit | None) -> Assessment:

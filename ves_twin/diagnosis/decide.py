@@ -262,7 +262,7 @@ def _probed(found: Explanation, settings: Settings) -> Explanation:
     )
     if not settings.sparse and not evidence.runs.budget.skips("profiles of sizes"):
         chosen = tuple(profiled(evidence, fit) for fit in chosen)
-    chosen = tuple(spread(evidence, fit, settings.confidence) for fit in chosen)
+    chosen = tuple(spread(evidence, fit) for fit in chosen)
     better = {fit.causes: fit for fit in chosen}
     fits = tuple(better.get(fit.causes, fit) for fit in found.fits)
     return replace(found, chosen=chosen, fits=fits)
