@@ -256,7 +256,10 @@ def _causes(
 def _cause(
     findings: Findings, fit: Fit, hypothesis: Hypothesis, start: int, weight: float
 ) -> Cause:
-    """Firm if it is no commissioning parameter, or further off than commissioning errors go."""
+    """Firm if it is no commissioning parameter, or further off than commissioning errors go.
+
+    Not where every interval holds what the model has already: such a size may be none.
+    """
     runs = findings.seen.runs
     z = float(norm.isf(0.5 * (1.0 - findings.settings.confidence)))
     estimates, sigmas = {}, []
@@ -269,12 +272,13 @@ def _cause(
         if parameter.sd > 0.0:
             sigmas.append(findings.widened * abs(size) / parameter.sd)
     absent = len(sigmas) < len(hypothesis.parameters)
+    shown = any(not e.low <= e.nominal <= e.high for e in estimates.values())
     return Cause(
         effect=hypothesis.effect,
         target=hypothesis.target,
         parameters=estimates,
         probability=weight,
-        firm=absent or max(sigmas) >= findings.kappa,
+        firm=shown and (absent or max(sigmas) >= findings.kappa),
         sigmas=max(sigmas, default=None),
     )
 
