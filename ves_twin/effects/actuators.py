@@ -152,31 +152,6 @@ class ActuatorDeadband(Curve):
         return np.asarray(effort + self.band * np.sign(effort))
 
 
-@final
-@dataclass(frozen=True)
-class ActuatorAsymmetry(Curve):
-    """An actuator gives more one way than the other: u -> u (1 + share sign(u)).
-
-    A cylinder with a rod on one side moves faster where the oil enters there: areas A and B make a
-    share of (B - A) / (A + B).
-    """
-
-    share: float = 0.0
-
-    kind = "actuator_asymmetry"
-    sizes = (Size("share", "1"),)
-    # a rod of 0.7 of the bore halves the area, a share of a third
-    anywhere = Anywhere(Element.ACTUATOR, 0.5, 0.002, source="assumed: rods up to 0.8 of the bore")
-
-    def edit_command(self, command: FloatArray, time: FloatArray) -> FloatArray:
-        """Each side with its own gain."""
-        return np.asarray(command + self.share * np.abs(command))
-
-    def edit_required(self, effort: FloatArray, time: FloatArray) -> FloatArray:
-        """Each side without it."""
-        return np.asarray(effort / (1.0 + self.share * np.sign(effort)))
-
-
 LEAST_SLOPE = 0.01
 """Of a saturated actuator where a command is asked for: none gives more than it can, and the
 command for more must be finite."""
@@ -216,3 +191,28 @@ class ActuatorSaturation(Curve):
         """Further out beyond the limit."""
         within = np.clip(effort, -self.limit, self.limit)
         return np.asarray(within + (effort - within) / max(1.0 - self.share, LEAST_SLOPE))
+
+
+@final
+@dataclass(frozen=True)
+class ActuatorAsymmetry(Curve):
+    """An actuator gives more one way than the other: u -> u (1 + share sign(u)).
+
+    A cylinder with a rod on one side, behind its valve, moves faster where the oil enters there:
+    areas A and B make a share of (B - A) / (A + B).
+    """
+
+    share: float = 0.0
+
+    kind = "actuator_asymmetry"
+    sizes = (Size("share", "1"),)
+    # a rod of 0.7 of the bore halves the area, a share of a third
+    anywhere = Anywhere(Element.ACTUATOR, 0.5, 0.002, source="assumed: rods up to 0.8 of the bore")
+
+    def edit_command(self, command: FloatArray, time: FloatArray) -> FloatArray:
+        """Each side with its own gain."""
+        return np.asarray(command + self.share * np.abs(command))
+
+    def edit_required(self, effort: FloatArray, time: FloatArray) -> FloatArray:
+        """Each side without it."""
+        return np.asarray(effort / (1.0 + self.share * np.sign(effort)))

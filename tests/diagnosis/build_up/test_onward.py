@@ -7,9 +7,11 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
+from ves_twin.diagnosis.build_up import build_up
 from ves_twin.diagnosis.build_up.build_up import _Builder, _likeliest
 from ves_twin.diagnosis.build_up.proof import prove
 from ves_twin.diagnosis.build_up.select import Selector
+from ves_twin.diagnosis.build_up.trials import Trial
 from ves_twin.diagnosis.evidence import Evidence
 from ves_twin.diagnosis.forward import Excitation
 from ves_twin.diagnosis.preprocess import Dataset
@@ -99,6 +101,27 @@ def test_what_a_dead_band_hides_is_found_beside_it(forward):
     found = {axis.parameter.name: point[i] for i, axis in enumerate(runs.coordinates)}
     for name, size in HIDDEN.items():
         assert found[name] == pytest.approx(size, rel=0.1)
+
+
+def test_a_fit_looks_from_the_sizes_of_bent_columns_too(forward, monkeypatch):
+    builder = builder_of(forward)
+    origin = builder.fitted.runs.origin
+    wanted = {
+        "actuator_gain@valve": (2.0,),
+        "actuator_deadband@valve": (0.8,),
+        "actuator_delay@valve": (0.1,),
+    }
+    causes = {h.label: h for h in forward.hypotheses}
+    present = tuple(
+        Trial(causes[label], sizes, positive=True, bent=True) for label, sizes in wanted.items()
+    )
+    halves = builder.halves(origin, present)
+    chosen = [n for n, trial in enumerate(halves.regression.trials) if trial in present]
+    evidence = builder.evidence(halves.regression.fit(chosen).residual)
+    monkeypatch.setattr(build_up, "_likeliest", lambda *_: builder.fitted.runs.high)
+    fit = builder.refined(halves, chosen, origin, evidence)
+    names = [halves.regression.trials[n].cause.parameters[0] for n in chosen]
+    assert fit.sizes == pytest.approx([HIDDEN[name] for name in names], rel=0.1)
 
 
 def test_a_fit_begins_where_least_is_left(forward):

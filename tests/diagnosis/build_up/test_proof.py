@@ -284,3 +284,15 @@ def test_nearest_leaves_no_channel_more_than_nothing_does():
     same = halves_at(one, one, one.runs.origin, PLANT.hypotheses)
     bench = prove(same.regression, same.held, [first, second]).bench
     assert nearest(bench, [[first], [second], [first, second]]) == (first, second)
+
+
+def test_what_predicts_better_with_a_sign_that_no_machine_has_is_not_proved():
+    hidden = {"coulomb@a:size": -0.8}
+    one, two = (seen(PLANT, recorded(PLANT, hidden, seed)) for seed in (5, 6))
+    both = halves_at(one, two, one.runs.origin, PLANT.hypotheses)
+    regression = both.regression
+    labels = [trial.cause.label for trial in regression.trials]
+    there = labels.index("coulomb@a")
+    assert prove(regression, both.held, [there]).proved == (there,)
+    trials = [replace(t, positive=t.cause.label == "coulomb@a") for t in regression.trials]
+    assert prove(replace(regression, trials=trials), both.held, [there]).proved == ()

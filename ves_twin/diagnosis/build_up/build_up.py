@@ -177,21 +177,29 @@ class _Builder:
         evidence: Evidence,
         probed: bool = False,
     ) -> Fit:
-        """Chosen trials fitted with the full forward, from what the linear fit says."""
+        """Chosen trials fitted with the full forward, from what the linear fit says.
+
+        And from the sizes that bent columns were computed at, the better of both: with a dead band
+        and what saturates beyond it the likeliest start led to half as good a fit (the excavator).
+        """
         regression, runs = halves.regression, self.fitted.runs
         linear = regression.solve(chosen, evidence.whitening)
         full = np.where(runs.sd > 0.0, point, 0.0)
-        near, half = full, full
+        near, half, told = full, full, full
         for n, at in regression.places(chosen).items():
             trial = regression.trials[n]
             where = runs.indices(trial.cause)
             sizes = trial.departures(linear.shares[at] * linear.scale[at])
             full = runs.depart(full, where, sizes)
+            told = runs.depart(told, where, np.array(trial.sizes) if trial.bent else full[where])
             here = point[where] if np.any(point[where]) else full[where]
             near = runs.depart(near, where, here)
             half = runs.depart(half, where, 0.5 * (here + full[where]))
         causes = tuple(regression.trials[n].cause for n in chosen)
-        fit = converged(evidence, causes, point, _likeliest(evidence, (full, half, near)))
+        starts = (_likeliest(evidence, (full, half, near)), told)
+        different = {shift.tobytes(): shift for shift in starts}
+        fits = [converged(evidence, causes, point, shift) for shift in different.values()]
+        fit = min(fits, key=lambda one: one.chi2)
         if not probed:
             return fit
         return refine(evidence, causes, fit.shift, fit.local, 0, fit.step_share, probed=True)
@@ -263,7 +271,7 @@ def _present(trials: Sequence[Trial], fit: Fit) -> tuple[Trial, ...]:
         sizes = tuple(fit.sizes[start : start + count].tolist())
         start += count
         if any(sizes):
-            found.append(replace(trial, sizes=sizes, positive=True))
+            found.append(replace(trial, sizes=sizes, positive=True, bent=True))
     return tuple(found)
 
 

@@ -31,12 +31,14 @@ class Trial:
         sizes: departures of its parameters at amplitude one (p,).
         wide: whether each parameter has a column of its own; else one column for all together.
         positive: whether only positive amplitudes are physical.
+        bent: whether its column holds near its sizes alone.
     """
 
     cause: Hypothesis
     sizes: tuple[float, ...]
     wide: bool = False
     positive: bool = False
+    bent: bool = False
 
     @property
     def width(self) -> int:
@@ -127,7 +129,7 @@ def trials_at(
             found.append(shown[0])
         elif not linear:
             sizes = [_within(runs, cause, row) for row in cause.departures()]
-            bent += [Trial(cause, row, positive=True) for row in dict.fromkeys(sizes)]
+            bent += [Trial(cause, row, positive=True, bent=True) for row in dict.fromkeys(sizes)]
         bent += [here[cause.label]] if cause.label in here else []
     rest = columns_of(runs, point, bent, progress)
     every, stacks = [*trials, *bent], [*found, *rest]
