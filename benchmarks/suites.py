@@ -178,7 +178,7 @@ evenly in log d from 6 to 40, so rates are not those of faults as they occur.
 HOURS = ("ves2_fast", "ves2_again", "ves2_nights")
 """Suites whose cases take minutes each: not in a tenth."""
 
-SORTS = ("none", "single", "outside", "pair", "confusable", "edited")
+SORTS = ("none", "single", "outside", "pair", "confusable", "edited", "many")
 
 
 def sized(made: str, share: int) -> list[str]:
