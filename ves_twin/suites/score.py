@@ -107,7 +107,7 @@ def _rows_of_none(both: Sequence[Pair]) -> dict[str, Rate]:
     none = [a for t, a in both if t.hidden is Hidden.NONE]
     return {
         "nothing hidden: nothing said": Rate.over(none, lambda a: a.verdict == "nothing"),
-        "nothing hidden: any name": Rate.over(none, lambda a: a.verdict in NAMES),
+        "nothing hidden: a false name": Rate.over(none, lambda a: a.verdict in NAMES),
         "nothing hidden: firm false name": Rate.over(none, _firm),
         "nothing hidden: false unknown": Rate.over(none, lambda a: a.verdict == "unknown"),
     }
