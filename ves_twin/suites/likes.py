@@ -44,6 +44,7 @@ class Likes:
                 labels.append(cause.label)
                 shifts.append(runs.depart(runs.origin, runs.indices(cause), sizes))
         traces = self._traces(shifts)
+        traces[~np.isfinite(traces).all(axis=1)] = 0.0  # a size at which the machine fails
         left = self.shown.metric.project(traces.T).T
         return labels, traces, np.sqrt(np.maximum(np.sum(traces * left, axis=1), 0.0))
 
