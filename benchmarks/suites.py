@@ -90,6 +90,27 @@ EDITED = (
 )
 """Of a suite with causes by edits as well."""
 
+MANY = (
+    *(
+        aim
+        for family in ("coloured", "law")
+        for aim in (
+            Aim(f"many, {family}: causes of 10% or more found", 0.90),
+            Aim(
+                f"many, {family}: names that are false", 0.05 if family == "coloured" else 0.10, -1
+            ),
+            Aim(f"many, {family}: firm names that are false", 0.02, -1),
+        )
+    ),
+    Aim("many: 90% of the gain that could be had", 0.90),
+    Aim("many: 90 % intervals that hold the hidden size", 0.85),
+    Aim("many: 90 % intervals that hold the hidden size", 0.95, -1),
+    Aim("nothing hidden: firm false name", 0.0, -1),
+)
+"""Of a machine with six to twelve causes, and one or two that no library has."""
+
+WORKSHOP = "--machine benchmarks/workshop/{} --single 0 --outside 0 --pair 0 --model-error 0.03"
+
 SUITES = {
     "pendulum": Blind(
         "pendulum",
@@ -159,6 +180,21 @@ SUITES = {
         " --confusable 24",
         (*AIMS, *EDITED),
     ),
+    "workshop_arm": Blind(
+        "six-joint arm with many things wrong at once",
+        WORKSHOP.format("arm.toml") + " --none 60 --many 40",
+        MANY,
+    ),
+    "workshop_twice": Blind(
+        "six-joint arm, two runs in order",
+        WORKSHOP.format("arm.toml") + " --none 20 --baseline",
+        (Aim("nothing hidden: a false name", 0.05, -1),),
+    ),
+    "workshop_drive_train": Blind(
+        "three masses with many things wrong at once",
+        WORKSHOP.format("drive_train.toml") + " --none 4 --many 8",
+        MANY,
+    ),
 }
 """Cases of each suite. A cause in VES II takes minutes to hide and to find, so they are few; the
 pendulum's together take about an hour of processor time."""
@@ -175,10 +211,10 @@ evenly in log d from 6 to 40, so rates are not those of faults as they occur.
 """
 
 
-HOURS = ("ves2_fast", "ves2_again", "ves2_nights")
+HOURS = ("ves2_fast", "ves2_again", "ves2_nights", "workshop_drive_train")
 """Suites whose cases take minutes each: not in a tenth."""
 
-SORTS = ("none", "single", "outside", "pair", "confusable", "edited")
+SORTS = ("none", "single", "outside", "pair", "confusable", "edited", "many")
 
 
 def sized(made: str, share: int) -> list[str]:

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 SUMMARY = "hide effects in recordings, answer from the recordings alone, score anybody's answers"
 
-QUICK = {"none": 6, "single": 10, "outside": 4, "pair": 2, "confusable": 0, "edited": 0}
+QUICK = {"none": 6, "single": 10, "outside": 4, "pair": 2, "confusable": 0, "edited": 0, "many": 0}
 """Cases of each sort if nothing is said."""
 
 
@@ -90,6 +90,13 @@ def _add_recipe(make: argparse.ArgumentParser) -> None:
         default=[],
         help="every rig has this, which the library lacks",
     )
+    make.add_argument(
+        "--model-error",
+        metavar="SHARE",
+        type=float,
+        default=0.0,
+        help="rms of coloured error in every column, of its own; --many needs some",
+    )
     for flag, words in {
         "baseline": "a recording of each rig before anything is hidden in it",
         "cut": "recordings cut out of a longer motion",
@@ -154,6 +161,7 @@ def _recipe(arguments: argparse.Namespace) -> Recipe:
         arguments.cut,
         arguments.poor,
         arguments.repaired,
+        arguments.model_error,
     )
 
 
@@ -225,6 +233,8 @@ def _reveal(folder: Path, key: Path) -> int:
         ]
         if truth.outside:
             hidden.append(f"{truth.outside} ({truth.outside_size:.3g}), outside the library")
+        if truth.family:
+            hidden.append(f"error that is {truth.family}, outside the library")
         print(f"{truth.case}  {' and '.join(hidden) or 'nothing'}")
     return 0
 

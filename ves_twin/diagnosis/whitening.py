@@ -177,11 +177,11 @@ class Whitening:
             return np.asarray(rows @ self.mixing[k].T)
         if rows.size == 0:  # a bank whose every entry is a column has no shapes of its own
             return np.zeros((*rows.shape[:-2], rows.shape[-2] - ORDER, rows.shape[-1]))
-        shaped = np.stack(
-            [lfilter(a, [1.0], rows[..., c], axis=-1) for c, a in enumerate(self.filters[k])],
-            axis=-1,
-        )
-        return np.asarray(shaped[..., ORDER:, :] @ self.mixing[k].T)
+        count, filters = rows.shape[-2] - ORDER, self.filters[k]
+        shaped = rows[..., ORDER:, :] * filters[:, 0]
+        for lag in range(1, ORDER + 1):
+            shaped += rows[..., ORDER - lag : ORDER - lag + count, :] * filters[:, lag]
+        return np.asarray(shaped @ self.mixing[k].T)
 
     def _levelled(self, k: int, white: FloatArray) -> FloatArray:
         if self.runs.programmes[k].poses:

@@ -34,6 +34,8 @@ class Answer:
         programmes: offered next programme -> chi^2 by which it should part the causes.
         scale: of the tolerances, if recordings of other rigs told it.
         alternatives: numbers of the causes, from 0, that each of several explanations takes.
+        acts_like: effect@target of a proved cause -> others, or several with "+" between, that do
+            as well in its place.
     """
 
     verdict: str
@@ -49,6 +51,7 @@ class Answer:
     programmes: Mapping[str, float] | None = None
     scale: float | None = None
     alternatives: Sequence[Sequence[int]] = ()
+    acts_like: Mapping[str, Sequence[str]] | None = None
 
     @property
     def current(self) -> Answer:
@@ -89,6 +92,7 @@ class Answer:
             {p.programme: p.separation for p in verdict.next_experiment},
             verdict.statistics.tolerance_scale,
             verdict.alternatives,
+            {one.label: one.acts_like for one in verdict.proved if one.acts_like},
         )
 
 

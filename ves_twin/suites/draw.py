@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -24,6 +24,9 @@ DETECTABILITY = (6.0, 40.0)
 PAIR_DETECTABILITY = (10.0, 40.0)
 """The same for each of two."""
 
+MANY, MANY_DETECTABILITY = (6, 12), (6.0, 60.0)
+"""Causes of a case that hides many, and the size of each in sigma of noise and model error."""
+
 ATTEMPTS = 60
 """Causes that are tried before a size in sigma is given up."""
 
@@ -37,11 +40,29 @@ class Detectability:
 
     Attributes:
         base: nuisance columns of the programme.
-        whitening: noise as declared.
+        whitening: noise as declared, or with the error of the model.
     """
 
     base: Linearisation
     whitening: Whitening
+
+    @property
+    def levels(self) -> FloatArray:
+        """Rms of each column where nothing departs (c,)."""
+        return np.asarray(np.sqrt(np.mean(np.square(self.base.prediction, dtype=float), axis=0)))
+
+    def share(self, cause: HiddenCause) -> float:
+        """Rms of what a cause changes, of that of the column where it is largest."""
+        change = self.base.runs.one(self.shift(cause)) - self.base.prediction
+        return float(np.max(np.sqrt(np.mean(np.square(change, dtype=float), axis=0)) / self.levels))
+
+    def shift(self, cause: HiddenCause) -> FloatArray:
+        """Departures of a cause (coordinates,)."""
+        runs = self.base.runs
+        shift = runs.origin
+        for i, axis in enumerate(runs.coordinates):
+            shift[i] += cause.departures.get(axis.parameter.name, 0.0)
+        return shift
 
     def linear(self, shift: FloatArray) -> float:
         """D by the columns at nominal: one run; inf where the machine fails at that size."""
@@ -49,14 +70,15 @@ class Detectability:
         signature = self.whitening.apply(change)
         if not np.all(np.isfinite(signature)):
             return float("inf")
-        return float(np.sqrt(max(float(signature @ self._metric.project(signature)), 0.0)))
+        return float(np.sqrt(max(float(signature @ self.metric.project(signature)), 0.0)))
 
     def full(self, shift: FloatArray) -> float:
         """D with the commissioning errors fitted by the full forward."""
         return detectability(self.base, self.whitening, shift, rounds=0)
 
     @cached_property
-    def _metric(self) -> Metric:
+    def metric(self) -> Metric:
+        """Inner product of whitened signals, commissioning errors taken out."""
         return Metric(self.whitening.apply(self.base.columns).T)
 
 
@@ -101,6 +123,8 @@ def draw_truths(
                 first = _cause(clear, detectability, PAIR_DETECTABILITY, rng)
                 rest = [h for h in clear if h.effect != first.effect]
                 causes = (first, _cause(rest, detectability, PAIR_DETECTABILITY, rng))
+            case Hidden.MANY:
+                causes = _many(clear, detectability, rng)
             case Hidden.EDITED:
                 kind, size, causes = _edited(machine, detectability, rng)
             case Hidden.OUTSIDE if rng.random() < 0.25:  # leave one out
@@ -126,6 +150,18 @@ def _edited(
     effect, _, target = label.partition("@")
     d = detectability.linear(shift)
     return kind, size, (HiddenCause(effect, target, {edit.parameter: size}, d),)
+
+
+def _many(
+    library: Sequence[Hypothesis], detectability: Detectability, rng: np.random.Generator
+) -> tuple[HiddenCause, ...]:
+    """Different causes, each sized by itself."""
+    found: dict[str, HiddenCause] = {}
+    for _ in range(int(rng.integers(MANY[0], MANY[1] + 1))):
+        rest = [h for h in library if h.label not in found]
+        cause = _cause(rest, detectability, MANY_DETECTABILITY, rng)
+        found[cause.label] = replace(cause, share=detectability.share(cause))
+    return tuple(found.values())
 
 
 def _cause(

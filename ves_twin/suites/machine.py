@@ -12,6 +12,7 @@ from ves_twin.core.recording.recording import Recording
 from ves_twin.diagnosis.forward import Excitation, Forward
 from ves_twin.diagnosis.grid import RATE
 from ves_twin.suites.hidden_law import HiddenLaw
+from ves_twin.suites.model_error import ModelError
 
 
 @dataclass(frozen=True)
@@ -26,6 +27,7 @@ class BlindRig:
         deployed: keys of the scenario that the rig's programs have otherwise than it says.
         background: further kinds that the library lacks, with their sizes.
         law: a function that no library has; None if none.
+        errors: what its model gets wrong in single columns.
     """
 
     values: Mapping[str, float] = field(default_factory=dict)
@@ -34,6 +36,7 @@ class BlindRig:
     deployed: Mapping[str, object] = field(default_factory=dict)
     background: Mapping[str, float] = field(default_factory=dict)
     law: HiddenLaw | None = None
+    errors: tuple[ModelError, ...] = ()
 
     def odd(self, kind: str) -> float:
         """Size of a kind that the library lacks; 0 if the rig has none of it."""
@@ -71,6 +74,11 @@ class BlindMachine(ABC):
     def edits(self) -> Mapping[str, Edit]:
         """Causes of the library that an edit makes, by its name; none unless it says so."""
         return {}
+
+    @property
+    def errs(self) -> bool:
+        """Whether its recordings can have `BlindRig.errors`; no unless it says so."""
+        return False
 
     @property
     @abstractmethod

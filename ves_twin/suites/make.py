@@ -12,13 +12,16 @@ import numpy as np
 from ves_twin.core.errors import FileAccessError, InvalidInputError
 from ves_twin.core.whole_file import whole_file
 from ves_twin.core.workers import Workers
+from ves_twin.diagnosis.build_up.discrepancy import discrepancy
 from ves_twin.diagnosis.linearise import linearise
 from ves_twin.diagnosis.preprocess import preprocess
 from ves_twin.diagnosis.whitening import whitening_declared
 from ves_twin.suites.aliases import aliases
 from ves_twin.suites.draw import Detectability, draw_truths
+from ves_twin.suites.likes import Likes
 from ves_twin.suites.machine import BlindMachine, BlindRig
 from ves_twin.suites.machines import machine_of
+from ves_twin.suites.model_error import everywhere, outside_library
 from ves_twin.suites.pinned import pinned_recipe
 from ves_twin.suites.recipe import Recipe
 from ves_twin.suites.save_bare import save_bare
@@ -136,10 +139,38 @@ def _truths(machine: BlindMachine, recipe: Recipe, progress: Progress, workers: 
         runs = preprocess(machine.forward, [nominal], shared, machine.rate).runs
         base = linearise(runs, runs.origin, progress)
         detectability = Detectability(base, whitening_declared(runs))
+        if recipe.model_error:
+            detectability = _erring(machine, recipe, detectability, rng)
         truths = draw_truths(machine, recipe.counts, detectability, rng, recipe.spread, progress)
         left_out = [t for t in truths if t.hidden is Hidden.OUTSIDE and t.causes]
         likes = dict(zip([t.case for t in left_out], aliases(runs, left_out), strict=True))
+        if recipe.model_error:
+            truths = _with_errors(truths, recipe, detectability)
     return [replace(t, background=recipe.background, aliases=likes.get(t.case, ())) for t in truths]
+
+
+def _erring(
+    machine: BlindMachine, recipe: Recipe, shown: Detectability, rng: np.random.Generator
+) -> Detectability:
+    """Sizes in sigma of noise and model error together, as one drawn record shows them."""
+    errors = everywhere(recipe.model_error, shown.levels, rng)
+    odd = machine.record(BlindRig(errors=errors), recipe.programme, rng)
+    seen = preprocess(machine.forward, [odd], rate=machine.rate)
+    residual = np.asarray(seen.measured - shown.base.prediction, float)
+    return replace(shown, whitening=discrepancy(shown.base.runs, residual))
+
+
+def _with_errors(truths: list[Truth], recipe: Recipe, shown: Detectability) -> list[Truth]:
+    """Each machine with model error of its own; one with many causes with some outside, too."""
+    likes, found = Likes(shown), []
+    for n, truth in enumerate(truths):
+        rng = recipe.rng(6, n)
+        errors = everywhere(recipe.model_error, shown.levels, rng)
+        if truth.hidden is Hidden.MANY:
+            errors += outside_library(shown.levels, rng)
+        causes = tuple(replace(cause, likes=likes.of(cause)) for cause in truth.causes)
+        found.append(replace(truth, errors=errors, causes=causes))
+    return found
 
 
 def record_pair(
@@ -183,7 +214,7 @@ def hide(
         for name, departure in cause.departures.items():
             values[name] = values.get(name, nominal[name]) + departure
     kind, size = truth.outside, truth.outside_size
-    return BlindRig(values, kind, size, deployed or {}, truth.background)
+    return BlindRig(values, kind, size, deployed or {}, truth.background, errors=truth.errors)
 
 
 def _record(
@@ -194,7 +225,7 @@ def _record(
     usual = machine.commissioned(rng, truth.spread)
     rig = hide(machine, usual, truth)
     truth = replace(truth, values=rig.values, repaired=recipe.repaired)
-    healthy = BlindRig(usual, background=truth.background)
+    healthy = BlindRig(usual, background=truth.background, errors=truth.errors)
     place = folder / truth.case
     lead = recipe.rng(4, number).uniform(*LEAD) if recipe.cut else 0.0
     held = healthy if recipe.repaired else rig

@@ -10,6 +10,7 @@ from typing import final
 
 import mujoco
 import numpy as np
+from scipy.interpolate import CubicSpline
 from scipy.signal import lfilter
 
 from ves_twin.core.errors import InvalidInputError
@@ -134,6 +135,11 @@ class BlindMjcf(BlindMachine):
         return tuple(labels) if len(labels) > 1 and self.mode is Mode.CONTROL else ()
 
     @property
+    def errs(self) -> bool:
+        """Where motion is fed in: a law of it needs some."""
+        return bool(self._moved)
+
+    @property
     def rate(self) -> float:
         """As the file says."""
         return self.rig.description.rate
@@ -187,15 +193,22 @@ class BlindMjcf(BlindMachine):
         return self._recorded(fed, np.tile(first, (len(fed.time), 1)), rig, rng)
 
     def _measured(self, rig: BlindRig, fed: Excitation, rng: np.random.Generator) -> Recording:
-        """Rows twice as dense where commands are held from row to row, so that delays are finer."""
-        dense = 2 if self.mode is Mode.CONTROL else 1
-        drive = {name: np.repeat(rows, dense, axis=0) for name, rows in fed.drive.items()}
+        """Rows twice as dense, so that delays are finer, and speeds those that motion has there.
+
+        Commands are held from row to row.
+        """
+        dense = 2
+        time = np.asarray(fed.period / dense * np.arange(dense * len(fed.time)), float)
+        held = np.arange(len(time)) // dense
+        drive = {name: rows[held] for name, rows in fed.drive.items()}
+        for signal in self._moved:
+            drive[signal] = CubicSpline(fed.time, fed.drive[signal])(time)
         if self.mode is Mode.CONTROL:
             kicks = lfilter([1.0 - SLOW], [1.0, -SLOW], rng.standard_normal(len(fed.time)))
             shaken = np.repeat(DISTURBANCE * kicks / np.sqrt((1.0 - SLOW) / (1.0 + SLOW)), dense)
-            for signal, _, size in driven(self.rig):
+            pushed = [(name, size) for name, _, size in driven(self.rig) if name not in self._moved]
+            for signal, size in pushed:
                 drive[signal] = drive[signal] + size * shaken[:, None]
-        time = np.asarray(fed.period / dense * np.arange(dense * len(fed.time)), float)
         denser = replace(fed, time=time, drive=drive)
         rows = np.full((len(time), len(self.forward.channels)), np.nan)
         for integrator in INTEGRATORS:
@@ -248,7 +261,10 @@ class BlindMjcf(BlindMachine):
         self, fed: Excitation, rows: FloatArray, rig: BlindRig, rng: np.random.Generator
     ) -> Recording:
         """What is outside the library, noise of another level and colour, counts."""
-        rows, channels = rows.copy(), self.forward.channels
+        clean, rows, channels = rows, rows.copy(), self.forward.channels
+        for error in rig.errors:
+            motion = self._motion(error.column, fed, clean)
+            rows[:, error.column] += error.rows(motion, fed.period, rng)
         odd, span = self._place()
         rows[:, odd] = _misread(rows[:, odd], fed.time, span, rig, rng)
         if rig.law is not None and rig.law.acts is Acts.READING:
@@ -280,9 +296,39 @@ class BlindMjcf(BlindMachine):
             compared = told.compare[channel.signal]
             if compared.joint and compared.of == "position":
                 return i, joint_of(self.rig, compared.joint).travel
-        first = self.forward.channels[0]
-        span = told.typical.signal.get(first.signal)
-        return 0, to_si(span.span, first.unit, "typical.signal") if span else 100.0 * first.sd
+        return 0, self._span(0)
+
+    def _span(self, number: int) -> float:
+        """Typical size of a channel."""
+        channel = self.forward.channels[number]
+        span = self.rig.description.typical.signal.get(channel.signal)
+        return to_si(span.span, channel.unit, "typical.signal") if span else 100.0 * channel.sd
+
+    @property
+    def _moved(self) -> dict[str, str]:
+        """Positions that are fed in, with the joint of each."""
+        joints = self.forward.imposed
+        if self.mode is Mode.MOTION:
+            joints = dict(self.rig.description.drive.joints)
+        return {signal: joint for joint, signal in joints.items()}
+
+    def _motion(self, number: int, fed: Excitation, rows: FloatArray) -> FloatArray:
+        """What a law of the motion at a channel depends on, in typical sizes (n, 4).
+
+        Position and speed of its joint, its own load, and the position of the next joint.
+        """
+        signals = list(self._moved)
+        own = self.forward.leaders.get(self.forward.channels[number].signal, signals[0])
+        other = signals[(signals.index(own) + 1) % len(signals)]
+        at, beside = (joint_of(self.rig, self._moved[name]) for name in (own, other))
+        position = fed.drive[own][:, 0]
+        parts = (
+            position / at.travel,
+            np.gradient(position, fed.period) / at.speed,
+            rows[:, number] / self._span(number),
+            fed.drive[other][:, 0] / beside.travel,
+        )
+        return 2.0 * np.stack(parts, axis=1)
 
 
 def _misread(

@@ -39,6 +39,7 @@ def pinned_recipe(recipe: Recipe, folder: Path, key: str) -> Recipe:
     try:
         begun = json.loads(unseal(path.read_bytes(), key, str(path)))
         begun.setdefault("machine", begun.get("bench"))
+        begun.setdefault("model_error", 0.0)
     except OSError as error:
         raise FileAccessError(f"cannot read {path}: {error.strerror}") from None
     asked = asdict(recipe) | ({"seed": begun["seed"]} if recipe.seed is None else {})

@@ -27,6 +27,7 @@ class Recipe:
         cut: whether recordings are cut out of a longer motion.
         poor: whether the first recording is one that tells little.
         repaired: whether held-out recordings are of the rig with nothing hidden any more.
+        model_error: rms of coloured error that every column of every rig has, of its own.
     """
 
     machine: str
@@ -39,6 +40,7 @@ class Recipe:
     cut: bool = False
     poor: bool = False
     repaired: bool = False
+    model_error: float = 0.0
 
     @property
     def programme(self) -> str:
@@ -68,9 +70,16 @@ class Recipe:
             if not 0.0 < size <= machine.outside[kind][1]:
                 expected = f"above 0 and up to {machine.outside[kind][1]:g}"
                 raise InvalidInputError(f"background {kind}", size, expected)
+        if self.model_error and not machine.errs:
+            expected = "a machine that is fed motion"
+            raise InvalidInputError("model error", self.machine, expected)
         if self.commissioned < 0:
             raise InvalidInputError("commissioned rigs", self.commissioned, "0 or more")
         if self.cut and self.baseline:
             raise InvalidInputError("cut", "with a baseline", "one of the two: no cut comes twice")
+        if not 0.0 <= self.model_error < 1.0:
+            raise InvalidInputError("model error", self.model_error, "0 or more, and below 1")
+        if self.counts.get(Hidden.MANY, 0) and not self.model_error:
+            raise InvalidInputError("model error", 0, "above 0 where many causes are hidden")
         if not self.spread > 0.0:
             raise InvalidInputError("spread", self.spread, "above 0")

@@ -12,6 +12,7 @@ from ves_twin.core.errors import FileAccessError, InvalidInputError
 from ves_twin.suites.answers import Answer
 from ves_twin.suites.judgement import NAMES, Judgement, judge
 from ves_twin.suites.rate import Rate
+from ves_twin.suites.score_many import score_many
 from ves_twin.suites.seal import unseal
 from ves_twin.suites.suite import load_suite
 from ves_twin.suites.truth import Hidden, Truth
@@ -83,6 +84,7 @@ def score(
     single = [(t, a) for t, a in both if t.hidden is Hidden.SINGLE]
     named = [pair for pair in single if pair[1].verdict in NAMES]
     rows = _rows_of_none(both) | _rows_of_single(single, named) | _rows_of_others(both)
+    rows |= score_many(both)
     firm = [(t, a) for t, a in single if other and _right_firm((t, other.get(t.case, _NONE)))]
     rows["single: firm names of the other answers that stay"] = Rate.over(firm, _right_firm)
     repaired = [a for t, a in both if t.repaired and a.verdict == "named" and a.passed is not None]
@@ -105,6 +107,7 @@ def _rows_of_none(both: Sequence[Pair]) -> dict[str, Rate]:
     none = [a for t, a in both if t.hidden is Hidden.NONE]
     return {
         "nothing hidden: nothing said": Rate.over(none, lambda a: a.verdict == "nothing"),
+        "nothing hidden: a false name": Rate.over(none, lambda a: a.verdict in NAMES),
         "nothing hidden: firm false name": Rate.over(none, _firm),
         "nothing hidden: false unknown": Rate.over(none, lambda a: a.verdict == "unknown"),
     }

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass, field
 from enum import StrEnum
 
+from ves_twin.suites.model_error import Family, ModelError
 from ves_twin.suites.old_names import current_label, current_size
 
 
@@ -15,7 +16,8 @@ class Hidden(StrEnum):
 
     outside: a kind that the library lacks, or one of the library that the diagnosis must exclude.
     confusable: one of a group that a programme hardly tells apart.
-    edited: a cause of the library that no class of effect made.
+    edited: a cause of the library that no class of effect made. many: six to twelve causes of the
+    library at once, and one or two outside it.
     """
 
     NONE = "none"
@@ -24,6 +26,7 @@ class Hidden(StrEnum):
     OUTSIDE = "outside"
     CONFUSABLE = "confusable"
     EDITED = "edited"
+    MANY = "many"
 
 
 @dataclass(frozen=True)
@@ -34,12 +37,16 @@ class HiddenCause:
         effect, target: as the library names it.
         departures: parameter -> departure from nominal.
         d: size in sigma of the noise that commissioning errors cannot take away.
+        share: its rms, of that of the column where it is largest.
+        likes: other causes that have its columns.
     """
 
     effect: str
     target: str
     departures: Mapping[str, float]
     d: float
+    share: float = 0.0
+    likes: tuple[str, ...] = ()
 
     @property
     def label(self) -> str:
@@ -47,10 +54,17 @@ class HiddenCause:
         return f"{self.effect}@{self.target}"
 
     @staticmethod
-    def of(effect: str, target: str, departures: Mapping[str, float], d: float) -> HiddenCause:
+    def of(
+        effect: str,
+        target: str,
+        departures: Mapping[str, float],
+        d: float,
+        share: float = 0.0,
+        likes: Sequence[str] = (),
+    ) -> HiddenCause:
         """From a file, whose names may be older."""
         effect, _, target = current_label(f"{effect}@{target}").partition("@")
-        return HiddenCause(effect, target, _current(departures), d)
+        return HiddenCause(effect, target, _current(departures), d, share, tuple(likes))
 
 
 @dataclass(frozen=True)
@@ -69,6 +83,7 @@ class Truth:
         aliases: causes, alone or together, that would leave hardly anything of a cause which
             the diagnosis must leave out.
         repaired: whether nothing is hidden any more in the held-out recording.
+        errors: what its model gets wrong in single columns.
     """
 
     case: str
@@ -81,11 +96,17 @@ class Truth:
     background: Mapping[str, float] = field(default_factory=dict)
     aliases: tuple[tuple[str, ...], ...] = ()
     repaired: bool = False
+    errors: tuple[ModelError, ...] = ()
 
     @property
     def labels(self) -> frozenset[str]:
         """effect@target of each cause."""
         return frozenset(cause.label for cause in self.causes)
+
+    @property
+    def family(self) -> Family | None:
+        """Of its causes outside the library, where it hides many; the last errors are those."""
+        return self.errors[-1].family if self.hidden is Hidden.MANY and self.errors else None
 
     @property
     def d(self) -> float:
@@ -105,7 +126,8 @@ class Truth:
         aliases = tuple(tuple(map(current_label, labels)) for labels in groups)
         content["values"] = _current(content.get("values", {}))
         sort = Hidden(content.pop("hidden"))
-        return Truth(causes=causes, hidden=sort, aliases=aliases, **content)
+        errors = tuple(ModelError.of(one) for one in content.pop("errors", ()))
+        return Truth(causes=causes, hidden=sort, aliases=aliases, errors=errors, **content)
 
 
 def _current(sizes: Mapping[str, float]) -> dict[str, float]:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from itertools import pairwise
 
 import numpy as np
 
@@ -173,8 +174,40 @@ class Regression:
 
     def plain_error(self, chosen: Sequence[int]) -> float:
         """Sum over channels of the log of what plain least squares leave, in their units."""
-        left = self._plainly(*self.design(chosen))
-        return float(np.sum(np.log(np.maximum(self.half.rms(left), 1e-30))))
+        gram, cross, power = self._products
+        shared = np.arange(len(self.half.shared) + len(self.half.own))
+        at = np.concatenate([shared, *(self._columns[n] for n in chosen)]).astype(int)
+        scale = np.concatenate([np.ones(len(shared)), *(self.prior[n] for n in chosen)])
+        inner = gram[:, at[:, None], at] * np.outer(scale, scale)
+        slope = cross[:, at] * scale
+        hessian = inner.sum(axis=0) + RIDGE * np.eye(len(at))
+        shares = np.linalg.solve(hessian, slope.sum(axis=0))
+        left = power - 2.0 * slope @ shares + inner @ shares @ shares
+        rms = self.level * np.sqrt(
+            np.maximum(left, 0.0) / np.maximum(self.half.kept.sum(axis=0), 1)
+        )
+        return float(np.sum(np.log(np.maximum(rms, 1e-30))))
+
+    @cached_property
+    def _columns(self) -> list[IntArray]:
+        """Where each trial's columns stand behind the nuisances, all trials in turn."""
+        widths = [trial.width for trial in self.trials]
+        ends = np.cumsum([len(self.half.shared) + len(self.half.own), *widths])
+        return [np.arange(a, b) for a, b in pairwise(ends)]
+
+    @cached_property
+    def _products(self) -> tuple[FloatArray, FloatArray, FloatArray]:
+        """Of each channel in its level, columns by columns, by target, and target by itself.
+
+        (c, k, k), (c, k) and (c,): plain least squares of any choice cost no more columns.
+        """
+        kept, every = self.half.kept, self.half.columns.of(range(len(self.trials)))
+        columns = np.where(kept, np.concatenate([self.half.nuisances, *every]) / self.level, 0.0)
+        target = np.where(kept, self.half.target / self.level, 0.0)
+        weighed = np.moveaxis(columns, 2, 0).astype(float)
+        gram = weighed @ weighed.transpose(0, 2, 1)
+        cross = np.stack([part @ column for part, column in zip(weighed, target.T, strict=True)])
+        return gram, cross, np.sum(np.square(target), axis=0)
 
     def _plainly(self, columns: SingleArray, scale: FloatArray) -> FloatArray:
         """What plain least squares leave, each channel in units of what is to be explained."""

@@ -1,4 +1,4 @@
-"""Selector: which trials are worth a proof, on the fitted half: greedy, families, pairs."""
+"""Selector: which trials are worth a proof, on the fitted half: one by one, in pairs, exchanged."""
 
 from __future__ import annotations
 
@@ -17,13 +17,30 @@ MOST = 60
 PAIRED = 30
 """Trials, by falling gain, of which every two are tried together."""
 
+CLEAR = 1.0
+"""Logarithm of odds by which a choice must be better than the last one for the search to go on."""
+
+TRIED = 5
+"""Exchanges, by falling promise, whose discrepancy is learnt anew: one alone often only seems."""
+
+
+@dataclass(frozen=True)
+class _Choice:
+    """Chosen trials, their fit, and what it is worth."""
+
+    chosen: list[int]
+    fit: LinearFit
+    evidence: float
+
 
 @dataclass(frozen=True)
 class Selector:
     """Forward selection against a discrepancy that is learnt anew after each step.
 
     A trial of k columns enters where it takes more than k (ln n + 2 ln m) of chi^2, n samples and
-    m causes: the Bayesian information criterion, extended for the many that were looked at.
+    m causes: the Bayesian information criterion, extended for the many that were looked at. Then
+    one after the other goes, or is exchanged for another one, while that criterion gets better:
+    what entered first may only stand for what came later (gains for frictions of an arm).
 
     Source: Chen and Chen 2008, Extended Bayesian information criteria, Biometrika 95.
 
@@ -39,15 +56,12 @@ class Selector:
         Args:
             begin: trials to begin with.
         """
-        chosen = list(begin)
-        fit = self.regression.fit(chosen)
-        while len(chosen) < MOST:
-            more, there = self._next(chosen, fit)
-            if there is None:
-                break
-            chosen = self.swapped([*chosen, *more])
-            fit = self.regression.fit(chosen, there.whitening, 2)
-        return self.pruned(chosen, fit)
+        now = self._grown(list(begin))
+        while True:
+            other = self._exchanged(now) or self._grown(now.chosen)
+            if other.evidence <= now.evidence + CLEAR:
+                return now.chosen
+            now = other
 
     def best(self) -> list[list[int]]:
         """The best single trial, and the best two together, of all.
@@ -75,6 +89,40 @@ class Selector:
         """Chi^2 that trials must take to enter."""
         return float(width * (np.log(samples) + 2.0 * np.log(max(self._causes, 1))))
 
+    def _grown(self, chosen: list[int]) -> _Choice:
+        """With all that is worth its price beside a choice, and without what is not any more."""
+        fit = self.regression.fit(chosen)
+        while len(chosen) < MOST:
+            more, there = self._next(chosen, fit)
+            if there is None:
+                break
+            chosen = self.swapped([*chosen, *more])
+            fit = self.regression.fit(chosen, there.whitening, 2)
+        return self._pruned(chosen)
+
+    def _exchanged(self, now: _Choice) -> _Choice | None:
+        """The choice with one cause in the place of another, if that is clearly better."""
+        regression, trials = self.regression, self.regression.trials
+        rest, promises = self._rest(now.chosen), list[tuple[float, int, int]]()
+        for n in now.chosen:
+            without = regression.solve([k for k in now.chosen if k != n], now.fit.whitening)
+            gains = regression.gains(without, [*rest, n])
+            worth = gains.of(n) - self.price(now.fit.samples, trials[n].width)
+            for k in rest:
+                promise = gains.of(k) - self.price(now.fit.samples, trials[k].width) - worth
+                promises.append((promise, n, k))
+        for promise, n, k in sorted(promises, reverse=True)[:TRIED]:
+            if promise <= 0.0:
+                break
+            other = self._pruned([k if one == n else one for one in now.chosen])
+            if other.evidence > now.evidence + CLEAR:
+                return other
+        return None
+
+    def _choice(self, chosen: list[int]) -> _Choice:
+        fit = self.regression.fit(chosen)
+        return _Choice(chosen, fit, self._evidence(fit, self._width(chosen)))
+
     @cached_property
     def _causes(self) -> int:
         """How many causes may be chosen."""
@@ -96,8 +144,7 @@ class Selector:
         offers = [[max(rest, key=lambda n: gains.of(n) - self.price(samples, self._width([n])))]]
         pair = self._pair(gains, rest)
         offers += [list(pair)] if pair and self._synergy(gains, pair, offers[0]) else []
-        offers += self._families(gains, rest)
-        worth = [self._worth(gains, offer, samples) for offer in offers]
+        worth = [gains.of(*few) - self.price(samples, self._width(few)) for few in offers]
         pick, top = offers[int(np.argmax(worth))], max(worth)
         there = regression.fit([*chosen, *pick], fit.whitening, 2) if top > 0.0 else None
         slow, by_slow = self._slow(chosen, fit, rest, pick if there else [])
@@ -142,14 +189,6 @@ class Selector:
     def _width(self, trials: Sequence[int]) -> int:
         return sum(self.regression.trials[n].width for n in trials)
 
-    def _worth(self, gains: Gains, offer: list[int], samples: float) -> float:
-        """Gain less price; a family was looked at once, however many members it has."""
-        width = self._width(offer)
-        if len(offer) < 3:
-            return gains.of(*offer) - self.price(samples, width)
-        once = self.price(samples, 1) - np.log(samples)
-        return float(gains.of(*offer) - width * np.log(samples) - once)
-
     def _pair(self, gains: Gains, rest: list[int]) -> tuple[int, int] | None:
         """The two trials of different causes that take most together."""
         trials = self.regression.trials
@@ -167,22 +206,6 @@ class Selector:
         """Whether two together take more than the best alone could announce twice over."""
         return gains.of(*pair) > 2.0 * gains.of(*single)
 
-    def _families(self, gains: Gains, rest: list[int]) -> list[list[int]]:
-        """One kind of cause at every place, and all kinds at one place of couplings."""
-        trials = self.regression.trials
-        found = []
-        for effect in dict.fromkeys(trials[n].cause.effect for n in rest):
-            best: dict[str, int] = {}
-            for n in rest:
-                cause = trials[n].cause
-                if cause.effect != effect or gains.of(n) <= 0.0:
-                    continue
-                if cause.target not in best or gains.of(n) > gains.of(best[cause.target]):
-                    best[cause.target] = n
-            if len(best) > 2:
-                found.append(list(best.values()))
-        return found
-
     def swapped(self, chosen: list[int]) -> list[int]:
         """With the best variant of each cause in place of the one that was chosen, by plain error.
 
@@ -199,18 +222,17 @@ class Selector:
             chosen[place] = min(variants, key=lambda k: error[k])
         return chosen
 
-    def pruned(self, chosen: list[int], fit: LinearFit) -> list[int]:
-        """Without trials that take less than ln n a column of chi^2 beside all others."""
-        regression = self.regression
-        chosen = self.swapped(list(chosen))
-        while chosen:
-            fit = regression.fit(chosen, fit.whitening, 2)
-            losses = losses_of(regression, fit)
-            worst = min(chosen, key=lambda n: losses[n])
-            if losses[worst] > np.log(fit.samples):
+    def _pruned(self, chosen: list[int]) -> _Choice:
+        """Without those of a wrong sign, and those without which the criterion is better."""
+        now = self._choice(self.swapped(list(chosen)))
+        while now.chosen:
+            losses = losses_of(self.regression, now.fit)
+            worst = min(now.chosen, key=lambda n: losses[n])
+            fewer = self._choice([n for n in now.chosen if n != worst])
+            if losses[worst] >= 0.0 and fewer.evidence <= now.evidence:
                 break
-            chosen.remove(worst)
-        return chosen
+            now = fewer
+        return now
 
 
 def losses_of(regression: Regression, fit: LinearFit) -> dict[int, float]:

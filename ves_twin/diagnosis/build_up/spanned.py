@@ -24,7 +24,7 @@ def spanned_by(proof: Proof, trial: int) -> tuple[int, ...]:
 
     With its column x cleared of all other proved trials and of nuisances, and its amplitude a, what
     the columns Z of others leave of it is a' (x'x - x'Z (Z'Z)^-1 Z'x) a of chi^2, whitened by the
-    discrepancy. Less than ln n a column is no more than the selection itself prunes. Only others
+    discrepancy. Less than ln n a column is no more than the Bayesian criterion asks. Only others
     that act where it acts count: anything spans a record of six joints.
 
     Args:

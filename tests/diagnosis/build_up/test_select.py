@@ -1,0 +1,44 @@
+"""What is chosen for a proof: worth no less than what is hidden, and no cause in another's place."""
+
+import numpy as np
+import pytest
+from linear import KINDS, Linear, drawn, halves
+
+from ves_twin.diagnosis.build_up.select import Selector
+
+PLANT = Linear(couplings=("sum", "difference"))
+
+
+def choice_of(selector, trials):
+    return selector._choice(list(trials))
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_a_choice_is_worth_no_less_than_what_is_hidden(seed):
+    hidden = drawn(np.random.default_rng(30 + seed), 5)
+    regression = halves(PLANT, hidden, 30 + seed).regression
+    selector = Selector(regression)
+    labels = [f"{trial.cause.label}:size" for trial in regression.trials]
+    true = selector._pruned([labels.index(name) for name in hidden])
+    found = choice_of(selector, selector.run())
+    assert found.evidence > true.evidence - 3.0  # ln of odds of 20
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_what_entered_in_anothers_place_is_exchanged(seed):
+    """Begun with a friction's neighbour in its place, and with one that is not there at all."""
+    hidden = {"viscous@a:size": 0.6, "coulomb@b:size": 0.8, "spring@a:size": 0.9}
+    regression = halves(Linear(KINDS), hidden, 40 + seed).regression
+    labels = [f"{trial.cause.label}:size" for trial in regression.trials]
+    wrong = [labels.index(name) for name in ("coulomb@a:size", "viscous@b:size", "drag@a:size")]
+    chosen = {labels[n] for n in Selector(regression).run(wrong)}
+    assert set(hidden) <= chosen
+    assert len(chosen) <= len(hidden) + 1
+
+
+def test_plain_errors_by_products_are_those_of_the_columns():
+    regression = halves(PLANT, {"viscous@a:size": 0.6}, 3).regression
+    for chosen in ([], [0], [3, 1], list(range(len(regression.trials)))[:6]):
+        left = regression._plainly(*regression.design(chosen))
+        direct = float(np.sum(np.log(regression.half.rms(left))))
+        assert regression.plain_error(chosen) == pytest.approx(direct, abs=1e-5)
