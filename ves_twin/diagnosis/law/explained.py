@@ -27,6 +27,9 @@ from ves_twin.diagnosis.whitening import Whitening, whitening_of
 LONGEST = 300.0
 """Time [s] that a search nobody asked for may take."""
 
+NEAR = 0.999
+"""Share of commissioning errors at which a run is timed."""
+
 
 @dataclass(frozen=True)
 class Lawful:
@@ -65,7 +68,7 @@ def lawful_explanation(
     commissioning = found.commissioning if found else first.commissioning
     if commissioning is None or not _asked(first.evidence.runs, commissioning.shift, settings):
         return None
-    evidence = found.evidence if found else first.evidence
+    evidence = replace(found.evidence if found else first.evidence, lean=settings.sparse)
     search = search_laws(evidence, commissioning, limits, progress)
     if search is None:
         return None
@@ -116,9 +119,9 @@ def _asked(runs: Runs, shift: FloatArray, settings: Settings) -> bool:
     if any(programme.poses for programme in runs.programmes) or not plant.law_places():
         return False
     begin = perf_counter()
-    runs.one(shift)
+    runs.one(runs.depart(shift, runs.nuisances, NEAR * shift[runs.nuisances]))  # else it is kept
     once = (perf_counter() - begin) / runs.workers.count
-    return settings.laws is True or runs_of(plant.law_places()) * once <= LONGEST
+    return settings.laws is True or runs_of(plant.law_places(), settings.sparse) * once <= LONGEST
 
 
 def _explained(found: Explanation, search: Search) -> Explanation:

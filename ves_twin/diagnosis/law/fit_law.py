@@ -106,27 +106,32 @@ def fit_law(
         numbers: of the law to begin with; those of the family if None.
         rounds: linearisations at most.
     """
-    return _Fitter.of(evidence, candidate).run(start, numbers, rounds)
+    return _Fitter.of(evidence, candidate, start).run(start, numbers, rounds)
 
 
 @dataclass(frozen=True)
 class _Fitter:
-    """What stays the same through a fit; coordinates: law, nuisances, step share."""
+    """What stays the same through a fit; coordinates: law, nuisances, step share.
+
+    `kept` are the columns of nuisances and step that a lean fit keeps; None computes them anew.
+    """
 
     evidence: Evidence
     runs: Runs
     candidate: Candidate | None
     law: IntArray
     nuisances: IntArray
+    kept: SingleArray | None
 
     @staticmethod
-    def of(evidence: Evidence, candidate: Candidate | None) -> _Fitter:
+    def of(evidence: Evidence, candidate: Candidate | None, start: Fit) -> _Fitter:
         runs = evidence.runs
         if candidate is not None:
             forward = WithLaw(runs.forward, (candidate,))  # type: ignore[arg-type]  # a LawForward
             runs = replace(runs, forward=forward)
         law = runs.indices(candidate.hypothesis).astype(int) if candidate else np.zeros(0, int)
-        return _Fitter(evidence, runs, candidate, law, runs.nuisances)
+        kept = start.local.columns if evidence.lean else None
+        return _Fitter(evidence, runs, candidate, law, runs.nuisances, kept)
 
     @cached_property
     def where(self) -> IntArray:
@@ -193,24 +198,26 @@ class _Fitter:
         steps = np.full(len(self.where), NUISANCE_STEP)
         if self.candidate is not None:
             steps[: len(self.law)] = self.candidate.steps
+        if self.kept is not None:
+            steps = steps[: len(self.law)]
+        where, units = self.where[: len(steps)], self.unit[: len(steps)]
         moved = [
             self.runs.depart(shift, np.array([i]), shift[i] + step * unit)
-            for i, step, unit in zip(self.where, steps, self.unit[:-1], strict=True)
+            for i, step, unit in zip(where, steps, units, strict=True)
         ]
-        ends = np.array([m[i] - shift[i] for m, i in zip(moved, self.where, strict=True)])
+        ends = np.array([m[i] - shift[i] for m, i in zip(moved, where, strict=True)])
         for n in np.flatnonzero(ends == 0.0):  # at a bound
             moved[n] = self.runs.depart(
-                shift, np.array([self.where[n]]), shift[self.where[n]] - steps[n] * self.unit[n]
+                shift, np.array([where[n]]), shift[where[n]] - steps[n] * units[n]
             )
-            ends[n] = moved[n][self.where[n]] - shift[self.where[n]]
+            ends[n] = moved[n][where[n]] - shift[where[n]]
         rows = self.runs.many(moved)
-        share = (self.unit[:-1] / ends).astype(np.float32)[:, None, None]
-        columns = np.concatenate(
-            [
-                (rows - prediction) * share,
-                np.float32(STEP_SD) * (self.runs.one(shift, refined=True) - prediction)[None],
-            ]
-        )
+        share = (units / ends).astype(np.float32)[:, None, None]
+        rest = self.kept
+        if rest is None:
+            finer = self.runs.one(shift, refined=True)
+            rest = np.float32(STEP_SD) * (finer - prediction)[None]
+        columns = np.concatenate([(rows - prediction) * share, rest])
         columns[~np.isfinite(columns).all(axis=(1, 2))] = 0.0
         jacobian = self.evidence.whitening.apply(columns).T
         bare = self.bare(point, prediction, columns[-1])

@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from ves_twin.core.types import SingleArray
 from ves_twin.diagnosis.adequacy import cells, misfit
 from ves_twin.diagnosis.evidence import Evidence
 from ves_twin.diagnosis.law.adapted import adapted
@@ -152,10 +153,11 @@ def search_laws(
     places = plant.law_places()
     none = fit_law(evidence, None, commissioning)
     ends = ranges(plant, none)
-    smooth = smooth_candidates(places, ends)
+    smooth = smooth_candidates(places, ends, evidence.lean)
     if not smooth:
         return None
-    suspects = law_screen(evidence, smooth, none, progress)
+    known: dict[str, SingleArray] | None = {} if evidence.lean else None
+    suspects = law_screen(evidence, smooth, none, progress, known)
     single = [s for s in suspects if isinstance(s.candidate, Table)]
     tables = _tables(evidence, single, none, progress)
     tables = _first([*tables, *_loud(evidence, none, places)], len(single))
@@ -165,7 +167,8 @@ def search_laws(
     if not _quiet(evidence, none, tables[0], limits):
         pairs = [s for s in suspects if isinstance(s.candidate, Mesh)]
         tables += _tables(evidence, pairs, none, progress)
-        others += tone_laws(evidence, none, places, ends, 0.5 * suspects[0].gain, progress)
+        near = _toned(places, tables) if evidence.lean else places
+        others += tone_laws(evidence, none, near, ends, 0.5 * suspects[0].gain, progress)
     best = max([*tables, *others], key=lambda fit: fit.log_evidence)
     second = adapted(evidence, best.fit)
     none = _again(second, none)
@@ -183,7 +186,7 @@ def search_laws(
     pool = [*tables, *others, *closed]
     if not any(_quiet(second, none, fit, limits) for fit in _first(pool, 3)):
         pool += stop_laws(second, none, _joints(worth), ends, progress)
-    return _chosen(second, none, pool, smooth, ends, limits, progress)
+    return _chosen(second, none, pool, smooth, known, ends, limits, progress)
 
 
 def _further(evidence: Evidence, fit: LawFit, ends: Mapping[str, tuple[float, float]]) -> LawFit:
@@ -251,6 +254,7 @@ def _chosen(
     none: LawFit,
     pool: Sequence[LawFit],
     smooth: Sequence[Candidate],
+    known: dict[str, SingleArray] | None,
     ends: Mapping[str, tuple[float, float]],
     limits: Limits,
     progress: Progress,
@@ -267,8 +271,14 @@ def _chosen(
     near = [f for f in again if f.log_evidence >= lead and found.leaves_noise(f)]
     best = min(near, key=lambda f: (f.count, -f.log_evidence)) if near else again[0]
     rest = [fit for fit in again if fit is not best]
-    beside = law_screen(third, _other(smooth, best), best, progress)
+    beside = law_screen(third, _other(smooth, best), best, progress, known)
     return replace(found, pool=(best, *rest), further=max(beside[0].gain, 0.0))
+
+
+def _toned(places: Sequence[LawPlace], tables: Sequence[LawFit]) -> list[LawPlace]:
+    """Where tones are looked for if runs are dear: columns, which cost none, and leading places."""
+    lead = [fit.candidate.place for fit in tables[:2] if fit.candidate is not None]
+    return [place for place in places if place.kind is LawKind.READING or place in lead]
 
 
 def _other(smooth: Sequence[Candidate], best: LawFit) -> list[Candidate]:
