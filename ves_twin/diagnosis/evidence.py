@@ -11,17 +11,8 @@ from ves_twin.diagnosis.whitening import Whitening
 
 @dataclass(frozen=True)
 class Evidence:
-    """What was measured, and how its noise is whitened.
-
-    Attributes:
-        runs: of the plant.
-        measured: channels on the analysis grid (rows, c).
-        whitening: of the noise.
-        lean: whether fits of laws keep the columns of commissioning errors that they begin with,
-            as a machine of many parameters needs.
-    """
+    """What was measured, on the analysis grid (rows, c), and how its noise is whitened."""
 
     runs: Runs
     measured: SingleArray
     whitening: Whitening
-    lean: bool = False

@@ -43,9 +43,7 @@ def closed_forms(
         return []
     entries = _entries(table.candidate, ends)
     every = Sizes(table.candidate.place, table.candidate.of, tuple(entries))
-    columns = _between_knots(table, entries) if evidence.lean else None
-    if columns is None:
-        columns = columns_about(evidence, every, table)
+    columns = columns_about(evidence, every, table)
     z = table.fit.residual + table.jacobian @ table.point
     gram, slope = projected(columns, table.jacobian[:, table.count :], z, table.temper)
     gram = gram + np.diag(1.0 / np.square([e.sd[0] for e in entries]))
@@ -69,15 +67,6 @@ def closed_forms(
         alone = [n for n in chosen[first] if entries[n].label not in tried]
         found += [fitted((n,), found[first]) for n in alone]
     return found
-
-
-def _between_knots(table: LawFit, entries: Sequence[Closed]) -> FloatArray:
-    """Whitened columns (samples, k) of closed forms as the table's own knots have them: no runs."""
-    if not isinstance(table.candidate, Table):
-        raise TypeError("knots of a law that has none")
-    at = np.array(table.candidate.knots)
-    heights = [e.law(np.array([1.0, *e.inner[0]])).at(at) for e in entries]
-    return np.asarray(table.jacobian[:, : table.count] @ np.stack(heights, axis=1))
 
 
 def _entries(candidate: Candidate, ends: Mapping[str, tuple[float, float]]) -> list[Closed]:

@@ -13,6 +13,7 @@ from ves_twin.diagnosis.evidence import Evidence
 from ves_twin.diagnosis.explanation import Explanation
 from ves_twin.diagnosis.gain import Gain
 from ves_twin.diagnosis.law.finding import law_finding
+from ves_twin.diagnosis.law.lean import LeanEvidence
 from ves_twin.diagnosis.law.place import LawForward
 from ves_twin.diagnosis.law.propose import Limits, Search, search_laws
 from ves_twin.diagnosis.law.rest import search_rest
@@ -68,7 +69,9 @@ def lawful_explanation(
     commissioning = found.commissioning if found else first.commissioning
     if commissioning is None or not _asked(first.evidence.runs, commissioning.shift, settings):
         return None
-    evidence = replace(found.evidence if found else first.evidence, lean=settings.sparse)
+    evidence = found.evidence if found else first.evidence
+    if settings.sparse:
+        evidence = LeanEvidence(evidence.runs, evidence.measured, evidence.whitening)
     search = search_laws(evidence, commissioning, limits, progress)
     if search is None:
         return None

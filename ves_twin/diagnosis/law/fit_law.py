@@ -11,6 +11,7 @@ from scipy.linalg import cho_factor, cho_solve
 from ves_twin.core.types import FloatArray, IntArray, SingleArray
 from ves_twin.diagnosis.evidence import Evidence
 from ves_twin.diagnosis.law.candidate import Candidate
+from ves_twin.diagnosis.law.lean import LeanEvidence
 from ves_twin.diagnosis.law.smoothness import Smoothness, smoothest
 from ves_twin.diagnosis.law.with_law import WithLaw
 from ves_twin.diagnosis.linearise import STEP_SD, Linearisation
@@ -130,7 +131,7 @@ class _Fitter:
             forward = WithLaw(runs.forward, (candidate,))  # type: ignore[arg-type]  # a LawForward
             runs = replace(runs, forward=forward)
         law = runs.indices(candidate.hypothesis).astype(int) if candidate else np.zeros(0, int)
-        kept = start.local.columns if evidence.lean else None
+        kept = start.local.columns if isinstance(evidence, LeanEvidence) else None
         return _Fitter(evidence, runs, candidate, law, runs.nuisances, kept)
 
     @cached_property
@@ -195,12 +196,35 @@ class _Fitter:
         """Prediction and columns at a point."""
         shift = self.shift(point)
         prediction = self.runs.one(shift) if there is None else there.prediction
+        if self.kept is None:
+            finer = np.float32(STEP_SD) * (self.runs.one(shift, refined=True) - prediction)
+            moved = self.moved(shift, prediction, slice(None))
+            columns = np.concatenate([moved, finer[None]])
+        else:
+            columns = np.concatenate([self.of_law(point, shift, prediction), self.kept])
+        columns[~np.isfinite(columns).all(axis=(1, 2))] = 0.0
+        jacobian = self.evidence.whitening.apply(columns).T
+        bare = self.bare(point, prediction, columns[-1])
+        return _Look(point, prediction, bare.residual, columns, jacobian)
+
+    def of_law(self, point: FloatArray, shift: FloatArray, prediction: SingleArray) -> SingleArray:
+        """Columns of a law's numbers in a lean fit."""
+        count = len(self.law)
+        if self.candidate is None or not isinstance(self.evidence, LeanEvidence):
+            return self.moved(shift, prediction, slice(0))
+        hats, numbers = self.evidence.hats, self.candidate.start + point[:count]
+        known = hats.changes(self.candidate, numbers)
+        if known is None:
+            known = self.moved(shift, prediction, slice(count))
+            hats.keep(self.candidate, known)
+        return known
+
+    def moved(self, shift: FloatArray, prediction: SingleArray, of: slice) -> SingleArray:
+        """Columns of some coordinates by differences."""
         steps = np.full(len(self.where), NUISANCE_STEP)
         if self.candidate is not None:
             steps[: len(self.law)] = self.candidate.steps
-        if self.kept is not None:
-            steps = steps[: len(self.law)]
-        where, units = self.where[: len(steps)], self.unit[: len(steps)]
+        where, units, steps = self.where[of], self.unit[:-1][of], steps[of]
         moved = [
             self.runs.depart(shift, np.array([i]), shift[i] + step * unit)
             for i, step, unit in zip(where, steps, units, strict=True)
@@ -211,17 +235,8 @@ class _Fitter:
                 shift, np.array([where[n]]), shift[where[n]] - steps[n] * units[n]
             )
             ends[n] = moved[n][where[n]] - shift[where[n]]
-        rows = self.runs.many(moved)
         share = (units / ends).astype(np.float32)[:, None, None]
-        rest = self.kept
-        if rest is None:
-            finer = self.runs.one(shift, refined=True)
-            rest = np.float32(STEP_SD) * (finer - prediction)[None]
-        columns = np.concatenate([(rows - prediction) * share, rest])
-        columns[~np.isfinite(columns).all(axis=(1, 2))] = 0.0
-        jacobian = self.evidence.whitening.apply(columns).T
-        bare = self.bare(point, prediction, columns[-1])
-        return _Look(point, prediction, bare.residual, columns, jacobian)
+        return np.asarray((self.runs.many(moved) - prediction) * share)
 
     def shift(self, point: FloatArray) -> FloatArray:
         """Departures of a point."""

@@ -7,13 +7,13 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ves_twin.core.types import SingleArray
 from ves_twin.diagnosis.adequacy import cells, misfit
 from ves_twin.diagnosis.evidence import Evidence
 from ves_twin.diagnosis.law.adapted import adapted
 from ves_twin.diagnosis.law.candidate import Candidate, Mesh, Table
 from ves_twin.diagnosis.law.closed import closed_forms
 from ves_twin.diagnosis.law.fit_law import LawFit, fit_law
+from ves_twin.diagnosis.law.lean import LeanEvidence
 from ves_twin.diagnosis.law.loud import loud_screen
 from ves_twin.diagnosis.law.memories import memory_laws, stop_laws
 from ves_twin.diagnosis.law.place import LawForward, LawPlace
@@ -153,11 +153,11 @@ def search_laws(
     places = plant.law_places()
     none = fit_law(evidence, None, commissioning)
     ends = ranges(plant, none)
-    smooth = smooth_candidates(places, ends, evidence.lean)
+    lean = isinstance(evidence, LeanEvidence)
+    smooth = smooth_candidates(places, ends, lean)
     if not smooth:
         return None
-    known: dict[str, SingleArray] | None = {} if evidence.lean else None
-    suspects = law_screen(evidence, smooth, none, progress, known)
+    suspects = law_screen(evidence, smooth, none, progress)
     single = [s for s in suspects if isinstance(s.candidate, Table)]
     tables = _tables(evidence, single, none, progress)
     tables = _first([*tables, *_loud(evidence, none, places)], len(single))
@@ -167,7 +167,7 @@ def search_laws(
     if not _quiet(evidence, none, tables[0], limits):
         pairs = [s for s in suspects if isinstance(s.candidate, Mesh)]
         tables += _tables(evidence, pairs, none, progress)
-        near = _toned(places, tables) if evidence.lean else places
+        near = _toned(places, tables) if lean else places
         others += tone_laws(evidence, none, near, ends, 0.5 * suspects[0].gain, progress)
     best = max([*tables, *others], key=lambda fit: fit.log_evidence)
     second = adapted(evidence, best.fit)
@@ -186,7 +186,7 @@ def search_laws(
     pool = [*tables, *others, *closed]
     if not any(_quiet(second, none, fit, limits) for fit in _first(pool, 3)):
         pool += stop_laws(second, none, _joints(worth), ends, progress)
-    return _chosen(second, none, pool, smooth, known, ends, limits, progress)
+    return _chosen(second, none, pool, smooth, ends, limits, progress)
 
 
 def _further(evidence: Evidence, fit: LawFit, ends: Mapping[str, tuple[float, float]]) -> LawFit:
@@ -254,7 +254,6 @@ def _chosen(
     none: LawFit,
     pool: Sequence[LawFit],
     smooth: Sequence[Candidate],
-    known: dict[str, SingleArray] | None,
     ends: Mapping[str, tuple[float, float]],
     limits: Limits,
     progress: Progress,
@@ -271,7 +270,7 @@ def _chosen(
     near = [f for f in again if f.log_evidence >= lead and found.leaves_noise(f)]
     best = min(near, key=lambda f: (f.count, -f.log_evidence)) if near else again[0]
     rest = [fit for fit in again if fit is not best]
-    beside = law_screen(third, _other(smooth, best), best, progress, known)
+    beside = law_screen(third, _other(smooth, best), best, progress)
     return replace(found, pool=(best, *rest), further=max(beside[0].gain, 0.0))
 
 

@@ -11,6 +11,7 @@ from ves_twin.core.types import FloatArray, SingleArray
 from ves_twin.diagnosis.evidence import Evidence
 from ves_twin.diagnosis.law.candidate import Candidate, Mesh, Table
 from ves_twin.diagnosis.law.fit_law import LawFit
+from ves_twin.diagnosis.law.lean import LeanEvidence
 from ves_twin.diagnosis.law.place import LawForward, LawPlace, Variable
 from ves_twin.diagnosis.law.smoothness import Smoothness, smoothest
 from ves_twin.diagnosis.law.with_law import WithLaw
@@ -26,7 +27,7 @@ COARSE = {"position": 7, "speed": 9, "time": 9, "command": 7}
 FITTED = 1500
 """Predictions that the fits of a search take, on the pendulum."""
 
-FITTED_LEAN = 900
+FITTED_LEAN = 300
 """The same of a lean search, on VES II."""
 
 MESHED = 8
@@ -78,8 +79,8 @@ def both(
 
 
 def values_of(runs: Runs, shift: FloatArray) -> list[dict[str, float]]:
-    """Parameter -> value, of each recording."""
-    return [
+    """Parameter -> value of the plant, of each recording."""
+    found: list[dict[str, float]] = [
         {
             axis.parameter.name: axis.parameter.nominal + float(shift[i])
             for i, axis in enumerate(runs.coordinates)
@@ -87,6 +88,8 @@ def values_of(runs: Runs, shift: FloatArray) -> list[dict[str, float]]:
         }
         for k in range(len(runs.programmes))
     ]
+    forward = runs.forward
+    return [forward.of_plant(one) for one in found] if isinstance(forward, WithLaw) else found
 
 
 def runs_of(places: Sequence[LawPlace], lean: bool) -> int:
@@ -125,7 +128,6 @@ def law_screen(
     candidates: Sequence[Candidate],
     about: LawFit,
     progress: Progress = silent,
-    known: dict[str, SingleArray] | None = None,
 ) -> list[Suspect]:
     """Candidates by falling evidence beside a fit.
 
@@ -134,17 +136,12 @@ def law_screen(
         candidates: with smooth priors.
         about: where the linearisation is: commissioning errors alone, or with a law.
         progress: told how far it is.
-        known: changes by label, as an earlier screen computed them; it keeps those of this one.
-            Nothing is kept if None.
     """
     z = about.fit.residual + about.jacobian @ about.point
     found = []
     for n, candidate in enumerate(candidates):
         progress(n / len(candidates), "screening laws")
-        kept = known if known is not None else {}
-        if candidate.label not in kept:
-            kept[candidate.label] = changes_about(evidence, candidate, about)
-        columns = evidence.whitening.apply(kept[candidate.label]).T
+        columns = columns_about(evidence, candidate, about)
         found.append(
             Suspect(candidate, smoothest(columns, about.jacobian, z, about.temper, candidate))
         )
@@ -153,10 +150,16 @@ def law_screen(
 
 def columns_about(evidence: Evidence, candidate: Candidate, about: LawFit) -> FloatArray:
     """Whitened change (samples, k) for a unit of each number of a further law beside a fit."""
-    return evidence.whitening.apply(changes_about(evidence, candidate, about)).T
+    if not isinstance(evidence, LeanEvidence):
+        return evidence.whitening.apply(_changes(evidence, candidate, about)).T
+    known = evidence.hats.changes(candidate, candidate.start)
+    if known is None:
+        known = _changes(evidence, candidate, about)
+        evidence.hats.keep(candidate, known)
+    return evidence.whitening.apply(known).T
 
 
-def changes_about(evidence: Evidence, candidate: Candidate, about: LawFit) -> SingleArray:
+def _changes(evidence: Evidence, candidate: Candidate, about: LawFit) -> SingleArray:
     """The same in the channels' units (k, rows, c)."""
     whole = tuple(one for one in (about.candidate, candidate) if one is not None)
     runs = replace(evidence.runs, forward=WithLaw(_plant(evidence), whole))
