@@ -192,6 +192,9 @@ LIMITS = Limits(misfit=6.5, pull=3.8, model_error=0.02)
 """As null rigs of VES II have them with the settings of `diagnose`."""
 
 
+SHOWN = 0.03
+"""Mean z^2 of the held-out record, 19 columns together, that the truth itself takes away."""
+
 ROWS = 480
 """Of a record: the first 6 s, in which the arm goes there and half the way back."""
 
@@ -239,7 +242,8 @@ def test_a_hidden_drag_of_a_joint_is_found_with_place_variable_and_gain():
     truth = fit_law(search.evidence, Truth(place, of, HIDDEN), best.fit)
     held = preprocess(Arm(BlindVes2("ves2_fast").forward), [measured(HIDDEN, "held_out")])
     without, with_law, true = (squares(fit, held) for fit in (search.none, best, truth))
-    assert without - with_law > 0.95 * (without - true) > 0.5
+    assert without - true > SHOWN
+    assert without - with_law > 0.95 * (without - true)
 
 
 @pytest.mark.slow
