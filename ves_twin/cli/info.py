@@ -11,6 +11,7 @@ from ves_twin.core.units import unit_tail
 
 if TYPE_CHECKING:
     from ves_twin.effects.effect import Effect
+    from ves_twin.effects.law_table import LawTable
     from ves_twin.plant.parameters import ParameterTable
     from ves_twin.plant.plant import Plant
 
@@ -110,6 +111,7 @@ def plant_content(name: str) -> dict[str, object]:
     for parameter in plant.parameters.values():
         count = int(grades.get(parameter.grade.value, "0")) + 1
         grades[parameter.grade.value] = str(count)
+    laws = {law.law.label: _law(law) for law in plant.told_laws}
     return {
         "plant": plant.name,
         "hash": plant.hash,
@@ -121,7 +123,13 @@ def plant_content(name: str) -> dict[str, object]:
             f"{e.kind} on {e.target}": f"{_values(e)}. {_meaning(e)}" for e in plant.effects
         },
         "numbers that the effects change": _changed(plant.actual, plant.parameters),
+        **({"laws": laws} if laws else {}),
     }
+
+
+def _law(law: LawTable) -> str:
+    said = f"{law.kind}, {law.form or law.shape}"
+    return f"{said}; a cause, not at work" if law.cause else said
 
 
 def mjcf_content(name: str, out: str) -> dict[str, object]:

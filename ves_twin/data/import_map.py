@@ -10,12 +10,12 @@ from typing import Annotated, Self
 from pydantic import Field, ValidationError, field_validator, model_validator
 
 from ves_twin.core.errors import InvalidInputError, shown
+from ves_twin.core.refusal import refusal
 from ves_twin.core.signals import SIGNALS, Role, Signal
 from ves_twin.core.toml_file import check_schema, read_toml
 from ves_twin.core.units import check_known
 from ves_twin.data.unit_names import TIME, spelled
 from ves_twin.scenario.fields import Hertz, Part, Seconds, named
-from ves_twin.scenario.load import refusal
 
 SCHEMA = 1
 MAIN = "main"

@@ -108,6 +108,14 @@ class Law:
         return float(np.mean(np.any([(x < k[0]) | (x > k[-1]) for x, k in pairs], axis=0)))
 
 
+def held_words(law: Law, share: float, rows: str = "rows") -> str:
+    """What a person is told of a law that was asked beyond its knots in a share of the rows."""
+    return (
+        f"the law {law.label} is held in {100.0 * share:.2g} % of the {rows}, which are beyond the"
+        " range in which it was seen"
+    )
+
+
 def _between(x: FloatArray, knots: tuple[float, ...]) -> tuple[IntArray, FloatArray]:
     """Number of the knot below, and the share of the way to the next, held at the ends."""
     at = np.asarray(knots)

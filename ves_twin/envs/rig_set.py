@@ -9,13 +9,13 @@ import numpy as np
 from pydantic import Field, ValidationError, model_validator
 
 from ves_twin.core.errors import InvalidInputError, UnknownNameError
+from ves_twin.core.refusal import refusal
 from ves_twin.core.resources import find_resource
 from ves_twin.core.toml_file import check_schema, read_toml
 from ves_twin.effects.effect import Effect
 from ves_twin.effects.registry import kind_on_ves2, targets_of
 from ves_twin.plant.plant import NOMINAL, Plant
 from ves_twin.scenario.fields import Part
-from ves_twin.scenario.load import refusal
 
 SCHEMA = 1
 

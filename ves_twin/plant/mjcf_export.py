@@ -95,6 +95,9 @@ def _without(plant: Plant) -> Iterator[tuple[str, Plant]]:
     for effect in plant.effects:
         rest = tuple(e for e in plant.effects if e is not effect)
         yield f"{effect.kind} on {effect.target}", replace(plant, effects=rest)
+    for law in plant.told_laws:
+        others = tuple(one for one in plant.told_laws if one is not law)
+        yield f"law {law.law.label}", replace(plant, told_laws=others)
     base = Plant.load(plant.base).parameters
     for name in plant.changes():
         yield name, plant.with_values({name: base.array(name)})

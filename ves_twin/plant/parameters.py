@@ -22,7 +22,7 @@ LEGS = 6
 """Legs of the platform."""
 
 HEAD_KEYS = frozenset(
-    {"schema", "name", "base", "hydraulic_model", "fidelity", "parameters", "effects"}
+    {"schema", "name", "base", "hydraulic_model", "fidelity", "parameters", "effects", "laws"}
 )
 """Keys of a plant file beside its parameters."""
 

@@ -13,6 +13,8 @@ import numpy as np
 from ves_twin.core.errors import InvalidInputError, UnknownNameError
 from ves_twin.core.resources import beside, find_resource, resource_folder
 from ves_twin.effects.effect import Effect
+from ves_twin.effects.law import Law
+from ves_twin.effects.law_table import LawTable, put_over
 from ves_twin.effects.registry import parse_effects
 from ves_twin.mechanics.gravity.gravity_model import GravityModel
 from ves_twin.mechanics.kinematics.puma560 import Puma560
@@ -25,6 +27,7 @@ from ves_twin.plant.parameters import (
     parse_parameters,
     read_plant_file,
 )
+from ves_twin.plant.rig_laws import parse_laws
 
 NOMINAL = "ves2"
 """The plant that has every number."""
@@ -48,6 +51,7 @@ class Plant:
         fidelity: how much is modelled.
         hydraulics: how the cylinders are modelled.
         effects: what deviates from the description; none is at zero.
+        told_laws: physics beyond both, as functions at a place; those that are causes do not act.
     """
 
     name: str
@@ -55,14 +59,15 @@ class Plant:
     fidelity: Fidelity = Fidelity.FULL
     hydraulics: Hydraulics = Hydraulics.LINEAR
     effects: tuple[Effect, ...] = ()
+    told_laws: tuple[LawTable, ...] = ()
 
     @staticmethod
     def load(name_or_path: str) -> Plant:
         """A plant by name ("ves2") or from a file.
 
         A file is either complete, or it names a `base` plant and lists under `[parameters]`
-        what differs: `"leg.rod_mass" = 2.7`. Effects stand under `[effects]`. A `base` given by
-        its path is looked for beside the file first.
+        what differs: `"leg.rod_mass" = 2.7`. Effects stand under `[effects]`, laws under
+        `[[laws]]`. A `base` given by its path is looked for beside the file first.
 
         Raises:
             FileAccessError: missing or unreadable file.
@@ -100,6 +105,7 @@ class Plant:
             raise InvalidInputError(f"{path}: effects", effects, "a table of effects")
         plant = replace(plant, hydraulics=Hydraulics(form)).with_values(changes)
         plant = plant.with_fidelity(str(content.get("fidelity", plant.fidelity)))
+        plant = plant.with_laws(*parse_laws(content.get("laws", []), path))
         return plant.extended(*parse_effects(effects))
 
     def with_values(self, values: Mapping[str, object]) -> Plant:
@@ -143,6 +149,15 @@ class Plant:
         merged = {(e.kind, e.target): e for e in (*self.effects, *effects)}
         kept = tuple(merged[key] for key in sorted(merged) if not merged[key].neutral)
         return replace(self, effects=kept).with_fidelity(self.fidelity)
+
+    def with_laws(self, *laws: LawTable) -> Plant:
+        """The same plant with more laws; one of the same place and variables is replaced."""
+        return replace(self, told_laws=put_over(self.told_laws, laws)) if laws else self
+
+    @property
+    def laws(self) -> tuple[Law, ...]:
+        """Those that are at work."""
+        return tuple(told.law for told in self.told_laws if not told.cause)
 
     @property
     def actual(self) -> ParameterTable:
@@ -216,6 +231,8 @@ class Plant:
             digest.update(name.encode() + self.parameters.array(name).tobytes())
         for effect in self.effects:
             digest.update(repr(effect).encode())
+        for law in self.laws:
+            digest.update(repr(law).encode())
         for file in MJCF_FILES:
             digest.update((resource_folder("models") / file).read_bytes())
         return digest.hexdigest()[:16]

@@ -14,7 +14,7 @@ def write_plant(plant: Plant, path: Path, note: str = "", name: str = "") -> Non
     """Write a plant; what was there is replaced only when the new file is whole.
 
     Args:
-        plant: changed numbers and effects over the shipped plant of its form and fidelity.
+        plant: changed numbers, effects and laws over the shipped plant of its form and fidelity.
         path: a .toml file.
         note: comment on the first lines.
         name: of the plant; that of the file if left out.
@@ -26,4 +26,6 @@ def write_plant(plant: Plant, path: Path, note: str = "", name: str = "") -> Non
     changes, effects = plant.changes(), effects_table(plant.effects)
     content |= {"parameters": changes} if changes else {}
     content |= {"effects": effects} if effects else {}
+    laws = [law.model_dump(mode="json") for law in plant.told_laws]
+    content |= {"laws": laws} if laws else {}
     write_toml(path, content, note)

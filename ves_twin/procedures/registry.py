@@ -9,8 +9,9 @@ from typing import cast
 from pydantic import ValidationError
 
 from ves_twin.core.errors import UnknownNameError
+from ves_twin.core.refusal import refusal
 from ves_twin.procedures.procedure import Procedure
-from ves_twin.scenario.load import refusal, scenario_content
+from ves_twin.scenario.load import scenario_content
 
 PROCEDURES = {
     "coupling_map_paths": "CouplingMapPaths",

@@ -10,12 +10,12 @@ from pydantic import Field, ValidationError, field_validator, model_validator
 
 from ves_twin.core.errors import InvalidInputError, UnknownNameError
 from ves_twin.core.recording.recording import Recording
+from ves_twin.core.refusal import refusal
 from ves_twin.core.signals import SIGNALS, Role
 from ves_twin.plant.known_weight import hang_weight
 from ves_twin.plant.plant import Plant
 from ves_twin.scenario.experiment_file import ExperimentFile
 from ves_twin.scenario.fields import Joints, Part, Pose, Seconds, named, si
-from ves_twin.scenario.load import refusal
 from ves_twin.scenario.schema import Scenario
 
 DRIVES = ("leg.command", "platform.command", "arm.command", "gravity.estimate")

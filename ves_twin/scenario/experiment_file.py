@@ -10,9 +10,9 @@ from typing import Any, Self
 from pydantic import Field, ValidationError
 
 from ves_twin.core.errors import InvalidInputError, UnknownNameError
+from ves_twin.core.refusal import refusal
 from ves_twin.core.toml_file import read_toml
 from ves_twin.scenario.fields import Part
-from ves_twin.scenario.load import refusal
 
 BY_NUMBERS = ("declared", "auto")
 """What `noise` says where no recording tells it."""

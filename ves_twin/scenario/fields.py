@@ -6,11 +6,12 @@ import math
 from dataclasses import dataclass, field
 from typing import Annotated, Any
 
-from pydantic import BaseModel, BeforeValidator, ConfigDict, GetJsonSchemaHandler
+from pydantic import BeforeValidator, GetJsonSchemaHandler
 from pydantic.json_schema import JsonSchemaValue
 from pydantic_core import CoreSchema
 
 from ves_twin.core.errors import InvalidInputError, UnknownNameError, shown
+from ves_twin.core.part import Part as Part
 from ves_twin.core.units import to_si
 
 TURNS = 4.0 * math.pi
@@ -102,9 +103,3 @@ Pose = Annotated[tuple[float, ...], InUnit(_pose, unit="m, rad", length=6)]
 Joints = Annotated[tuple[float, ...], InUnit(_joints, unit="rad", length=3)]
 ZERO_POSE = (0.0,) * 6
 ZERO_JOINTS = (0.0,) * 3
-
-
-class Part(BaseModel):
-    """A table of the file: frozen, unknown keys refused."""
-
-    model_config = ConfigDict(frozen=True, extra="forbid", allow_inf_nan=False)

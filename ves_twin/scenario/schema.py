@@ -10,6 +10,7 @@ from pydantic import Field, ValidationError, model_validator
 from ves_twin.control.leg_loop import EDGE, FilterPlace
 from ves_twin.control.operation.state import State
 from ves_twin.control.registry import GRAVITY_COMPENSATIONS, PLATFORM_CONTROLLERS
+from ves_twin.core.refusal import refusal
 from ves_twin.scenario.fields import (
     ZERO_JOINTS,
     ZERO_POSE,
@@ -22,7 +23,7 @@ from ves_twin.scenario.fields import (
     named,
     si,
 )
-from ves_twin.scenario.load import refusal, scenario_content
+from ves_twin.scenario.load import scenario_content
 from ves_twin.scenario.motions import Motion
 from ves_twin.scenario.operation_part import Operation
 

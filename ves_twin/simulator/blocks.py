@@ -59,6 +59,7 @@ LAYOUT = np.dtype(
         ("bends", np.int64),
         ("bending_qpos", np.int64, 12),
         ("platform_qpos", np.int64),
+        ("platform_dof", np.int64),
         ("arm_qpos", np.int64, 3),
         ("arm_dof", np.int64, 3),
         ("leg_ctrl", np.int64, 6),

@@ -12,7 +12,9 @@ from ves_twin.core.compiled import compiled
 from ves_twin.core.types import Block, FloatArray, IntArray, SingleArray
 from ves_twin.mechanics.kinematics.stewart import near_pose
 from ves_twin.simulator.codes import RUNNING, SLOW
-from ves_twin.simulator.loop import read_pose, run_ticks
+from ves_twin.simulator.law_step import RigLaws
+from ves_twin.simulator.loop import run_ticks
+from ves_twin.simulator.pose_of import read_pose
 from ves_twin.simulator.setpoints import send_setpoints
 from ves_twin.simulator.truth_port import gravity_wrench
 
@@ -102,12 +104,12 @@ def _cycle(
 def run_cycles(
     start: int, count: int, mj_step: int, mj_next: int, model: int, data: int, qpos: FloatArray,
     qvel: FloatArray, slides: FloatArray, speeds: FloatArray, ctrl: FloatArray,
-    sensordata: FloatArray, parameters: Block, state: Block, board: Block, row: FloatArray,
-    fast_normal: SingleArray, slow_normal: SingleArray, weight: FloatArray, com: FloatArray,
-    origin: FloatArray, axes: FloatArray, log: FloatArray, ticks: IntArray, first_rows: IntArray,
-    points: FloatArray, logged: int, noted: int, samples: Block, ahead: Block, platform: Block,
-    gravity: Block, shared: FloatArray, passed: IntArray, base: FloatArray, top: FloatArray,
-    home: FloatArray, home_lengths: FloatArray, travel: float,
+    sensordata: FloatArray, laws: RigLaws, parameters: Block, state: Block, board: Block,
+    row: FloatArray, fast_normal: SingleArray, slow_normal: SingleArray, weight: FloatArray,
+    com: FloatArray, origin: FloatArray, axes: FloatArray, log: FloatArray, ticks: IntArray,
+    first_rows: IntArray, points: FloatArray, logged: int, noted: int, samples: Block,
+    ahead: Block, platform: Block, gravity: Block, shared: FloatArray, passed: IntArray,
+    base: FloatArray, top: FloatArray, home: FloatArray, home_lengths: FloatArray, travel: float,
 ) -> tuple[int, int, int, int]:  # fmt: skip
     """Run cycles from an interrupt on, each: gravity, pose, set-points, ticks.
 
@@ -138,8 +140,8 @@ def run_cycles(
         noted += 1
         code, ran, logged = run_ticks(
             tick, min(p.clock.admittance, count - done), mj_step, mj_next, model, data, qpos, qvel,
-            slides, speeds, ctrl, sensordata, parameters, state, board, row, fast_normal[done:],
-            slow_normal[(start % SLOW + done) // SLOW :], log, logged,
+            slides, speeds, ctrl, sensordata, laws, parameters, state, board, row,
+            fast_normal[done:], slow_normal[(start % SLOW + done) // SLOW :], log, logged,
         )  # fmt: skip
         done += ran
         if k < len(samples):

@@ -8,7 +8,6 @@ from ves_twin.control.arm_servo import servo_torque, spline
 from ves_twin.control.leg_loop import control_legs
 from ves_twin.core.compiled import compiled
 from ves_twin.core.types import Block, FloatArray, Record, SingleArray
-from ves_twin.mechanics.kinematics.rotations import angles_from_matrix, matrix_from_quaternion
 from ves_twin.plant.hydraulics import PRESSURE_FORM
 from ves_twin.plant.physics.chambers import push_rods_by_pressure
 from ves_twin.plant.physics.cylinder import push_rods
@@ -31,6 +30,8 @@ from ves_twin.simulator.codes import (
     WRENCH_OUT_OF_RANGE,
 )
 from ves_twin.simulator.engine import NO_CALL, call_engine
+from ves_twin.simulator.law_step import RigLaws, look, push_laws, read_laws
+from ves_twin.simulator.pose_of import read_pose
 
 
 @compiled
@@ -59,16 +60,6 @@ def _drive_arm(
         board.arm_q[j] = np.rint(work.q[j] / count) * count if count > 0.0 else work.q[j]
         board.arm_torque[j] = work.torque[j] + p.noise.torque[j] * slow[TORQUE + j]
         board.truth_arm_q[j] = qpos[p.layout.arm_qpos[j]]
-
-
-@compiled
-def read_pose(p: Record, qpos: FloatArray, pose: FloatArray) -> None:
-    """Write the true pose of the platform from home [m, rad] (6,)."""
-    at = p.layout.platform_qpos
-    angles = angles_from_matrix(matrix_from_quaternion(qpos[at + 3 : at + 7]))
-    for i in range(3):
-        pose[i] = qpos[at + i] - p.home.position[i]
-        pose[3 + i] = angles[i]
 
 
 @compiled
@@ -126,6 +117,20 @@ def _read_and_command(
 
 
 @compiled
+def _sample(p: Record, s: Record, time: float, sensordata: FloatArray, fast: SingleArray) -> bool:
+    """The force sensor's sample of a tick's start: later sub-steps carry forces of later times."""
+    for i in range(6):
+        s.work.wrench[i] = -sensordata[p.layout.wrench_sensor + i]
+    if p.late.wrench.kept:
+        take_late(p.late.wrench, s.late.wrench_past, s.work.wrench, s.work.wrench)
+    inside = sample_wrench(p.sensor, s.sensor, s.work.wrench, time, fast[WHITE:])
+    if p.late.wrench.kept:
+        for i in range(6):
+            s.sensor.true[i] = -sensordata[p.layout.wrench_sensor + i]
+    return inside
+
+
+@compiled
 def _move_rig(
     p: Record, s: Record, time: float, mj_step: int, mj_next: int, model: int, data: int,
     slides: FloatArray, speeds: FloatArray, ctrl: FloatArray, sensordata: FloatArray,
@@ -139,15 +144,29 @@ def _move_rig(
         call_engine(mj_step, model, data)
         if mj_next != NO_CALL:
             call_engine(mj_next, model, data)
-        if k == 0:  # later sub-steps carry the forces of later instants
-            for i in range(6):
-                s.work.wrench[i] = -sensordata[p.layout.wrench_sensor + i]
-            if p.late.wrench.kept:
-                take_late(p.late.wrench, s.late.wrench_past, s.work.wrench, s.work.wrench)
-            inside = sample_wrench(p.sensor, s.sensor, s.work.wrench, time, fast[WHITE:])
-            if p.late.wrench.kept:
-                for i in range(6):
-                    s.sensor.true[i] = -sensordata[p.layout.wrench_sensor + i]
+        if k == 0:
+            inside = _sample(p, s, time, sensordata, fast)
+    return inside
+
+
+@compiled
+def _move_lawful(
+    p: Record, s: Record, time: float, mj_step: int, mj_next: int, model: int, data: int,
+    qpos: FloatArray, qvel: FloatArray, slides: FloatArray, speeds: FloatArray, ctrl: FloatArray,
+    sensordata: FloatArray, laws: RigLaws, fast: SingleArray,
+) -> bool:  # fmt: skip
+    """The same with laws at each step: to hand them on costs a rig without any 4 % of its time."""
+    inside = True
+    step = p.clock.tick / p.clock.substeps
+    for k in range(p.clock.substeps):
+        _push_legs(p, s, slides, speeds, ctrl, step)
+        look(p, s, qpos, qvel, slides, speeds, laws)
+        push_laws(p, s, time + k * step, ctrl, laws)
+        call_engine(mj_step, model, data)
+        if mj_next != NO_CALL:
+            call_engine(mj_next, model, data)
+        if k == 0:
+            inside = _sample(p, s, time, sensordata, fast)
     return inside
 
 
@@ -179,6 +198,7 @@ def run_ticks(
     speeds: FloatArray,
     ctrl: FloatArray,
     sensordata: FloatArray,
+    laws: RigLaws,
     parameters: Block,
     state: Block,
     board: Block,
@@ -206,6 +226,7 @@ def run_ticks(
         speeds: the same for the rods' speed.
         ctrl: live view of mjData.
         sensordata: live view of mjData.
+        laws: functions that the plant has beyond its numbers.
         parameters: PARAMETERS (1,).
         state: STATE (1,).
         board: signals of this instant (1,).
@@ -230,12 +251,24 @@ def run_ticks(
             _read_truth(p, s, b, qpos)
             log[logged, 0] = time
             log[logged, 1:] = row
+            if len(laws.readings.codes):
+                look(p, s, qpos, qvel, slides, speeds, laws)
+                read_laws(time, laws, log[logged, 1:], True)
             logged += 1
-        inside = _move_rig(
-            p, s, time, mj_step, mj_next, model, data, slides, speeds, ctrl, sensordata, fast
-        )  # fmt: skip
+        if len(laws.efforts.codes):
+            inside = _move_lawful(
+                p, s, time, mj_step, mj_next, model, data, qpos, qvel, slides, speeds, ctrl,
+                sensordata, laws, fast,
+            )  # fmt: skip
+        else:
+            inside = _move_rig(
+                p, s, time, mj_step, mj_next, model, data, slides, speeds, ctrl, sensordata, fast
+            )  # fmt: skip
         for i in range(6):
             b.sensor_wrench[i] = s.sensor.reading[i]
+        if len(laws.readings.codes):
+            look(p, s, qpos, qvel, slides, speeds, laws)
+            read_laws(time + p.clock.tick, laws, row, False)
         code = _verdict(p, qpos, slides, inside)
         if code != RUNNING:
             return code, n + 1, logged

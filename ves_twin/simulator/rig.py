@@ -22,6 +22,7 @@ from ves_twin.simulator.blocks import STATE, parameter_block
 from ves_twin.simulator.clock import Clock
 from ves_twin.simulator.cycles import run_cycles, take_sample
 from ves_twin.simulator.engine import NO_CALL, address_of, handles
+from ves_twin.simulator.law_step import rig_laws
 from ves_twin.simulator.loop import run_ticks
 from ves_twin.simulator.noise import NoiseStreams
 from ves_twin.simulator.recorder import Notes
@@ -31,12 +32,13 @@ from ves_twin.simulator.truth_port import GravityTruth
 
 @dataclass(frozen=True)
 class RigSnapshot(ReadOnly):
-    """Mechanics, compiled state and signals at a tick; noise needs nothing but the tick."""
+    """Mechanics, compiled state, signals and memory of laws at a tick; noise needs no more."""
 
     tick: int
     data: mujoco.MjData
     state: Block
     board: Block
+    laws: tuple[FloatArray, FloatArray]
 
 
 class Rig:
@@ -51,6 +53,7 @@ class Rig:
         parameters: PARAMETERS (1,) of the compiled loop.
         state: STATE (1,) of the compiled loop.
         board: every signal at this instant.
+        laws: of the plant, as the compiled loop has them.
         noise: numbers of the noise by tick.
         tick: tick that comes next, negative while settling.
 
@@ -78,12 +81,14 @@ class Rig:
         self.noise = noise
         self.tick = 0
         self._engine = (*_step_of(self.layout), *handles(self.model, self.data))
-        self._arrays = (
+        self.laws = rig_laws(plant.laws, self.data)
+        self._arrays: tuple[Any, ...] = (
             self.data.qpos,
             self.data.qvel,
             *self.layout.slide_arrays(self.data),
             self.data.ctrl,
             self.data.sensordata,
+            self.laws,
         )
         self._truth = GravityTruth(self.model, self.data, self.layout).arrays
 
@@ -103,19 +108,8 @@ class Rig:
         Returns:
             Code of `ves_twin.simulator.codes`, and rows in the buffer.
         """
-        code, done, logged = run_ticks(
-            self.tick,
-            count,
-            *self._engine,
-            *self._arrays,
-            self.parameters,
-            self.state,
-            self.board.block,
-            self.board.row,
-            *self.noise.window(self.tick, count),
-            log,
-            logged,
-        )
+        given = (*self._given(count), log, logged)
+        code, done, logged = run_ticks(self.tick, count, *given)
         self.tick += done
         return code, logged
 
@@ -134,7 +128,14 @@ class Rig:
             Code of `ves_twin.simulator.codes`; ticks done, fewer where a cycle is for the
             interpreter; rows and cycles in the buffers.
         """
-        given: tuple[Any, ...] = (
+        given = (*self._given(count), *self._truth, *notes, samples, *computers)
+        found = run_cycles(self.tick, count, *given)
+        self.tick += found[1]
+        return found
+
+    def _given(self, count: int) -> tuple[Any, ...]:
+        """What both loops take of the rig, with the noise of the next ticks."""
+        return (
             *self._engine,
             *self._arrays,
             self.parameters,
@@ -142,14 +143,7 @@ class Rig:
             self.board.block,
             self.board.row,
             *self.noise.window(self.tick, count),
-            *self._truth,
-            *notes,
-            samples,
-            *computers,
         )
-        found = run_cycles(self.tick, count, *given)
-        self.tick += found[1]
-        return found
 
     def sample(self, samples: Block) -> None:
         """Write how the rig stands now into the first SAMPLE of an array, if it has one."""
@@ -159,7 +153,11 @@ class Rig:
     def snapshot(self) -> RigSnapshot:
         """A copy of everything that the next tick depends on."""
         return RigSnapshot(
-            self.tick, copy.copy(self.data), self.state.copy(), self.board.block.copy()
+            self.tick,
+            copy.copy(self.data),
+            self.state.copy(),
+            self.board.block.copy(),
+            (self.laws.efforts.memory.copy(), self.laws.readings.memory.copy()),
         )
 
     def restore(self, snapshot: RigSnapshot) -> None:
@@ -167,6 +165,7 @@ class Rig:
         mujoco.mj_copyData(self.data, self.model, snapshot.data)
         self.state[:] = snapshot.state
         self.board.block[:] = snapshot.board
+        self.laws.efforts.memory[:], self.laws.readings.memory[:] = snapshot.laws
         self.tick = snapshot.tick
 
 

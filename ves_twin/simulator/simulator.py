@@ -27,6 +27,7 @@ from ves_twin.simulator.clock import Clock, overrun
 from ves_twin.simulator.codes import RUNNING
 from ves_twin.simulator.computers import LONGEST_STRETCH, ComputersSnapshot
 from ves_twin.simulator.cycles import SAMPLE
+from ves_twin.simulator.law_step import forget_range, held_laws
 from ves_twin.simulator.log_faults import LogFaults
 from ves_twin.simulator.noise import BLOCK, NoiseStreams
 from ves_twin.simulator.operator import Operator, OperatorSnapshot
@@ -182,7 +183,10 @@ class Simulator:
         """End the run with a named outcome; what was recorded is kept."""
         self.outcome = outcome
         self._note_agenda()
-        self.events.append(Event(max(self.time, 0.0), outcome.value, why))
+        end = max(self.time, 0.0)
+        held = held_laws(self.plant.laws, self.rig.laws)
+        self.events += [Event(end, "law_held", words) for words in held]
+        self.events.append(Event(end, outcome.value, why))
         self.recorder.flush(unfinished=True)
 
     def snapshot(self) -> Snapshot:
@@ -209,6 +213,7 @@ class Simulator:
 
     def _settle(self) -> None:
         code = settle(self.rig, self.computers, self._standing, self.recorder.log)
+        forget_range(self.rig.laws)
         if code != RUNNING:
             self._left_limits(code)
             return

@@ -154,9 +154,39 @@ VARIABLES = {
 """Variable that a diagnosis should name, of the pendulum."""
 
 
+VES2_LAW_KINDS: Mapping[str, tuple[Acts, str, str, Draw]] = {
+    "random_of_joint_speed": (
+        Acts.SPEED, "arm.q2", "speed@arm.q2", lambda a, r: _random(r, 0.3, 4.0 * a, -2.0, 2.0),
+    ),
+    "sinh_drag_of_joint": (
+        Acts.SPEED, "arm.q1", "speed@arm.q1", lambda a, r: lambda v: -2.0 * a * np.sinh(2.0 * v),
+    ),
+    "one_sided_spring_of_joint": (
+        Acts.POSITION, "arm.q3", "position@arm.q3",
+        lambda a, r: lambda q: -4.0 * a * np.maximum(q - 0.1, 0.0) ** 1.5,
+    ),
+    "random_of_joint_position": (
+        Acts.POSITION, "arm.q2", "position@arm.q2",
+        lambda a, r: _random(r, 0.25, 3.0 * a, -0.5, 2.5),
+    ),
+    "square_drag_of_rod": (
+        Acts.SPEED, "leg.3", "speed@leg.3", lambda a, r: lambda v: -6e4 * a * np.abs(v) * v,
+    ),
+    "torque_reading": (
+        Acts.READING, "arm.torque.2", "position@arm.q2",
+        lambda a, r: _random(r, 0.3, 1.0 * a, -0.5, 2.5),
+    ),
+}  # fmt: skip
+"""The same of VES II, with the variable: N m at joints of the arm, N at a rod, N m of a reading.
+Only the rod's is in the dictionary of the diagnosis."""
+
+
 def draw_law(kind: str, rng: np.random.Generator) -> HiddenLaw:
     """A law of a kind, at a random size."""
-    acts, place, draw = LAW_KINDS[kind]
     low, high = np.log(FACTORS)
     factor = float(np.exp(rng.uniform(low, high)))
+    if kind in VES2_LAW_KINDS:
+        acts, place, of, draw = VES2_LAW_KINDS[kind]
+        return HiddenLaw(kind, acts, place, of, draw(factor, rng))
+    acts, place, draw = LAW_KINDS[kind]
     return HiddenLaw(kind, acts, place, VARIABLES[place][acts], draw(factor, rng))

@@ -1,4 +1,4 @@
-"""make_laws, answer_laws, score_laws: laws that no library has, hidden in the shipped pendulum."""
+"""make_laws, answer_laws, score_laws: laws that no library has, hidden in a machine."""
 
 from __future__ import annotations
 
@@ -17,11 +17,11 @@ from ves_twin.core.whole_file import write_whole
 from ves_twin.diagnosis.law.result import LawFinding
 from ves_twin.diagnosis.settings import Settings
 from ves_twin.machines.diagnose import diagnose
-from ves_twin.machines.mjcf.machine import Rig
-from ves_twin.suites.hidden_law import LAW_KINDS, HiddenLaw, draw_law
-from ves_twin.suites.machine import BlindRig
-from ves_twin.suites.mjcf import BlindMjcf
+from ves_twin.suites.hidden_law import LAW_KINDS, VES2_LAW_KINDS, HiddenLaw, draw_law
+from ves_twin.suites.machine import BlindMachine, BlindRig
+from ves_twin.suites.machines import machine_of
 from ves_twin.suites.save_bare import save_bare
+from ves_twin.suites.suite import OF_VES2
 
 MACHINE = "pendulum"
 
@@ -45,11 +45,13 @@ class LawTruth:
         case: its folder.
         kind: of `LAW_KINDS`, a kind outside the library, IN_ORDER or LIBRARY.
         seed: of everything drawn.
+        machine: in which it is hidden.
     """
 
     case: str
     kind: str
     seed: tuple[int, int]
+    machine: str = MACHINE
 
     @property
     def rng(self) -> np.random.Generator:
@@ -72,19 +74,20 @@ class LawAnswer:
     seconds: float
 
 
-def make_laws(kinds: Sequence[str], folder: Path, seed: int) -> list[LawTruth]:
+def make_laws(kinds: Sequence[str], folder: Path, seed: int, name: str = MACHINE) -> list[LawTruth]:
     """Write recordings that hide a law each; the truths go beside the folder.
 
     Args:
         kinds: one for each case.
         folder: for the recordings, which tell nothing else.
         seed: of everything drawn.
+        name: of the machine.
     """
-    machine = BlindMjcf(Rig.load(MACHINE))
+    machine = machine_of(name)
     rng = np.random.default_rng([seed, 0])
     standing = BlindRig(machine.commissioned(rng))
     save_bare(machine.record(standing, "standstill", rng), folder / STANDSTILL)
-    truths = [LawTruth(f"case-{n:04d}", kind, (seed, n)) for n, kind in enumerate(kinds, 1)]
+    truths = [LawTruth(f"case-{n:04d}", kind, (seed, n), name) for n, kind in enumerate(kinds, 1)]
     for truth in truths:
         rig, _ = hidden_in(machine, truth)
         rng = np.random.default_rng([*truth.seed, 1])
@@ -97,11 +100,11 @@ def make_laws(kinds: Sequence[str], folder: Path, seed: int) -> list[LawTruth]:
     return truths
 
 
-def hidden_in(machine: BlindMjcf, truth: LawTruth) -> tuple[BlindRig, HiddenLaw | None]:
+def hidden_in(machine: BlindMachine, truth: LawTruth) -> tuple[BlindRig, HiddenLaw | None]:
     """The rig of a case, and its law where that is one of ours."""
     rng = truth.rng
     values = machine.commissioned(rng)
-    if truth.kind in LAW_KINDS:
+    if truth.kind in {*LAW_KINDS, *VES2_LAW_KINDS}:
         law = draw_law(truth.kind, rng)
         return BlindRig(values, law=law), law
     if truth.kind == LIBRARY:
@@ -127,11 +130,16 @@ def truth_file(folder: Path) -> Path:
 def read_law_truths(folder: Path) -> list[LawTruth]:
     """As `make_laws` wrote them."""
     content = json.loads(truth_file(folder).read_text(encoding="utf-8"))
-    return [LawTruth(c["case"], c["kind"], (c["seed"][0], c["seed"][1])) for c in content]
+    return [
+        LawTruth(c["case"], c["kind"], (c["seed"][0], c["seed"][1]), c["machine"]) for c in content
+    ]
 
 
 def answer_laws(
-    folder: Path, settings: Settings, told: Callable[[str, LawAnswer], None]
+    folder: Path,
+    settings: Settings,
+    told: Callable[[str, LawAnswer], None],
+    name: str = MACHINE,
 ) -> dict[str, LawAnswer]:
     """Diagnose every case from its recordings, with laws looked for; answered ones stay.
 
@@ -139,6 +147,7 @@ def answer_laws(
         folder: of the suite.
         settings: of the diagnosis.
         told: called with each answer.
+        name: of the machine.
     """
     file = folder / "answers.json"
     found: dict[str, LawAnswer] = {}
@@ -151,7 +160,7 @@ def answer_laws(
             continue
         begin = process_time()
         recording, held = (load_recording(place / name) for name in FILES)
-        law, verdict = _answered(recording, held, still, settings)
+        law, verdict = _answered(recording, held, still, settings, name)
         found[place.name] = LawAnswer(verdict, law, round(process_time() - begin, 1))
         told(place.name, found[place.name])
         text = json_text({case: asdict(answer) for case, answer in found.items()})
@@ -160,9 +169,11 @@ def answer_laws(
 
 
 def _answered(
-    recording: Recording, held: Recording, still: Recording, settings: Settings
+    recording: Recording, held: Recording, still: Recording, settings: Settings, name: str
 ) -> tuple[dict[str, object] | None, str]:
-    found = diagnose([recording], MACHINE, held_out=[held], standstill=still, settings=settings)
+    found = diagnose(
+        [recording], OF_VES2.get(name, name), held_out=[held], standstill=still, settings=settings
+    )
     law: LawFinding | None = found.verdict.law
     return (asdict(law) if law else None), found.verdict.verdict.value
 
@@ -209,7 +220,7 @@ WHERE: Mapping[str, tuple[str, tuple[str, ...]]] = {
 def score_law(truth: LawTruth, answer: LawAnswer) -> LawScore:
     """Hold an answer against the truth."""
     law = answer.law
-    _, hidden = hidden_in(BlindMjcf(Rig.load(MACHINE)), truth)
+    _, hidden = hidden_in(machine_of(truth.machine), truth)
     where = WHERE.get(truth.kind)
     if hidden is not None:
         where = hidden.place, (hidden.of,)

@@ -24,6 +24,8 @@ from ves_twin.scenario.schema import Scenario
 from ves_twin.simulator.recorder import MemorySink
 from ves_twin.simulator.simulate import recording_info
 from ves_twin.simulator.simulator import Simulator
+from ves_twin.suites.hidden_in_ves2 import hidden_effort, hidden_reading
+from ves_twin.suites.hidden_law import Acts
 from ves_twin.suites.machine import BlindMachine, BlindRig, Edit
 
 SECONDS = 10.0
@@ -56,6 +58,9 @@ OUTSIDE = {
 square law at full scale [1], its hysteresis [N]; ripple of the q2 gear [N m]; a soft stop within
 the range of q2 [N m/rad]; square-law drag on the platform [N s^2/m^2]; the arm's clock running fast
 [1]; Fz cut off at a share of its largest [1]; the encoder of q3 slipping half way [rad]."""
+
+OFTEN = 37
+"""Times in a cycle that a hidden law is asked: every tick of the rig, every second of its steps."""
 
 LATE_CLOCK = "late_sensor_clock"
 
@@ -130,6 +135,10 @@ class BlindVes2(BlindMachine):
         sim.model.opt.integrator = mujoco.mjtIntegrator.mjINT_IMPLICIT
         _run(sim, rig, rng)
         rows = _collected(sim, self._programme(programme, {"run.substeps": 2}))
+        if rig.law is not None and rig.law.acts is Acts.READING:
+            signals = {name: np.array(values) for name, values in rows.signals.items()}
+            hidden_reading(rig.law, signals, sim.recorder.collect()[1], rows.time)
+            rows = replace(rows, signals=signals)
         if log:
             rows = _sampled_late(rows, sim.rig.clock.admittance, rig.size)
         signals = {name: np.array(values) for name, values in rows.signals.items()}
@@ -203,7 +212,12 @@ def _run(sim: Simulator, rig: BlindRig, rng: np.random.Generator) -> None:
             velocity = sim.data.qvel[sim.rig.layout.platform_dof :][:3]
             force = force - rig.size * np.linalg.norm(velocity) * velocity
         sim.data.xfrc_applied[body, :3] = force
-        sim.advance(period)
+        if rig.law is None or rig.law.acts is Acts.READING:
+            sim.advance(period)
+            continue
+        for _ in range(OFTEN):
+            sim.data.qfrc_applied[:] = hidden_effort(sim, rig.law)
+            sim.advance(period / OFTEN)
 
 
 def _collected(sim: Simulator, written: Scenario) -> Recording:

@@ -10,10 +10,10 @@ from typing import Annotated
 from pydantic import Field, ValidationError
 
 from ves_twin.core.errors import InvalidInputError
+from ves_twin.core.refusal import refusal
 from ves_twin.core.resources import find_resource
 from ves_twin.core.toml_file import check_schema, read_toml
 from ves_twin.scenario.fields import Part, named
-from ves_twin.scenario.load import refusal
 from ves_twin.thesis.tolerance import Numbers, Tolerance
 
 SCHEMA = 1

@@ -7,9 +7,9 @@ from pendulum import FED, MACHINE
 
 from ves_twin.core.recording.recording import Recording, RecordingInfo
 from ves_twin.effects.law import LawKind
+from ves_twin.effects.law_table import LawTable
 from ves_twin.machines.machine import Named
 from ves_twin.machines.mjcf.forward import MjcfForward
-from ves_twin.machines.mjcf.law_table import LawTable
 from ves_twin.machines.mjcf.mjcf_machine import MjcfMachine
 
 

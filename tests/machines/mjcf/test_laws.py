@@ -17,11 +17,11 @@ from ves_twin.diagnosis.forward import Excitation
 from ves_twin.diagnosis.settings import Settings
 from ves_twin.diagnosis.verdict import Kind
 from ves_twin.effects.law import Law, LawKind, LawShape
+from ves_twin.effects.law_table import LawTable
 from ves_twin.machines.diagnose import diagnose
 from ves_twin.machines.mjcf.description import Mode
 from ves_twin.machines.mjcf.extend import write_rig
 from ves_twin.machines.mjcf.forward import MjcfForward
-from ves_twin.machines.mjcf.law_table import LawTable
 from ves_twin.machines.mjcf.machine import Rig
 from ves_twin.machines.mjcf.mjcf_machine import MjcfMachine
 from ves_twin.machines.mjcf.programmes import multisine

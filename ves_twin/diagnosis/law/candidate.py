@@ -12,11 +12,8 @@ import numpy as np
 from ves_twin.core.types import FloatArray
 from ves_twin.diagnosis.forward import Hypothesis, Parameter
 from ves_twin.diagnosis.law.forms import SHARP, TONE, Form
-from ves_twin.diagnosis.law.place import LawPlace, Variable
+from ves_twin.diagnosis.law.place import STEP, LawPlace, Variable
 from ves_twin.effects.law import Law, LawShape
-
-STEP = 0.02
-"""Finite difference of a law's number, in expected sizes."""
 
 REACH = 1e9
 """Bound of a law's numbers in their priors' sd: none."""
@@ -70,7 +67,7 @@ class Candidate(ABC):
     @property
     def steps(self) -> FloatArray:
         """Finite differences (k,)."""
-        return np.asarray(STEP * self.sd)
+        return np.asarray(self.place.step * self.sd)
 
     @property
     def kernels(self) -> tuple[FloatArray, ...]:
@@ -202,6 +199,12 @@ class Closed(Candidate):
             else:  # a tone, whose scan knows the frequency to a line and the phase to a radian
                 found += [2.0 * np.pi / wide, 1.0][: len(inner)]
         return np.array(found)
+
+    @property
+    def steps(self) -> FloatArray:
+        """Of inner numbers small: a law is not linear in those."""
+        sizes = np.concatenate([[True] + [False] * len(inner) for inner in self.inner])
+        return np.asarray(np.where(sizes, self.place.step, STEP) * self.sd)
 
     @property
     def each(self) -> tuple[Closed, ...]:

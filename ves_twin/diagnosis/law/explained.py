@@ -13,6 +13,7 @@ from ves_twin.diagnosis.evidence import Evidence
 from ves_twin.diagnosis.explanation import Explanation
 from ves_twin.diagnosis.gain import Gain
 from ves_twin.diagnosis.law.finding import law_finding
+from ves_twin.diagnosis.law.lean import LeanEvidence
 from ves_twin.diagnosis.law.place import LawForward
 from ves_twin.diagnosis.law.propose import Limits, Search, search_laws
 from ves_twin.diagnosis.law.rest import search_rest
@@ -26,6 +27,9 @@ from ves_twin.diagnosis.whitening import Whitening, whitening_of
 
 LONGEST = 300.0
 """Time [s] that a search nobody asked for may take."""
+
+NEAR = 0.999
+"""Share of commissioning errors at which a run is timed."""
 
 
 @dataclass(frozen=True)
@@ -66,6 +70,8 @@ def lawful_explanation(
     if commissioning is None or not _asked(first.evidence.runs, commissioning.shift, settings):
         return None
     evidence = found.evidence if found else first.evidence
+    if settings.sparse:
+        evidence = LeanEvidence(evidence.runs, evidence.measured, evidence.whitening)
     search = search_laws(evidence, commissioning, limits, progress)
     if search is None:
         return None
@@ -116,9 +122,9 @@ def _asked(runs: Runs, shift: FloatArray, settings: Settings) -> bool:
     if any(programme.poses for programme in runs.programmes) or not plant.law_places():
         return False
     begin = perf_counter()
-    runs.one(shift)
+    runs.one(runs.depart(shift, runs.nuisances, NEAR * shift[runs.nuisances]))  # else it is kept
     once = (perf_counter() - begin) / runs.workers.count
-    return settings.laws is True or runs_of(plant.law_places()) * once <= LONGEST
+    return settings.laws is True or runs_of(plant.law_places(), settings.sparse) * once <= LONGEST
 
 
 def _explained(found: Explanation, search: Search) -> Explanation:

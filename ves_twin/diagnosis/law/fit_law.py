@@ -11,6 +11,7 @@ from scipy.linalg import cho_factor, cho_solve
 from ves_twin.core.types import FloatArray, IntArray, SingleArray
 from ves_twin.diagnosis.evidence import Evidence
 from ves_twin.diagnosis.law.candidate import Candidate
+from ves_twin.diagnosis.law.lean import LeanEvidence
 from ves_twin.diagnosis.law.smoothness import Smoothness, smoothest
 from ves_twin.diagnosis.law.with_law import WithLaw
 from ves_twin.diagnosis.linearise import STEP_SD, Linearisation
@@ -106,27 +107,32 @@ def fit_law(
         numbers: of the law to begin with; those of the family if None.
         rounds: linearisations at most.
     """
-    return _Fitter.of(evidence, candidate).run(start, numbers, rounds)
+    return _Fitter.of(evidence, candidate, start).run(start, numbers, rounds)
 
 
 @dataclass(frozen=True)
 class _Fitter:
-    """What stays the same through a fit; coordinates: law, nuisances, step share."""
+    """What stays the same through a fit; coordinates: law, nuisances, step share.
+
+    `kept` are the columns of nuisances and step that a lean fit keeps; None computes them anew.
+    """
 
     evidence: Evidence
     runs: Runs
     candidate: Candidate | None
     law: IntArray
     nuisances: IntArray
+    kept: SingleArray | None
 
     @staticmethod
-    def of(evidence: Evidence, candidate: Candidate | None) -> _Fitter:
+    def of(evidence: Evidence, candidate: Candidate | None, start: Fit) -> _Fitter:
         runs = evidence.runs
         if candidate is not None:
             forward = WithLaw(runs.forward, (candidate,))  # type: ignore[arg-type]  # a LawForward
             runs = replace(runs, forward=forward)
         law = runs.indices(candidate.hypothesis).astype(int) if candidate else np.zeros(0, int)
-        return _Fitter(evidence, runs, candidate, law, runs.nuisances)
+        kept = start.local.columns if isinstance(evidence, LeanEvidence) else None
+        return _Fitter(evidence, runs, candidate, law, runs.nuisances, kept)
 
     @cached_property
     def where(self) -> IntArray:
@@ -190,31 +196,47 @@ class _Fitter:
         """Prediction and columns at a point."""
         shift = self.shift(point)
         prediction = self.runs.one(shift) if there is None else there.prediction
-        steps = np.full(len(self.where), NUISANCE_STEP)
-        if self.candidate is not None:
-            steps[: len(self.law)] = self.candidate.steps
-        moved = [
-            self.runs.depart(shift, np.array([i]), shift[i] + step * unit)
-            for i, step, unit in zip(self.where, steps, self.unit[:-1], strict=True)
-        ]
-        ends = np.array([m[i] - shift[i] for m, i in zip(moved, self.where, strict=True)])
-        for n in np.flatnonzero(ends == 0.0):  # at a bound
-            moved[n] = self.runs.depart(
-                shift, np.array([self.where[n]]), shift[self.where[n]] - steps[n] * self.unit[n]
-            )
-            ends[n] = moved[n][self.where[n]] - shift[self.where[n]]
-        rows = self.runs.many(moved)
-        share = (self.unit[:-1] / ends).astype(np.float32)[:, None, None]
-        columns = np.concatenate(
-            [
-                (rows - prediction) * share,
-                np.float32(STEP_SD) * (self.runs.one(shift, refined=True) - prediction)[None],
-            ]
-        )
+        if self.kept is None:
+            finer = np.float32(STEP_SD) * (self.runs.one(shift, refined=True) - prediction)
+            moved = self.moved(shift, prediction, slice(None))
+            columns = np.concatenate([moved, finer[None]])
+        else:
+            columns = np.concatenate([self.of_law(point, shift, prediction), self.kept])
         columns[~np.isfinite(columns).all(axis=(1, 2))] = 0.0
         jacobian = self.evidence.whitening.apply(columns).T
         bare = self.bare(point, prediction, columns[-1])
         return _Look(point, prediction, bare.residual, columns, jacobian)
+
+    def of_law(self, point: FloatArray, shift: FloatArray, prediction: SingleArray) -> SingleArray:
+        """Columns of a law's numbers in a lean fit."""
+        count = len(self.law)
+        if self.candidate is None or not isinstance(self.evidence, LeanEvidence):
+            return self.moved(shift, prediction, slice(0))
+        hats, numbers = self.evidence.hats, self.candidate.start + point[:count]
+        known = hats.changes(self.candidate, numbers)
+        if known is None:
+            known = self.moved(shift, prediction, slice(count))
+            hats.keep(self.candidate, known)
+        return known
+
+    def moved(self, shift: FloatArray, prediction: SingleArray, of: slice) -> SingleArray:
+        """Columns of some coordinates by differences."""
+        steps = np.full(len(self.where), NUISANCE_STEP)
+        if self.candidate is not None:
+            steps[: len(self.law)] = self.candidate.steps
+        where, units, steps = self.where[of], self.unit[:-1][of], steps[of]
+        moved = [
+            self.runs.depart(shift, np.array([i]), shift[i] + step * unit)
+            for i, step, unit in zip(where, steps, units, strict=True)
+        ]
+        ends = np.array([m[i] - shift[i] for m, i in zip(moved, where, strict=True)])
+        for n in np.flatnonzero(ends == 0.0):  # at a bound
+            moved[n] = self.runs.depart(
+                shift, np.array([where[n]]), shift[where[n]] - steps[n] * units[n]
+            )
+            ends[n] = moved[n][where[n]] - shift[where[n]]
+        share = (units / ends).astype(np.float32)[:, None, None]
+        return np.asarray((self.runs.many(moved) - prediction) * share)
 
     def shift(self, point: FloatArray) -> FloatArray:
         """Departures of a point."""

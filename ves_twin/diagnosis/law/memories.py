@@ -13,6 +13,7 @@ from ves_twin.diagnosis.evidence import Evidence
 from ves_twin.diagnosis.law.candidate import Candidate
 from ves_twin.diagnosis.law.contact import Hold, Play, Stop
 from ves_twin.diagnosis.law.fit_law import LawFit, fit_law
+from ves_twin.diagnosis.law.lean import LeanEvidence
 from ves_twin.diagnosis.law.place import LawPlace
 from ves_twin.diagnosis.law.with_law import WithLaw
 from ves_twin.diagnosis.metric import Metric
@@ -21,6 +22,9 @@ from ves_twin.effects.law import LawKind, joints_of
 
 HELD = range(2, 15)
 """Rows that a reading may be held."""
+
+LIKELIEST = 2
+"""Columns whose memories are fitted where runs are dear, by what those leave as they begin."""
 
 BEGINS = (0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9)
 """Places of a stop that are tried, as shares of the range."""
@@ -32,16 +36,18 @@ STIFFNESS = (5.0, 20.0, 80.0)
 def memory_laws(
     evidence: Evidence, about: LawFit, places: Sequence[LawPlace], progress: Progress = silent
 ) -> list[LawFit]:
-    """A play and a hold of every column."""
-    found = []
+    """A play and a hold of every column; of the likeliest ones alone where runs are dear."""
+    tried: list[tuple[float, LawPlace, Hold]] = []
     columns = [place for place in places if place.kind is LawKind.READING]
     for n, place in enumerate(columns):
         progress(n / len(columns), "memories of readings")
-        found.append(fit_law(evidence, Play(place, ()), about.fit))
         held = [Hold(place, (), rows) for rows in HELD]
-        best = int(np.argmin(_left(evidence, held, about)))
-        found.append(fit_law(evidence, held[best], about.fit))
-    return found
+        left = _left(evidence, [Play(place, ()), *held], about)
+        tried.append((float(np.min(left)), place, held[int(np.argmin(left[1:]))]))
+    if isinstance(evidence, LeanEvidence):
+        tried = sorted(tried, key=lambda one: one[0])[:LIKELIEST]
+    laws = [law for _, place, hold in tried for law in (Play(place, ()), hold)]
+    return [fit_law(evidence, law, about.fit) for law in laws]
 
 
 def stop_laws(

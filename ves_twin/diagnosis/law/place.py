@@ -10,6 +10,9 @@ from ves_twin.core.types import FloatArray
 from ves_twin.diagnosis.forward import Excitation, Forward
 from ves_twin.effects.law import Law, LawKind
 
+STEP = 0.02
+"""Finite difference of a law's number, in expected sizes."""
+
 
 @dataclass(frozen=True)
 class Variable:
@@ -34,6 +37,7 @@ class LawPlace:
         unit: of the law.
         scale: size that a law is expected to have there [unit].
         variables: on which it may depend, the nearest first.
+        step: finite difference of a law's size, in expected sizes.
     """
 
     name: str
@@ -41,6 +45,7 @@ class LawPlace:
     unit: str
     scale: float
     variables: tuple[Variable, ...]
+    step: float = STEP
 
 
 @runtime_checkable

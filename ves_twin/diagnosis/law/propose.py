@@ -13,6 +13,7 @@ from ves_twin.diagnosis.law.adapted import adapted
 from ves_twin.diagnosis.law.candidate import Candidate, Mesh, Table
 from ves_twin.diagnosis.law.closed import closed_forms
 from ves_twin.diagnosis.law.fit_law import LawFit, fit_law
+from ves_twin.diagnosis.law.lean import LeanEvidence
 from ves_twin.diagnosis.law.loud import loud_screen
 from ves_twin.diagnosis.law.memories import memory_laws, stop_laws
 from ves_twin.diagnosis.law.place import LawForward, LawPlace
@@ -152,7 +153,8 @@ def search_laws(
     places = plant.law_places()
     none = fit_law(evidence, None, commissioning)
     ends = ranges(plant, none)
-    smooth = smooth_candidates(places, ends)
+    lean = isinstance(evidence, LeanEvidence)
+    smooth = smooth_candidates(places, ends, lean)
     if not smooth:
         return None
     suspects = law_screen(evidence, smooth, none, progress)
@@ -165,7 +167,8 @@ def search_laws(
     if not _quiet(evidence, none, tables[0], limits):
         pairs = [s for s in suspects if isinstance(s.candidate, Mesh)]
         tables += _tables(evidence, pairs, none, progress)
-        others += tone_laws(evidence, none, places, ends, 0.5 * suspects[0].gain, progress)
+        near = _toned(places, tables) if lean else places
+        others += tone_laws(evidence, none, near, ends, 0.5 * suspects[0].gain, progress)
     best = max([*tables, *others], key=lambda fit: fit.log_evidence)
     second = adapted(evidence, best.fit)
     none = _again(second, none)
@@ -269,6 +272,12 @@ def _chosen(
     rest = [fit for fit in again if fit is not best]
     beside = law_screen(third, _other(smooth, best), best, progress)
     return replace(found, pool=(best, *rest), further=max(beside[0].gain, 0.0))
+
+
+def _toned(places: Sequence[LawPlace], tables: Sequence[LawFit]) -> list[LawPlace]:
+    """Where tones are looked for if runs are dear: columns, which cost none, and leading places."""
+    lead = [fit.candidate.place for fit in tables[:2] if fit.candidate is not None]
+    return [place for place in places if place.kind is LawKind.READING or place in lead]
 
 
 def _other(smooth: Sequence[Candidate], best: LawFit) -> list[Candidate]:

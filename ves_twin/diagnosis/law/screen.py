@@ -7,10 +7,11 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ves_twin.core.types import FloatArray
+from ves_twin.core.types import FloatArray, SingleArray
 from ves_twin.diagnosis.evidence import Evidence
 from ves_twin.diagnosis.law.candidate import Candidate, Mesh, Table
 from ves_twin.diagnosis.law.fit_law import LawFit
+from ves_twin.diagnosis.law.lean import LeanEvidence
 from ves_twin.diagnosis.law.place import LawForward, LawPlace, Variable
 from ves_twin.diagnosis.law.smoothness import Smoothness, smoothest
 from ves_twin.diagnosis.law.with_law import WithLaw
@@ -20,8 +21,14 @@ from ves_twin.effects.law import LawKind, variable_along
 KNOTS = {"position": 19, "speed": 21, "time": 25, "command": 13}
 """Of a table, by what it depends on: those of speed are closer about zero."""
 
+COARSE = {"position": 7, "speed": 9, "time": 9, "command": 7}
+"""The same where runs are dear: what is fitted gets more."""
+
 FITTED = 1500
 """Predictions that the fits of a search take, on the pendulum."""
+
+FITTED_LEAN = 300
+"""The same of a lean search, on VES II."""
 
 MESHED = 8
 """Knots of each variable of a mesh."""
@@ -72,8 +79,8 @@ def both(
 
 
 def values_of(runs: Runs, shift: FloatArray) -> list[dict[str, float]]:
-    """Parameter -> value, of each recording."""
-    return [
+    """Parameter -> value of the plant, of each recording."""
+    found: list[dict[str, float]] = [
         {
             axis.parameter.name: axis.parameter.nominal + float(shift[i])
             for i, axis in enumerate(runs.coordinates)
@@ -81,25 +88,35 @@ def values_of(runs: Runs, shift: FloatArray) -> list[dict[str, float]]:
         }
         for k in range(len(runs.programmes))
     ]
+    forward = runs.forward
+    return [forward.of_plant(one) for one in found] if isinstance(forward, WithLaw) else found
 
 
-def runs_of(places: Sequence[LawPlace]) -> int:
+def runs_of(places: Sequence[LawPlace], lean: bool) -> int:
     """Predictions that a search takes, about: two screens, and fits of the leaders."""
     joints = [place for place in places if place.kind is LawKind.EFFORT]
+    if lean:
+        return FITTED_LEAN + sum(COARSE[v.what] for place in joints for v in place.variables)
     tables = sum(KNOTS[v.what] for place in joints for v in place.variables)
     return FITTED + 2 * (tables + MESHED**2 * len(joints))
 
 
 def smooth_candidates(
-    places: Sequence[LawPlace], ends: Mapping[str, tuple[float, float]]
+    places: Sequence[LawPlace], ends: Mapping[str, tuple[float, float]], lean: bool = False
 ) -> list[Candidate]:
-    """A table of every variable at every place, and a mesh of a joint's own position and speed."""
+    """A table of every variable at every place, and a mesh of a joint's own position and speed.
+
+    Where runs are dear, coarse tables alone.
+    """
     found: list[Candidate] = []
+    count = COARSE if lean else KNOTS
     for place in places:
         moving = [v for v in place.variables if v.name in ends and _wide(ends[v.name])]
-        found += [Table(place, (v,), knots(v, ends[v.name])) for v in moving]
+        found += [Table(place, (v,), knots(v, ends[v.name], count[v.what])) for v in moving]
         own = {v.what: v for v in reversed(moving)}
-        if place.kind is LawKind.EFFORT and {"position", "speed"} <= own.keys():
+        if lean or place.kind is not LawKind.EFFORT:
+            continue
+        if {"position", "speed"} <= own.keys():
             pair = own["position"], own["speed"]
             first, second = (tuple(np.linspace(*ends[v.name], MESHED).tolist()) for v in pair)
             found.append(Mesh(place, pair, (first, second)))
@@ -133,6 +150,17 @@ def law_screen(
 
 def columns_about(evidence: Evidence, candidate: Candidate, about: LawFit) -> FloatArray:
     """Whitened change (samples, k) for a unit of each number of a further law beside a fit."""
+    if not isinstance(evidence, LeanEvidence):
+        return evidence.whitening.apply(_changes(evidence, candidate, about)).T
+    known = evidence.hats.changes(candidate, candidate.start)
+    if known is None:
+        known = _changes(evidence, candidate, about)
+        evidence.hats.keep(candidate, known)
+    return evidence.whitening.apply(known).T
+
+
+def _changes(evidence: Evidence, candidate: Candidate, about: LawFit) -> SingleArray:
+    """The same in the channels' units (k, rows, c)."""
     whole = tuple(one for one in (about.candidate, candidate) if one is not None)
     runs = replace(evidence.runs, forward=WithLaw(_plant(evidence), whole))
     shift = runs.origin
@@ -144,7 +172,7 @@ def columns_about(evidence: Evidence, candidate: Candidate, about: LawFit) -> Fl
     share = (1.0 / candidate.steps).astype(np.float32)[:, None, None]
     change = (runs.many(moved) - about.fit.prediction) * share
     change[~np.isfinite(change).all(axis=(1, 2))] = 0.0
-    return evidence.whitening.apply(change).T
+    return np.asarray(change)
 
 
 def _plant(evidence: Evidence) -> LawForward:

@@ -57,4 +57,9 @@ class WithLaw(ForwardWrapper):
             one.law(np.array([values.get(p.name, p.nominal) for p in one.parameters]))
             for one in self.candidates
         ]
-        return self.forward.simulate(programme, values, refined, laws)
+        return self.forward.simulate(programme, self.of_plant(values), refined, laws)
+
+    def of_plant(self, values: Mapping[str, float]) -> dict[str, float]:
+        """Those of a set of values that are the plant's."""
+        own = {p.name for one in self.candidates for p in one.parameters}
+        return {name: value for name, value in values.items() if name not in own}

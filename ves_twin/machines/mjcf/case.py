@@ -15,7 +15,7 @@ from ves_twin.core.types import FloatArray
 from ves_twin.data.quality.gate import quality_gate
 from ves_twin.diagnosis.forward import Excitation
 from ves_twin.diagnosis.residuals.noise import Noise, NoiseSource
-from ves_twin.effects.law import variable_along
+from ves_twin.effects.law import held_words, variable_along
 from ves_twin.machines.case import Case, Traces
 from ves_twin.machines.mjcf.applied import applied
 from ves_twin.machines.mjcf.description import Mode
@@ -156,10 +156,7 @@ def _beyond(forward: MjcfForward, recording: Recording) -> tuple[str, ...]:
     for law in forward.rig.laws:
         share = law.beyond(*(variable_along(name, along) for name in law.of))
         if share > 0.0:
-            found.append(
-                f"the law {law.label} is held in {100.0 * share:.2g} % of the rows, which are"
-                " beyond the range in which it was seen"
-            )
+            found.append(held_words(law, share))
     return tuple(found)
 
 

@@ -6,7 +6,6 @@ import mujoco
 
 from ves_twin.core.errors import InvalidInputError, UnknownNameError
 from ves_twin.core.units import to_si
-from ves_twin.effects.law import LawKind, joints_of, parts_of
 from ves_twin.machines.mjcf.description import Compared, Mode, RigDescription
 from ves_twin.machines.mjcf.joint_units import joint_units
 from ves_twin.machines.mjcf.places import SINGLE, driven_joint, typical_speed
@@ -172,13 +171,4 @@ def _laws(told: RigDescription, model: mujoco.MjModel) -> None:
     fed = [*told.drive.actuators, *told.controllers]
     known = {"time", *moving, *(f"command@{name}" for name in fed)}
     for law in told.laws:
-        effort = law.kind is LawKind.EFFORT
-        for part, _ in joints_of(law.place) if effort else ((law.place, 1.0),):
-            if part not in (there := single if effort else columns):
-                raise UnknownNameError(f"place of a law of {law.kind}s", part, there)
-        for name in law.of:
-            what, joints, _ = parts_of(name)
-            parts = [name] if name == "time" else [f"{what}@{joint}" for joint, _ in joints]
-            for part in parts:
-                if part not in known:
-                    raise UnknownNameError(f"variable of the law at {law.place}", part, known)
+        law.check(single, columns, known)

@@ -11,7 +11,7 @@ from ves_twin.core.units import SI_UNITS, to_unit
 from ves_twin.data.import_map import Window
 from ves_twin.diagnosis.grid import RATE
 from ves_twin.effects.element import Element
-from ves_twin.machines.mjcf.law_table import LawTable
+from ves_twin.effects.law_table import LawTable
 from ves_twin.scenario.fields import Hertz, Part, Seconds, named, si
 
 KIND = "rig"

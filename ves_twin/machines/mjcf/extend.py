@@ -7,11 +7,10 @@ from pathlib import Path
 
 from ves_twin.core.toml_file import write_toml
 from ves_twin.diagnosis.law.finding import SOURCE
-from ves_twin.diagnosis.law.result import LawFinding
 from ves_twin.diagnosis.verdict import Verdict
-from ves_twin.effects.law import LawKind, LawShape
+from ves_twin.effects.law_table import put_over
+from ves_twin.machines.claimed_law import claimed_laws
 from ves_twin.machines.mjcf.description import KIND, SCHEMA, Setting
-from ves_twin.machines.mjcf.law_table import LawTable
 from ves_twin.machines.mjcf.load_description import shipped_rigs
 from ves_twin.machines.mjcf.machine import Entry, Rig
 
@@ -38,35 +37,16 @@ def extended(rig: Rig, verdict: Verdict) -> Rig:
             settings[_place(new)] = new
         else:
             present.setdefault(entry.effect.kind, {})[entry.effect.target] = moved
-    laws = {(law.place, law.of): law for law in rig.description.laws}
-    for one in rig.promoted:
-        if one.name in values:
-            laws[one.place, one.of] = one.scaled(values[one.name])
-    if verdict.law is not None and verdict.law.claimed:
-        new_law = _law_table(verdict.law)
-        laws[new_law.place, new_law.of] = new_law
+    named = [one.scaled(values[one.name]) for one in rig.promoted if one.name in values]
+    laws = put_over(rig.description.laws, [*named, *claimed_laws(verdict)])
     told = rig.description.model_copy(
         update={
             "parameters": tuple(settings.values()),
             "present": present,
-            "laws": tuple(laws.values()),
+            "laws": laws,
         }
     )
     return Rig(told, rig.folder, rig.file)
-
-
-def _law_table(found: LawFinding) -> LawTable:
-    return LawTable(
-        place=found.place,
-        kind=LawKind(found.kind),
-        shape=LawShape(found.shape),
-        of=found.of,
-        knots=found.knots,
-        values=found.values,
-        form=found.form,
-        seen=found.seen,
-        source=SOURCE,
-    )
 
 
 def _place(setting: Setting) -> tuple[str, ...]:

@@ -8,10 +8,10 @@ from typing import Any
 from pydantic import ValidationError
 
 from ves_twin.core.errors import InvalidInputError
+from ves_twin.core.refusal import refusal
 from ves_twin.core.resources import find_resource, resource_folder
 from ves_twin.core.toml_file import check_schema, read_toml
 from ves_twin.machines.mjcf.description import KIND, SCHEMA, RigDescription
-from ves_twin.scenario.load import refusal
 
 
 def is_rig(name_or_path: str) -> bool:

@@ -16,14 +16,14 @@ from ves_twin.core.units import to_si
 from ves_twin.diagnosis.forward import Hypothesis, Parameter
 from ves_twin.effects.effect import Effect
 from ves_twin.effects.law import Law
+from ves_twin.effects.law_table import CAUSE as LAW
+from ves_twin.effects.law_table import FACTORS as LAW_FACTORS
+from ves_twin.effects.law_table import LawTable
 from ves_twin.effects.magnitude import Magnitude, Sign
 from ves_twin.effects.place import Place
 from ves_twin.effects.registry import EFFECTS, attributes, build_anywhere, kind_anywhere
 from ves_twin.machines.mjcf.check_description import check_description
 from ves_twin.machines.mjcf.description import Allowed, RigDescription, Setting
-from ves_twin.machines.mjcf.law_table import CAUSE as LAW
-from ves_twin.machines.mjcf.law_table import FACTORS as LAW_FACTORS
-from ves_twin.machines.mjcf.law_table import LawTable
 from ves_twin.machines.mjcf.load_description import load_description
 from ves_twin.machines.mjcf.places import anywhere, place_of
 from ves_twin.machines.mjcf.probe import Probe

@@ -19,7 +19,7 @@ from ves_twin.effects.element import Element
 from ves_twin.machines.mjcf.description import Controller, Mode
 from ves_twin.machines.mjcf.imposed import Imposed
 from ves_twin.machines.mjcf.joint_units import joint_units
-from ves_twin.machines.mjcf.law_loop import CompiledLaws, lawful_rows
+from ves_twin.machines.mjcf.law_loop import compiled_laws, lawful_rows, push
 from ves_twin.machines.mjcf.started import first_state, start_signal
 from ves_twin.machines.mjcf.work import Work, sensor_rows, variables
 
@@ -183,7 +183,7 @@ def _open(work: Work, data: mujoco.MjData, steps: int) -> tuple[FloatArray, Floa
     """Recorded commands, stepped by MuJoCo's own loop."""
     model = work.model
     commands = _commands(work)
-    laws = CompiledLaws.of(work.laws, model)
+    laws = compiled_laws(work.laws, model)
     if len(laws.codes):
         return *lawful_rows(model, data, commands, _steady(work), steps, laws), commands
     size = mujoco.mj_stateSize(model, mujoco.mjtState.mjSTATE_FULLPHYSICS)
@@ -252,7 +252,7 @@ def _stepped(
     pull, imposed = np.zeros((rows, model.nv)), Imposed.of(work, steps)
     speed, given, reach = np.zeros(1), np.zeros(1), _Reach(work)
     loaded = {e.target for e, _ in work.effects if type(e).carry is not Effect.carry}
-    laws, own = CompiledLaws.of(work.laws, model), np.zeros(model.nv)
+    laws, own = compiled_laws(work.laws, model), np.zeros(model.nv)
     for k in range(rows):
         imposed.move(data, k * steps)
         path[k, : model.nq], path[k, model.nq :] = data.qpos, data.qvel
@@ -269,7 +269,7 @@ def _stepped(
                 effort += _carried(work, name, given, speed) if name in loaded else 0.0
                 data.qfrc_applied[dof] = -effort
             if len(laws.codes):
-                laws.push(data, own)
+                push(laws, data, own)
             imposed.move(data, k * steps + n)
             mujoco.mj_step(model, data)
             if n == 0:

@@ -7,19 +7,22 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ves_twin.core.errors import InvalidInputError, UnknownNameError
+from ves_twin.core.errors import EndedEarlyError, InvalidInputError, UnknownNameError
 from ves_twin.core.recording.even_clock import FEWEST, WAKE, even_clock, holes
 from ves_twin.core.recording.recording import Recording
 from ves_twin.core.signals import SIGNALS, Signal
 from ves_twin.core.types import FloatArray
 from ves_twin.data.quality.gate import quality_gate
 from ves_twin.diagnosis.residuals.noise import Noise
+from ves_twin.effects.law import held_words, variable_along
 from ves_twin.machines.case import Case, Traces
 from ves_twin.machines.ves2.declared_noise import declared_noise
 from ves_twin.machines.ves2.emulation_cost import EmulationCost, emulation_cost
+from ves_twin.machines.ves2.law_places import PATH, path_of
 from ves_twin.machines.ves2.leg_program_check import check_leg_program
 from ves_twin.machines.ves2.loop_noise import with_loop_noise
 from ves_twin.plant.plant import Plant
+from ves_twin.plant.rig_laws import READ
 from ves_twin.scenario.experiment import COMPARED, Experiment, StartState
 from ves_twin.scenario.schema import Scenario
 from ves_twin.simulator.predict import predict
@@ -164,7 +167,7 @@ def ves2_case(
         outputs=outputs,
         absent=tuple(n for n in wanted if n not in recording.signals),
         checks=(*quality_gate(recording, weight).checks, program),
-        notes=_notes(recording, even, inputs, experiment),
+        notes=(*_notes(recording, even, inputs, experiment), *_held(even, rig, scenario, inputs)),
         rows=_rows(even.time, scenario, experiment),
         offset=float(recording.time[0]),
         standstill=standstill,
@@ -183,6 +186,20 @@ def _rows(time: FloatArray, scenario: Scenario, experiment: Experiment) -> slice
         came = f"{max(last - first, 0)} rows between {start:.3g} and {stop:.3g} s"
         raise InvalidInputError("window", came, f"at least {FEWEST} rows")
     return slice(int(first), int(last))
+
+
+def _held(even: Recording, plant: Plant, scenario: Scenario, inputs: tuple[str, ...]) -> list[str]:
+    """Where the motion leaves the range in which a law was seen, beyond which it is held."""
+    if not plant.laws:
+        return []
+    try:
+        answer = predict(even, plant, scenario, inputs, (*READ, *PATH))
+    except EndedEarlyError:
+        return []  # the comparison says so
+    kept = np.concatenate([answer[name] for name in (*READ, *PATH)], axis=1)
+    along = path_of(plant, even.time, kept)
+    shares = {law: law.beyond(*(variable_along(v, along) for v in law.of)) for law in plant.laws}
+    return [held_words(law, share) for law, share in shares.items() if share > 0.0]
 
 
 def _notes(

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from ves_twin.diagnosis.verdict import Cause, Verdict
 from ves_twin.effects.effect import Effect
+from ves_twin.effects.law_table import CAUSE as LAW
 from ves_twin.effects.registry import build_effect
 from ves_twin.machines.ves2.filter_place import EFFECT as FILTER_PLACE
 
@@ -11,11 +12,12 @@ from ves_twin.machines.ves2.filter_place import EFFECT as FILTER_PLACE
 def effects_of(verdict: Verdict) -> tuple[Effect, ...]:
     """The effects that a verdict names, at their estimated sizes; none where it names none.
 
-    A filter at another place is no part of a plant: that is the scenario's `legs.filter`.
+    A filter at another place is no part of a plant: that is the scenario's `legs.filter`. A law is
+    no effect.
     """
     if not verdict.verdict.names_a_plant:
         return ()
-    return tuple(effect_of(c) for c in verdict.causes if c.effect != FILTER_PLACE)
+    return tuple(effect_of(c) for c in verdict.causes if c.effect not in (FILTER_PLACE, LAW))
 
 
 def effect_of(cause: Cause) -> Effect:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -12,6 +12,8 @@ from ves_twin.control.leg_loop import FilterPlace
 from ves_twin.core.types import FloatArray
 from ves_twin.diagnosis.forward import Excitation, Hypothesis, Parameter
 from ves_twin.diagnosis.forward_wrapper import ForwardWrapper
+from ves_twin.diagnosis.law.place import LawPlace
+from ves_twin.effects.law import Law
 from ves_twin.machines.ves2.forward import RigForward
 
 EFFECT = "filter_place"
@@ -60,19 +62,42 @@ class WithFilterPlaces(ForwardWrapper):
         return (*self.forward.hypotheses, *other)
 
     def simulate(
-        self, programme: Excitation, values: Mapping[str, float], refined: bool = False
+        self,
+        programme: Excitation,
+        values: Mapping[str, float],
+        refined: bool = False,
+        laws: Sequence[Law] = (),
     ) -> FloatArray:
-        """Channels (n, channels) that a rig with these values measures, without noise."""
-        own = {name: v for name, v in values.items() if not name.startswith(f"{EFFECT}@")}
-        rows = self.forward.simulate(programme, own, refined)
+        """Channels (n, channels) that a rig with these values and laws measures, without noise."""
+        own = _of_the_rig(values)
+        rows = self.forward.simulate(programme, own, refined, laws)
         found = rows
         for place, rig in self._others.items():
             share = values.get(_name(place), 0.0)
             if share != 0.0:
                 # an edge is a number of a filter, and there is none
                 kept = {n: v for n, v in own.items() if place is not FilterPlace.NONE or _known(n)}
-                found = found + share * (rig.simulate(programme, kept, refined) - rows)
+                found = found + share * (rig.simulate(programme, kept, refined, laws) - rows)
         return np.asarray(found)
+
+    def law_places(self) -> tuple[LawPlace, ...]:
+        """Those of the rig."""
+        return self.forward.law_places()
+
+    def visited(
+        self, programme: Excitation, values: Mapping[str, float], laws: Sequence[Law] = ()
+    ) -> Mapping[str, FloatArray]:
+        """Variables of the rig with the filter where the scenario has it."""
+        return self.forward.visited(programme, _of_the_rig(values), laws)
+
+    def missing(
+        self,
+        programme: Excitation,
+        values: Mapping[str, float],
+        measured: Mapping[str, FloatArray],
+    ) -> None:
+        """As the rig."""
+        self.forward.missing(programme, _of_the_rig(values), measured)
 
     @cached_property
     def _others(self) -> dict[FilterPlace, RigForward]:
@@ -86,6 +111,10 @@ class WithFilterPlaces(ForwardWrapper):
             )
             for place in self.places
         }
+
+
+def _of_the_rig(values: Mapping[str, float]) -> dict[str, float]:
+    return {name: v for name, v in values.items() if not name.startswith(f"{EFFECT}@")}
 
 
 def _name(place: FilterPlace) -> str:

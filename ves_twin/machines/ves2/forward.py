@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import hashlib
 from collections import OrderedDict
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
-from functools import cached_property
+from functools import cached_property, lru_cache
 
 import numpy as np
 
@@ -15,7 +15,12 @@ from ves_twin.core.recording.recording import Recording, RecordingInfo
 from ves_twin.core.signals import SIGNALS
 from ves_twin.core.types import FloatArray
 from ves_twin.diagnosis.forward import Channel, Excitation, Hypothesis, Parameter
+from ves_twin.diagnosis.law.place import LawPlace
+from ves_twin.effects.law import Law, LawKind, variable_along
+from ves_twin.effects.law_table import LawTable
 from ves_twin.machines.ves2.declared_load import LOAD, load_in
+from ves_twin.machines.ves2.law_causes import law_hypotheses, law_parameters, scaled_laws
+from ves_twin.machines.ves2.law_places import PATH, law_places, path_of
 from ves_twin.machines.ves2.library import (
     AXES,
     WANDER,
@@ -45,6 +50,10 @@ COLUMNS = {
     for name, end in zip(COMPARED, np.cumsum([SIGNALS[n].width for n in COMPARED]), strict=True)
 }
 """Of each signal among the compared ones."""
+
+NAMES = tuple(column for name in COMPARED for column in SIGNALS[name].columns)
+WIDTH = len(NAMES)
+"""Of what is compared; what laws depend on is kept beside it."""
 
 WRENCH = COLUMNS["sensor.wrench"]
 
@@ -121,6 +130,7 @@ class RigForward:
             *table_parameters(self.plant),
             *offset_parameters(self.plant),
             *wander_parameters(),
+            *law_parameters(self.plant),
         )
 
     @cached_property
@@ -131,33 +141,75 @@ class RigForward:
         the valve's own commands tell (`check_leg_program`), and the other is left out.
         """
         every = hypotheses_of(self.plant, self.exclude | idle_kinds(self.scenario))
-        return tuple(h for h in every if not ruled_out(h.effect, h.target, self.misread))
+        own = (h for h in every if not ruled_out(h.effect, h.target, self.misread))
+        return (*own, *law_hypotheses(self.plant))
 
     def simulate(
-        self, programme: Excitation, values: Mapping[str, float], refined: bool = False
+        self,
+        programme: Excitation,
+        values: Mapping[str, float],
+        refined: bool = False,
+        laws: Sequence[Law] = (),
     ) -> FloatArray:
-        """Channels (n, channels) that a rig with these values measures, without noise.
+        """Channels (n, channels) that a rig with these values and laws measures, without noise.
 
         Gain, cross-talk and mounting of the sensor are laid over a run without them, which is kept:
         a third of the commissioning tolerances are of that kind, and cost no run of their own. So
-        are faults of the recorder.
+        are faults of the recorder, and laws of readings.
         """
+        return self._answer(programme, values, refined, laws)[0]
+
+    def visited(
+        self, programme: Excitation, values: Mapping[str, float], laws: Sequence[Law] = ()
+    ) -> Mapping[str, FloatArray]:
+        """Variables that laws depend on (n,), as simulated."""
+        return self._answer(programme, values, False, laws)[1]
+
+    def law_places(self) -> tuple[LawPlace, ...]:
+        """Rods, joints of the arm, the platform, and compared columns."""
+        return law_places(self.plant)
+
+    def missing(
+        self,
+        programme: Excitation,
+        values: Mapping[str, float],
+        measured: Mapping[str, FloatArray],
+    ) -> None:
+        """None: VES II moves by set-points, and what its valves make of them is not recorded."""
+
+    def _answer(
+        self,
+        programme: Excitation,
+        values: Mapping[str, float],
+        refined: bool,
+        laws: Sequence[Law],
+    ) -> tuple[FloatArray, Mapping[str, FloatArray]]:
+        """Channels (n, channels), and variables of laws (n,)."""
         load = load_in(programme)
         rig = hang_weight(self._smooth, load) if load else self._smooth
+        acting = (*self.plant.laws, *scaled_laws(self.plant, values), *laws)
         plant, offsets = with_departures(rig, values)
         sensed = plant
         if self.scenario.gravity.file is None:  # else the reading is calibrated, too
             sensed, _ = with_departures(rig, without_sensor_kinds(values))
-        hardware = replace(sensed, effects=tuple(e for e in sensed.effects if not e.log))
-        rows = self._kept.run(hardware, programme, self._rates(refined)).copy()
+        efforts = (LawTable.of_law(law) for law in acting if law.kind is LawKind.EFFORT)
+        effects = tuple(e for e in sensed.effects if not e.log)
+        hardware = replace(sensed, effects=effects, told_laws=tuple(efforts))
+        kept = self._kept.run(hardware, programme, self._rates(refined))
+        rows, path = kept[:, :WIDTH].copy(), path_of(self.plant, programme.time, kept)
         for name, columns in COLUMNS.items():
             rows[:, columns] = logged(plant.effects, name, programme.time, rows[:, columns])
         if sensed is not plant:
             at_rest = programme.drive["gravity.estimate"][0] * float(self.scenario.gravity.zero)
             change = SensorChange.between(sensed, plant)
             rows[:, WRENCH] = change.apply(rows[:, WRENCH], at_rest)
+        for law in acting:
+            if law.kind is LawKind.READING:
+                at = NAMES.index(law.place)
+                along = (variable_along(name, path) for name in law.of)
+                rows[:, at] = law.read(rows[:, at], *along)
         rows[:, WRENCH] += offsets + self._wander(programme, values)
-        return rows
+        return rows, path
 
     def _wander(self, programme: Excitation, values: Mapping[str, float]) -> FloatArray:
         """The sensor's slow noise [N, N m] (n, 6), or zeros (6,) where its modes have no weight."""
@@ -198,11 +250,11 @@ class KeptRuns:
     def __init__(self) -> None:
         self._kept: dict[str, OrderedDict[tuple[str, str], FloatArray]] = {}
 
-    def __reduce__(self) -> tuple[type[KeptRuns], tuple[()]]:
-        return KeptRuns, ()  # other processes run for themselves
+    def __reduce__(self) -> tuple[Callable[[], KeptRuns], tuple[()]]:
+        return _kept_here, ()  # other processes run for themselves, and keep what they ran
 
     def run(self, plant: Plant, programme: Excitation, scenario: Scenario) -> FloatArray:
-        """Compared channels (n, channels) of a plant, not to be written to; NaN if it fails."""
+        """COMPARED and PATH (n, all) of a plant, not to be written to; NaN if it fails."""
         asked = plant.hash, scenario.model_dump_json()
         kept = self._kept.setdefault(programme.identity, OrderedDict())
         if asked in kept:
@@ -212,15 +264,21 @@ class KeptRuns:
         fed = {name: programme.drive[name] for name in DRIVE}
         recording = Recording(programme.time - programme.time[0], fed, info)
         try:
-            answer = predict(recording, plant, scenario, DRIVE, COMPARED)
-            rows = np.concatenate([answer[name] for name in COMPARED], axis=1)
+            answer = predict(recording, plant, scenario, DRIVE, (*COMPARED, *PATH))
+            rows = np.concatenate([answer[name] for name in (*COMPARED, *PATH)], axis=1)
         except (EndedEarlyError, UnreachableError):
-            width = sum(len(SIGNALS[name].columns) for name in COMPARED)
+            width = sum(len(SIGNALS[name].columns) for name in (*COMPARED, *PATH))
             rows = np.full((len(programme.time), width), np.nan)
         kept[asked] = rows
         while len(kept) > KEPT:
             kept.popitem(last=False)
         return rows
+
+
+@lru_cache(maxsize=1)
+def _kept_here() -> KeptRuns:
+    """Of a process that works for another one: each job comes with a forward of its own."""
+    return KeptRuns()
 
 
 def _settings(scenario: Scenario) -> Scenario:

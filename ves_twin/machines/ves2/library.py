@@ -11,6 +11,7 @@ from ves_twin.core.types import FloatArray
 from ves_twin.diagnosis.forward import Hypothesis, Parameter
 from ves_twin.effects.effect import Effect
 from ves_twin.effects.hydraulics import ValveNull
+from ves_twin.effects.law_table import CAUSE as LAW
 from ves_twin.effects.magnitude import Magnitude, Sign
 from ves_twin.effects.recorder import LENGTHS
 from ves_twin.effects.registry import EFFECTS, build_effect
@@ -155,13 +156,13 @@ def hypotheses_of(plant: Plant, exclude: frozenset[str] = frozenset()) -> tuple[
 def with_departures(plant: Plant, values: Mapping[str, float]) -> tuple[Plant, FloatArray]:
     """A plant with named values, and the offsets (6,) [N, N m] that its wrench is read with.
 
-    Modes of the slow noise are no part of either.
+    Modes of the slow noise and laws are no part of either.
     """
     sizes: dict[tuple[str, str], dict[str, object]] = {}
     factors: dict[str, object] = {}
     offsets = np.zeros(6)
     for name, value in values.items():
-        if name.startswith(WANDER):
+        if name.startswith((WANDER, f"{LAW}@")):
             continue
         if name.startswith(OFFSET):
             offsets[AXES.index(name.removeprefix(OFFSET))] = value

@@ -22,6 +22,7 @@ from ves_twin.diagnosis.settings import Settings
 from ves_twin.diagnosis.verdict import Verdict
 from ves_twin.effects.registry import causes_of_today
 from ves_twin.machines.case import Case
+from ves_twin.machines.claimed_law import claimed_laws
 from ves_twin.machines.data_folder import find_data
 from ves_twin.machines.drawing import Drawing
 from ves_twin.machines.machine import Machine, Material, Named, Prepared
@@ -36,6 +37,7 @@ from ves_twin.machines.ves2.filter_place import EFFECT as FILTER_PLACE
 from ves_twin.machines.ves2.filter_place import WithFilterPlaces
 from ves_twin.machines.ves2.forward import DRIVE, RigForward
 from ves_twin.machines.ves2.inputs import SORTS, check_settings, one_step, prepare_inputs
+from ves_twin.machines.ves2.law_causes import named_laws
 from ves_twin.machines.ves2.leg_program_check import misread_legs
 from ves_twin.machines.ves2.next_scenario import write_next_experiment
 from ves_twin.plant.plant import Plant
@@ -172,9 +174,12 @@ class Ves2Machine(Machine):
         return replace(settings, simulated_nulls=False, sparse=True)
 
     def extended(self, verdict: Verdict) -> Ves2Machine | None:
-        """With the effects that are named; a filter's place is no part of a plant."""
+        """With the effects that are named, and laws; a filter's place is no part of a plant."""
         effects = effects_of(verdict)
-        return replace(self, plant=self._rig.extended(*effects)) if effects else None
+        laws = [*named_laws(self._rig, verdict), *claimed_laws(verdict)]
+        if not (effects or laws):
+            return None
+        return replace(self, plant=self._rig.extended(*effects).with_laws(*laws))
 
     def causes(self, names: Sequence[str]) -> list[str]:
         """As files of earlier versions name them, too."""

@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Collection, Iterable
 from itertools import pairwise
 from typing import Self
 
 from pydantic import Field, model_validator
 
-from ves_twin.effects.law import Law, LawKind, LawShape, parts_of
-from ves_twin.scenario.fields import Part
+from ves_twin.core.errors import UnknownNameError
+from ves_twin.core.part import Part
+from ves_twin.effects.law import Law, LawKind, LawShape, joints_of, parts_of
 
 CAUSE = "law"
 """Effect that a law is as a cause."""
@@ -71,6 +73,26 @@ class LawTable(Part):
                 raise ValueError("laws.of: only the first variable may be a place within a play")
         return self
 
+    @staticmethod
+    def of_law(law: Law) -> LawTable:
+        """At work, as no file has it."""
+        own = {name: getattr(law, name) for name in ("place", "kind", "shape", "of", "knots")}
+        return LawTable.model_construct(**own, values=law.values)
+
+    def check(
+        self, joints: Collection[str], columns: Collection[str], variables: Collection[str]
+    ) -> None:
+        """Raise UnknownNameError at a place or a variable that a machine does not have."""
+        effort = self.kind is LawKind.EFFORT
+        for part, _ in joints_of(self.place) if effort else ((self.place, 1.0),):
+            if part not in (there := joints if effort else columns):
+                raise UnknownNameError(f"place of a law of {self.kind}s", part, there)
+        for name in self.of:
+            what, parts, _ = parts_of(name)
+            for one in [name] if name == "time" else [f"{what}@{joint}" for joint, _ in parts]:
+                if one not in variables:
+                    raise UnknownNameError(f"variable of the law at {self.place}", one, variables)
+
     @property
     def name(self) -> str:
         """Of the factor, where it is a cause."""
@@ -94,3 +116,8 @@ class LawTable(Part):
             self.form,
             self.source,
         )
+
+
+def put_over(under: Iterable[LawTable], top: Iterable[LawTable]) -> tuple[LawTable, ...]:
+    """Laws of both, one in place of another with the same place and variables."""
+    return tuple({(law.place, law.of): law for law in (*under, *top)}.values())
