@@ -78,6 +78,6 @@ def test_the_matrix_on_its_page_is_the_one_of_the_code():
 @pytest.mark.slow
 def test_the_script_of_the_page_shares_environments_out(tmp_path):
     path = tmp_path / "many.py"
-    path.write_text(f"{block('many.py')}    print(observations.shape, terminated.any())\n")
+    path.write_text(f"{block('many.py')}print(observations.shape, terminated.any())\n")
     done = subprocess.run([sys.executable, str(path)], capture_output=True, text=True)
     assert (done.stdout, done.stderr) == ("(8, 28) False\n", "")

@@ -186,28 +186,12 @@ def _verdict(p: Record, qpos: FloatArray, slides: FloatArray, inside: bool) -> i
 
 @compiled
 def run_ticks(
-    start: int,
-    count: int,
-    mj_step: int,
-    mj_next: int,
-    model: int,
-    data: int,
-    qpos: FloatArray,
-    qvel: FloatArray,
-    slides: FloatArray,
-    speeds: FloatArray,
-    ctrl: FloatArray,
-    sensordata: FloatArray,
-    laws: RigLaws,
-    parameters: Block,
-    state: Block,
-    board: Block,
-    row: FloatArray,
-    fast_normal: SingleArray,
-    slow_normal: SingleArray,
-    log: FloatArray,
+    start: int, count: int, mj_step: int, mj_next: int, model: int, data: int, qpos: FloatArray,
+    qvel: FloatArray, slides: FloatArray, speeds: FloatArray, ctrl: FloatArray,
+    sensordata: FloatArray, laws: RigLaws, parameters: Block, state: Block, board: Block,
+    row: FloatArray, fast_normal: SingleArray, slow_normal: SingleArray, log: FloatArray,
     logged: int,
-) -> tuple[int, int, int]:
+) -> tuple[int, int, int]:  # fmt: skip
     """Run ticks: transducer, arm servo, leg loop, amplifier, log, hydraulics and mechanics, sensor.
 
     At tick k every reading is of the state at t_k; the force sensor's sample of t_k is ready at

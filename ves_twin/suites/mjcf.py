@@ -193,11 +193,12 @@ class BlindMjcf(BlindMachine):
         return self._recorded(fed, np.tile(first, (len(fed.time), 1)), rig, rng)
 
     def _measured(self, rig: BlindRig, fed: Excitation, rng: np.random.Generator) -> Recording:
-        """Rows twice as dense, so that delays are finer, and speeds those that motion has there.
+        """Rows twice as dense where commands are held from row to row, so that delays are finer.
 
-        Commands are held from row to row.
+        And where columns have errors of their own: speeds are then those that motion has there. The
+        last rows, beyond which a spline knows nothing, differ from the model's by that.
         """
-        dense = 2
+        dense = 2 if self.mode is Mode.CONTROL or rig.errors else 1
         time = np.asarray(fed.period / dense * np.arange(dense * len(fed.time)), float)
         held = np.arange(len(time)) // dense
         drive = {name: rows[held] for name, rows in fed.drive.items()}

@@ -246,7 +246,7 @@ def test_a_hidden_drag_of_a_joint_is_found_with_place_variable_and_gain():
     assert without - with_law > 0.95 * (without - true)
 
 
-@pytest.mark.slow
+@pytest.mark.nightly
 def test_a_rig_in_order_has_no_law():
     assert searched(None).reason
 
