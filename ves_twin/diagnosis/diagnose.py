@@ -196,7 +196,8 @@ class _View:
             basis = replace(basis, held_out="split")
         lawful, unknown = None, kind is Kind.UNKNOWN
         seen.runs.budget.stage(math.inf if chosen.laws else 1.0)  # asked for, whatever it takes
-        wanted = chosen.laws is not False and (unknown or (kind is Kind.PARTIAL and proved))
+        looks = not chosen.sparse if chosen.laws is None else chosen.laws  # dear runs: if asked
+        wanted = looks and (unknown or (kind is Kind.PARTIAL and proved))
         if wanted and not seen.runs.budget.skips("a law"):
             progress(0.0, "looking for a law" if unknown else "looking for a law in what is left")
             if end.built is not None and not unknown:

@@ -46,9 +46,11 @@ class Selector:
 
     Attributes:
         regression: on the fitted half.
+        families: whether one kind at all places may enter at once, and nothing is exchanged then.
     """
 
     regression: Regression
+    families: bool = False
 
     def run(self, begin: Sequence[int] = ()) -> list[int]:
         """Chosen trials, each cause once at most.
@@ -56,6 +58,8 @@ class Selector:
         Args:
             begin: trials to begin with.
         """
+        if self.families:
+            return self._lasting(*self._entered(list(begin)))
         now = self._grown(list(begin))
         while True:
             other = self._exchanged(now) or self._grown(now.chosen)
@@ -91,6 +95,10 @@ class Selector:
 
     def _grown(self, chosen: list[int]) -> _Choice:
         """With all that is worth its price beside a choice, and without what is not any more."""
+        return self._pruned(self._entered(chosen)[0])
+
+    def _entered(self, chosen: list[int]) -> tuple[list[int], LinearFit]:
+        """With all that is worth its price beside a choice."""
         fit = self.regression.fit(chosen)
         while len(chosen) < MOST:
             more, there = self._next(chosen, fit)
@@ -98,7 +106,7 @@ class Selector:
                 break
             chosen = self.swapped([*chosen, *more])
             fit = self.regression.fit(chosen, there.whitening, 2)
-        return self._pruned(chosen)
+        return chosen, fit
 
     def _exchanged(self, now: _Choice) -> _Choice | None:
         """The choice with one cause in the place of another, if that is clearly better."""
@@ -144,7 +152,8 @@ class Selector:
         offers = [[max(rest, key=lambda n: gains.of(n) - self.price(samples, self._width([n])))]]
         pair = self._pair(gains, rest)
         offers += [list(pair)] if pair and self._synergy(gains, pair, offers[0]) else []
-        worth = [gains.of(*few) - self.price(samples, self._width(few)) for few in offers]
+        offers += self._families(gains, rest) if self.families else []
+        worth = [self._worth(gains, offer, samples) for offer in offers]
         pick, top = offers[int(np.argmax(worth))], max(worth)
         there = regression.fit([*chosen, *pick], fit.whitening, 2) if top > 0.0 else None
         slow, by_slow = self._slow(chosen, fit, rest, pick if there else [])
@@ -205,6 +214,43 @@ class Selector:
     def _synergy(gains: Gains, pair: tuple[int, int], single: list[int]) -> bool:
         """Whether two together take more than the best alone could announce twice over."""
         return gains.of(*pair) > 2.0 * gains.of(*single)
+
+    def _worth(self, gains: Gains, offer: list[int], samples: float) -> float:
+        """Gain less price; a family was looked at once, however many members it has."""
+        width = self._width(offer)
+        if len(offer) < 3:
+            return gains.of(*offer) - self.price(samples, width)
+        once = self.price(samples, 1) - np.log(samples)
+        return float(gains.of(*offer) - width * np.log(samples) - once)
+
+    def _families(self, gains: Gains, rest: list[int]) -> list[list[int]]:
+        """One kind of cause at every place, and all kinds at one place of couplings."""
+        trials = self.regression.trials
+        found = []
+        for effect in dict.fromkeys(trials[n].cause.effect for n in rest):
+            best: dict[str, int] = {}
+            for n in rest:
+                cause = trials[n].cause
+                if cause.effect != effect or gains.of(n) <= 0.0:
+                    continue
+                if cause.target not in best or gains.of(n) > gains.of(best[cause.target]):
+                    best[cause.target] = n
+            if len(best) > 2:
+                found.append(list(best.values()))
+        return found
+
+    def _lasting(self, chosen: list[int], fit: LinearFit) -> list[int]:
+        """Without trials that take less than ln n a column of chi^2 beside all others."""
+        regression = self.regression
+        chosen = self.swapped(list(chosen))
+        while chosen:
+            fit = regression.fit(chosen, fit.whitening, 2)
+            losses = losses_of(regression, fit)
+            worst = min(chosen, key=lambda n: losses[n])
+            if losses[worst] > np.log(fit.samples):
+                break
+            chosen.remove(worst)
+        return chosen
 
     def swapped(self, chosen: list[int]) -> list[int]:
         """With the best variant of each cause in place of the one that was chosen, by plain error.
