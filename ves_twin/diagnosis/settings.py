@@ -32,7 +32,7 @@ class Settings:
         rate: of the analysis grid [Hz].
         sparse: whether banks are built with fewer runs, as a machine of many parameters needs.
         laws: whether a law is looked for where no cause explains the record, and the plant can
-            have laws; None where that takes minutes at most.
+            have laws; None where runs are cheap.
         minutes: that a diagnosis may take, of processor time in one process, of the clock in
             several; what it then leaves out it says.
     """
