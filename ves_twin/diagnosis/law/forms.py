@@ -35,6 +35,15 @@ class Form:
     spread: tuple[float, ...] = ()
     relative: bool = True
 
+    def __reduce__(self) -> tuple[Callable[[str], Form], tuple[str]]:
+        return form_named, (self.name,)  # a function of this page has no name that travels
+
+
+def form_named(name: str) -> Form:
+    """The form of the dictionary, or the tone, that has this name."""
+    every = (TONE, *(form for forms in FORMS.values() for form in forms))
+    return next(form for form in every if form.name == name)
+
 
 def _steps(count: int) -> tuple[tuple[float, ...], ...]:
     return tuple((float(s),) for s in np.linspace(0.0, 1.0, count + 2)[1:-1])
