@@ -15,6 +15,7 @@ from ves_twin.diagnosis.build_up.discrepancy import discrepancy
 from ves_twin.diagnosis.build_up.halves import Halves, carried_point, halves_at
 from ves_twin.diagnosis.build_up.idle import idle
 from ves_twin.diagnosis.build_up.nearest import nearest
+from ves_twin.diagnosis.build_up.offer import Offer, preferred
 from ves_twin.diagnosis.build_up.paired import loss
 from ves_twin.diagnosis.build_up.proof import Bench, Proof, prove
 from ves_twin.diagnosis.build_up.regression import Regression
@@ -107,15 +108,14 @@ class _Builder:
         for _ in range(ROUNDS + bool(only)):
             regression = halves.regression
             offers = [only] if only else self.offered(regression, _places(halves, present))
-            tried = [self.tried(halves, offer, point) for offer in offers]
-            size, chosen, evidence, fit = min(tried, key=lambda one: one[0])
-            linear = regression.solve(chosen, evidence.whitening).residual
-            if size > best + MOVED:  # columns that hide each other: what was there before stays
+            kept = preferred(regression, [self.tried(halves, one, point) for one in offers])
+            linear = regression.solve(kept.chosen, kept.evidence.whitening).residual
+            if kept.left > best + MOVED:  # columns that hide each other: what was before stays
                 break
-            best = size
-            present = _present([regression.trials[n] for n in chosen], fit)
-            off = regression.half.rms(bare_residual(evidence, fit) - linear)
-            point = fit.shift
+            best = kept.left
+            present = _present([regression.trials[n] for n in kept.chosen], kept.fit)
+            off = regression.half.rms(kept.residual - linear)
+            point = kept.fit.shift
             halves = self.halves(point, present)
             if only:
                 only = []
@@ -135,14 +135,11 @@ class _Builder:
         both = (Selector(regression, families).run(present) for families in (False, True))
         return list({tuple(sorted(one)): one for one in both}.values())
 
-    def tried(
-        self, halves: Halves, chosen: list[int], point: FloatArray
-    ) -> tuple[float, list[int], Evidence, Fit]:
-        """Chosen trials fitted in full: log of what they leave, they, what was seen, the fit."""
+    def tried(self, halves: Halves, chosen: list[int], point: FloatArray) -> Offer:
+        """Chosen trials fitted in full."""
         evidence = self.evidence(halves.regression.fit(chosen).residual)
         fit = self.refined(halves, chosen, point, evidence)
-        left = halves.regression.half.rms(np.asarray(bare_residual(evidence, fit), float))
-        return float(np.mean(np.log(np.maximum(left, 1e-30)))), chosen, evidence, fit
+        return Offer.of(halves.regression, chosen, evidence, fit)
 
     def onward(
         self, halves: Halves, few: Proof, point: FloatArray

@@ -11,6 +11,7 @@ from ves_twin.core.types import FloatArray
 from ves_twin.diagnosis.build_up.halves import Halves
 from ves_twin.diagnosis.build_up.inseparable import inseparable
 from ves_twin.diagnosis.build_up.leftover_laws import Law, by_channel, laws_left, same_motion
+from ves_twin.diagnosis.build_up.memory import memory
 from ves_twin.diagnosis.build_up.proof import FALSE_SHARE, Bench, Proof
 from ves_twin.diagnosis.build_up.regression import Half
 from ves_twin.diagnosis.build_up.result import TOGETHER, BuildUp, Left, Proved
@@ -102,7 +103,7 @@ def _left(bench: Bench, left: FloatArray, laws: list[Law]) -> dict[str, Left]:
             before=float(first[c]),
             unit=channel.unit,
             noise=noise,
-            memory=_memory(spread[:, c]) * grid.step,
+            memory=memory(spread[:, c]) * grid.step,
             along={
                 names[k]: float(along[c, k])
                 for k in range(len(names))
@@ -111,17 +112,6 @@ def _left(bench: Bench, left: FloatArray, laws: list[Law]) -> dict[str, Left]:
             laws=by_channel(laws, c),
         )
     return found
-
-
-def _memory(column: FloatArray) -> float:
-    """Rows over which a column remembers itself: its integral time."""
-    centred = column - column.mean()
-    power = np.abs(np.fft.rfft(centred, 2 * len(centred))) ** 2
-    memory = np.fft.irfft(power)[: len(centred)]
-    memory = memory / max(float(memory[0]), 1e-30)
-    ends = np.flatnonzero(memory < 0.05)
-    stop = int(ends[0]) if len(ends) else len(memory)
-    return float(0.5 + np.sum(memory[1:stop]))
 
 
 def _names(half: Half) -> list[str]:
