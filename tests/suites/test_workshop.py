@@ -122,6 +122,22 @@ def test_a_case_is_answered_and_scored(suite):
     assert score_gain(folder, truths, answers)["many: 90% of the gain that could be had"].of == 1
 
 
+def test_sizes_of_two_hidden_causes_with_the_same_columns_are_known_as_a_sum_alone():
+    """Both intervals are off, and neither is counted: no record could tell them apart."""
+    causes = (
+        HiddenCause("offset", "x", {"offset@x:size": 1.0}, 30.0, 0.2, ("asymmetry@x",)),
+        HiddenCause("asymmetry", "x", {"asymmetry@x:size": 1.0}, 30.0, 0.2),
+        HiddenCause("spring", "x", {"spring@x:size": 1.0}, 30.0, 0.2),
+    )
+    law = (ModelError(Family.LAW, 0, 1.0, seed=1),)
+    truth = Truth("case-0001", Hidden.MANY, causes, errors=law)
+    sizes = {"offset@x:size": (2.0, 1.9, 2.1, 0.0), "spring@x:size": (1.0, 0.9, 1.1, 0.0)}
+    answer = Answer("partial", ["offset@x", "spring@x"], [False, True], sizes=sizes)
+    rows = score([truth], {"case-0001": answer}).rows
+    assert str(rows["many: 90 % intervals that hold the hidden size"]).startswith("1 of 1")
+    assert str(rows["many: sizes of which only a sum can be known"]).startswith("1 of 2")
+
+
 def test_a_name_is_false_if_it_is_not_hidden_and_no_hidden_cause_has_its_columns():
     causes = (
         HiddenCause("a", "x", {"a@x:size": 1.0}, 30.0, 0.2, ("twin@x",)),

@@ -58,6 +58,8 @@ def score_many(both: Sequence[tuple[Truth, Answer]]) -> dict[str, Rate]:
         }
     every = [(t, a) for t, a in both if t.hidden is Hidden.MANY]
     rows["many: 90 % intervals that hold the hidden size"] = _covered(every)
+    own = [(t, c) for t, a in every for c in t.causes if c.label in _said(a)]
+    rows["many: sizes of which only a sum can be known"] = Rate.over(own, lambda p: _shared(*p))
     return rows
 
 
@@ -76,16 +78,25 @@ def _names(truth: Truth, answer: Answer) -> list[_Name]:
     return found
 
 
+def _shared(truth: Truth, cause: HiddenCause) -> bool:
+    """Whether another hidden cause has the columns of one."""
+    return any(one.label in cause.likes for one in truth.causes)
+
+
 def _found(cause: HiddenCause, said: Sequence[str]) -> bool:
     return bool({cause.label, *cause.likes} & set(said))
 
 
 def _covered(cases: Sequence[tuple[Truth, Answer]]) -> Rate:
-    """Intervals of the causes that are called by their own name."""
+    """Intervals of the causes that are called by their own name.
+
+    Not of one that has the columns of another hidden one: only the sum of both can be known.
+    """
     inside = []
     for truth, answer in cases:
         said = set(_said(answer))
-        for cause in (one for one in truth.causes if one.label in said):
+        known = (one for one in truth.causes if not _shared(truth, one))
+        for cause in (one for one in known if one.label in said):
             for name, departure in cause.departures.items():
                 if (size := (answer.sizes or {}).get(name)) is None:
                     continue
