@@ -56,6 +56,13 @@ def test_slow_error_below_a_row_s_noise_is_judged_by_all_of_it(regression):
     assert preferred(regression, [some, more]) is more
 
 
+def test_what_is_small_beside_slow_error_is_judged_one_step_ahead(regression):
+    """Few rows of slow error are independent: altogether they say little of what is faster."""
+    slow, fast = coloured(regression, 150.0, 1), coloured(regression, 2.0, 2)
+    some, more = offer(regression, FEW, slow + 0.3 * fast), offer(regression, [*FEW, 2], slow)
+    assert preferred(regression, [some, more]) is more
+
+
 def test_memory_of_a_first_order_colour_is_its_closed_form():
     """1/2 + sum of exp(-k/T) over k is 1/2 + 1/(exp(1/T) - 1), T to its cut at 5 %."""
     share, rows = np.exp(-1.0 / 10.0), 200_000

@@ -55,8 +55,8 @@ def preferred(regression: Regression, offers: Sequence[Offer]) -> Offer:
     One step ahead, W the whitening that the residual asks for: where rows are finer than what
     happens in them, declared noise is larger than any step, and all offers look alike (the
     excavator). And altogether, n_c being rows over twice their memory, of the offer that leaves
-    least: what one slow cause leaves in few independent rows counts for little there (a double
-    pendulum). A choice without a price takes more causes, and false ones (the workshop's arm).
+    least: where what is left is slow, few rows are independent, and what is faster counts for
+    little. A choice without a price takes more causes, and false ones (the workshop's arm).
 
     Args:
         regression: that the trials belong to.
