@@ -61,7 +61,7 @@ def test_what_is_hidden_is_named_with_its_sizes(machine: Rig, label: str, banks:
     assert cause.firm
     for size, value in sizes.items():
         found = cause.shortened.parameters[size]
-        # one of nine 90 % intervals would miss; twice as wide they miss in a thousandth
+        # one of nine 90 % intervals would miss; twice as wide it would not (one in a hundred)
         assert abs(found.value - value) < found.high - found.low
     first = next(iter(cause.parameters.values()))
     assert first.low > 0.2 * first.value
