@@ -20,6 +20,9 @@ BODIES = [f"link{k}" for k in range(1, 8)]
 CENTRE = "1 cm"
 """Sd of each body's centre along each axis: a drawing without its cables and screws."""
 
+RIPPLES = ["joint1.320", "joint2.320"]
+"""Waves a turn that all three recordings show at these joints, of one phase."""
+
 HEAD = """schema = 1
 kind = "rig"
 name = "xmate7p"
@@ -60,6 +63,7 @@ def description() -> str:
         ("mass_centre", [f"{b}.{axis}" for b in BODIES for axis in "xyz"]),
         ("body_inertia", BODIES),
         ("gravity_direction", ["x", "y"]),
+        ("ripple", RIPPLES),
     )
 
 

@@ -395,6 +395,8 @@ def test_the_menu_is_ranked_by_few_commissioning_errors_where_there_are_many(mon
         ("sensor_cross_talk@sensor.my.fy", "sensor cross talk at sensor my from fy"),
         ("anchor_position@leg.1.x", "anchor position at leg 1 x"),
         ("coulomb_friction@joint", "Coulomb friction at joint"),
+        ("ripple@axis.320", "ripple (n = 320) at axis"),
+        ("drive_cross_talk@m5 from m6", "drive cross talk at m5 from m6"),
     ],
 )
 def test_a_cause_is_said_so_that_its_place_can_be_found(label, said):

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -97,9 +97,11 @@ def assemble_verdict(
     named = found is not None and kind.names_causes
     causes, alternatives = _causes(findings, found) if named and found else ((), ())
     built = findings.built
-    ends = {p.name: (p.low, p.high) for p in findings.seen.runs.forward.parameters}
+    parameters = findings.seen.runs.forward.parameters
+    ends = {p.name: (p.low, p.high) for p in parameters}
+    components = {p.name for p in parameters if p.component}
     row = _row(findings.seen)
-    proved = sized(built, causes, ends, row) if built and named else ()
+    proved = sized(built, causes, ends, row, components) if built and named else ()
     firm = {one.label: one.firm for one in proved}
     causes = tuple(replace(c, firm=firm.get(f"{c.effect}@{c.target}", c.firm)) for c in causes)
     worse = findings.gain is not None and bool(findings.gain.worse)
@@ -167,13 +169,15 @@ def sized(
     causes: Sequence[Cause],
     ends: Mapping[str, tuple[float, float]],
     row: float = 0.0,
+    components: Collection[str] = (),
 ) -> tuple[Proved, ...]:
     """What is proved with its sizes.
 
     Firm only where it passes the test by itself, too, no commissioning error explains it either,
     and no interval holds the value that the model has already: a shape that is known so little is
-    not known by name. Nor where an interval reaches an end of its range, which then says the size
-    in place of the record, nor a delay below a row, which the clock of the recordings may have.
+    not known by name; of a vector one size must be away from it. Nor where an interval reaches an
+    end of its range, which then says the size in place of the record, nor a delay below a row,
+    which the clock of the recordings may have.
     What full simulation fits to nothing is left out: its column improved the prediction, its
     effect does not.
 
@@ -182,6 +186,7 @@ def sized(
         causes: with sizes.
         ends: of the range of each parameter.
         row: from one row of the recordings to the next [s].
+        components: parameters that are one of a vector.
     """
     named = {f"{cause.effect}@{cause.target}": cause for cause in causes}
     found = []
@@ -193,7 +198,8 @@ def sized(
             name: Size(e.value, e.low, e.high, e.unit, e.nominal)
             for name, e in cause.shortened.parameters.items()
         }
-        known = all(not s.low <= s.nominal <= s.high for s in sizes.values())
+        away = {n: not e.low <= e.nominal <= e.high for n, e in cause.parameters.items()}
+        known = any(away.values()) and all(away[n] for n in away if n not in components)
         known = known and one.p <= built.false_discovery_rate  # many that are sure raise its limit
         ended = any(_ended(e, *ends[name]) for name, e in cause.parameters.items())
         below = any(_below(name, e, row) for name, e in cause.parameters.items())

@@ -58,6 +58,7 @@ class Parameter:
         sd: how well commissioning knows it; 0 where it is known, or absent by declaration.
         per_recording: drawn anew for each recording, for instance an initial angle.
         additive: adds the same to the channels for each unit of it, whatever all else is.
+        component: one of a vector, so that at zero the others may say all.
     """
 
     name: str
@@ -68,6 +69,7 @@ class Parameter:
     sd: float = 0.0
     per_recording: bool = False
     additive: bool = False
+    component: bool = False
 
     def __post_init__(self) -> None:
         if not (self.low <= self.nominal <= self.high and self.low < self.high and self.sd >= 0):

@@ -7,6 +7,7 @@ from ves_twin.effects.actuators import (
     ActuatorGain,
     ActuatorOffset,
     ActuatorSaturation,
+    DriveCrossTalk,
 )
 from ves_twin.effects.bodies import (
     BodyInertia,
@@ -14,14 +15,13 @@ from ves_twin.effects.bodies import (
     BodyPlace,
     GravityDirection,
     MassCentre,
+    Payload,
     PayloadMass,
 )
 from ves_twin.effects.couplings import CouplingCoulomb, CouplingInertia, CouplingViscous
 from ves_twin.effects.effect import Effect
 from ves_twin.effects.friction import (
-    FrictionBehindGap,
     LoadFriction,
-    OneWayLoad,
     QuadraticDrag,
     RegularizedFriction,
     StribeckFriction,
@@ -47,6 +47,7 @@ from ves_twin.effects.joints import (
     ViscousAsymmetry,
     ViscousFriction,
 )
+from ves_twin.effects.presliding import DahlFriction, FrictionBehindGap, OneWayLoad
 from ves_twin.effects.programs import (
     CommandLimit,
     FilterEdge,
@@ -62,6 +63,7 @@ from ves_twin.effects.recorder import (
     RecorderGain,
     RecorderOffset,
 )
+from ves_twin.effects.ripple import Ripple
 from ves_twin.effects.sensors import (
     CrossTalk,
     EncoderOffset,
@@ -107,6 +109,8 @@ __all__ = [
     "CouplingViscous",
     "CrossTalk",
     "CubicSpring",
+    "DahlFriction",
+    "DriveCrossTalk",
     "Effect",
     "EncoderOffset",
     "FilterEdge",
@@ -125,6 +129,7 @@ __all__ = [
     "ModelMass",
     "OilAir",
     "OneWayLoad",
+    "Payload",
     "PayloadMass",
     "PistonLeakage",
     "QuadraticDrag",
@@ -133,6 +138,7 @@ __all__ = [
     "RecorderGain",
     "RecorderOffset",
     "RegularizedFriction",
+    "Ripple",
     "RotorInertia",
     "SensorDelay",
     "SensorDrift",

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import final
 
 import numpy as np
 
+from ves_twin.core.errors import InvalidInputError
 from ves_twin.core.types import FloatArray
 from ves_twin.effects import change
 from ves_twin.effects.change import Law, Loop
@@ -216,3 +218,42 @@ class ActuatorAsymmetry(Curve):
     def edit_required(self, effort: FloatArray, time: FloatArray) -> FloatArray:
         """Each side without it."""
         return np.asarray(effort / (1.0 + self.share * np.sign(effort)))
+
+
+FROM = " from "
+"""Between a drive and the one whose command it picks up."""
+
+
+@final
+@dataclass(frozen=True)
+class DriveCrossTalk(Effect):
+    """A drive picks up a share of the command to another one: u_i -> u_i + share u_j.
+
+    Currents that couple between cables and amplifiers, a wrist in which one motor turns two axes.
+    Target "motor_5 from motor_6" is motor 5 picking up that of motor 6, behind its own dead band,
+    curve and delay; commands in the units of each.
+    """
+
+    share: float = 0.0
+
+    kind = "drive_cross_talk"
+    sizes = (Size("share", "1"),)
+    anywhere = Anywhere(Element.ACTUATOR, 0.3, 0.001, source="assumed: up to a third")
+
+    @property
+    def parts(self) -> tuple[str, ...]:
+        """The drive, and the one whose command it picks up.
+
+        Raises:
+            InvalidInputError: a target that does not say two.
+        """
+        found = tuple(self.target.split(FROM))
+        if len(set(found)) != 2:
+            expected = "two drives, as motor_5 from motor_6"
+            raise InvalidInputError(f"target of {self.kind}", self.target, expected)
+        return found
+
+    def pick_up(self, commands: Mapping[str, FloatArray]) -> FloatArray | float:
+        """A share of the other one's."""
+        _, other = self.parts
+        return self.share * commands[other] if other in commands else 0.0

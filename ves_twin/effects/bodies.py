@@ -5,16 +5,19 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, final
 
+import numpy as np
+
+from ves_twin.core.types import FloatArray
 from ves_twin.effects import change
 from ves_twin.effects.effect import Effect
 from ves_twin.effects.element import Element
-from ves_twin.effects.magnitude import Sign
+from ves_twin.effects.magnitude import Magnitude, Sign
+from ves_twin.effects.place import Place
 from ves_twin.effects.row import LINKS, Anywhere, Part, Row
 from ves_twin.effects.size import Size
 
 if TYPE_CHECKING:
     import mujoco
-    import numpy as np
 
 LEFT = 0.01
 """Share of a body's mass and inertia that is left at least: MuJoCo takes neither at zero or below,
@@ -39,9 +42,47 @@ class PayloadMass(Effect):
         """Join the point mass to link 3, with centre of mass and inertia by the parallel axes."""
         if self.neutral:
             return
-        import numpy as np
-
         _add_mass(arm, "link3", self.mass, np.asarray(arm.site("tip").pos))
+
+
+@final
+@dataclass(frozen=True)
+class Payload(Effect):
+    """A point mass that nobody declared sits on a body, at a place in its frame."""
+
+    mass: float = 0.0
+    x: float = 0.0
+    y: float = 0.0
+    z: float = 0.0
+
+    kind = "payload"
+    sizes = (
+        Size("mass", "kg", Sign.POSITIVE),
+        *(Size(axis, "m", component=True) for axis in "xyz"),
+    )
+    anywhere = Anywhere(Element.BODY, source="assumed: three times the body, up to 0.5 m away")
+
+    @classmethod
+    def magnitudes_at(cls, place: Place) -> tuple[Magnitude, ...]:
+        """Up to three times the body, up to half a metre from its origin."""
+        return cls.ranged(place, 3.0 * place.mass, 0.5, 0.5, 0.5)
+
+    @classmethod
+    def starts(cls, place: Place) -> tuple[tuple[float, ...], ...]:
+        """Half the body, at its origin and 0.1 m off along each axis."""
+        places = 0.1 * np.vstack([np.zeros(3), np.eye(3), -np.eye(3)])
+        return tuple((0.5 * place.mass, *at) for at in places.tolist())
+
+    def edit_model(self, model: mujoco.MjModel) -> None:
+        """Join the point mass to the body, by the parallel axes."""
+        if self.mass == 0.0:
+            return
+        at = model.body(self.target).id
+        centre, turn, inertia = model.body_ipos, model.body_iquat, model.body_inertia
+        before = float(model.body_mass[at]), centre[at], turn[at], inertia[at]
+        place = np.array([self.x, self.y, self.z])
+        joined = _with_point(*before, self.mass, place)
+        model.body_mass[at], centre[at], turn[at], inertia[at] = joined
 
 
 @final
@@ -144,8 +185,6 @@ class GravityDirection(Effect):
 
     def edit_model(self, model: mujoco.MjModel) -> None:
         """Turn the vector of gravity."""
-        import numpy as np
-
         turn, axis = np.array([np.cos(self.angle), np.sin(self.angle)]), "xy".index(self.target)
         one, two = ((1, 2), (2, 0))[axis]  # a right-handed turn about the axis
         before = model.opt.gravity.copy()
@@ -173,21 +212,34 @@ class BodyInertia(Effect):
         model.body_inertia[model.body(self.target).id] *= 1.0 + self.share
 
 
-def _add_mass(arm: mujoco.MjSpec, name: str, mass: float, at: np.ndarray) -> None:
-    import mujoco
-    import numpy as np
-
+def _add_mass(arm: mujoco.MjSpec, name: str, mass: float, at: FloatArray) -> None:
     body = arm.body(name)
-    before = float(body.mass)
-    centre = (before * np.asarray(body.ipos) + mass * at) / (before + mass)
-    full = np.diag(np.asarray(body.inertia))
-    for m, place in ((before, np.asarray(body.ipos)), (mass, at)):
-        r = place - centre
-        full = full + m * (r @ r * np.eye(3) - np.outer(r, r))
-    principal, axes, quat = np.zeros(3), np.zeros(9), np.zeros(4)
+    before = float(body.mass), np.asarray(body.ipos), np.asarray(body.iquat)
+    joined = _with_point(*before, np.asarray(body.inertia), mass, at)
+    body.mass, body.ipos, body.iquat, inertia = joined
+    body.inertia = _possible(list(inertia))
+
+
+def _with_point(
+    body: float,
+    centre: FloatArray,
+    turn: FloatArray,
+    inertia: FloatArray,
+    mass: float,
+    place: FloatArray,
+) -> tuple[float, FloatArray, FloatArray, FloatArray]:
+    """Mass, centre, principal axes (a quaternion) and inertias of a body with a point mass."""
+    import mujoco
+
+    axes = np.zeros(9)
+    mujoco.mju_quat2Mat(axes, turn)
+    full = axes.reshape(3, 3) @ np.diag(inertia) @ axes.reshape(3, 3).T
+    together = body + mass
+    apart = place - centre
+    full = full + body * mass / together * (apart @ apart * np.eye(3) - np.outer(apart, apart))
+    principal, quat = np.zeros(3), np.zeros(4)
     mujoco.mju_eig3(principal, axes, quat, full.ravel())
-    body.mass = before + mass
-    body.ipos, body.iquat, body.inertia = centre, quat, _possible(list(principal))
+    return together, centre + mass / together * apart, quat, principal
 
 
 def _possible(inertia: list[float]) -> list[float]:

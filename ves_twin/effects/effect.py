@@ -130,6 +130,11 @@ class Effect(ABC):
                 raise InvalidInputError(self._of(magnitude.name), value, bounds)
 
     @property
+    def parts(self) -> tuple[str, ...]:
+        """Names of the elements in its target, where that says more; it acts on the first."""
+        return (self.target,)
+
+    @property
     def index(self) -> int:
         """Number of the target among those of its row, from 0."""
         return self.row_of(self.target).targets.index(self.target)
@@ -229,6 +234,10 @@ class Effect(ABC):
     def edit_command(self, command: FloatArray, time: FloatArray) -> FloatArray:
         """What an actuator gives of its command (n,)."""
         return command
+
+    def pick_up(self, commands: Mapping[str, FloatArray]) -> FloatArray | float:
+        """What an actuator gets beside its own command of those to others, by their names (n,)."""
+        return 0.0
 
     def edit_row(self, command: FloatArray, time: FloatArray, row: int) -> float:
         """What an actuator gives in one row of a closed loop, which knows no later commands.

@@ -25,6 +25,7 @@ class Magnitude:
         smallest: smallest size of interest.
         largest: largest size that is plausible, and the bound of the field.
         sign: which signs it can have.
+        component: whether it is one of a vector, so that at zero the others may say all.
     """
 
     name: str
@@ -33,6 +34,7 @@ class Magnitude:
     smallest: float
     largest: float
     sign: Sign = Sign.BOTH
+    component: bool = False
 
     @property
     def low(self) -> float:

@@ -15,8 +15,10 @@ from ves_twin.effects import (
     friction,
     hydraulics,
     joints,
+    presliding,
     programs,
     recorder,
+    ripple,
     sensors,
     structure,
     transducers,
@@ -28,8 +30,8 @@ from ves_twin.effects.row import ALL_LEGS, JOINTS, LEGS, LINKS
 from ves_twin.effects.sensors import CrossTalk
 
 _CATALOGUE = (
-    *(transducers, joints, friction, couplings, hydraulics, structure, actuators, bodies),
-    *(sensors, programs, recorder),
+    *(transducers, joints, friction, presliding, ripple, couplings, hydraulics, structure),
+    *(actuators, bodies, sensors, programs, recorder),
 )
 
 RENAMED = {

@@ -112,7 +112,7 @@ class Anywhere:
         unit = size.unit_on(hinge=place.hinge, signal=place.unit)
         largest = _number(self.largest, place)
         smallest = LEAST * largest if self.smallest is None else _number(self.smallest, place)
-        return Magnitude(size.name, unit, 0.0, smallest, largest, size.sign)
+        return Magnitude(size.name, unit, 0.0, smallest, largest, size.sign, size.component)
 
 
 def _number(length: Length, place: Place) -> float:

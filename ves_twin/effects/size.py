@@ -24,11 +24,13 @@ class Size:
         name: of the field.
         unit: SI; of a slide and of a hinge, where they differ; "" is the unit of the signal.
         sign: directions that are physical.
+        component: whether it is one of a vector, so that at zero the others may say all.
     """
 
     name: str
     unit: str | tuple[str, str]
     sign: Sign = Sign.BOTH
+    component: bool = False
 
     def unit_on(self, *, hinge: bool, signal: str = "1") -> str:
         """The unit at a place."""

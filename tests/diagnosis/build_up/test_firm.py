@@ -43,6 +43,21 @@ def test_a_size_whose_interval_holds_the_models_own_value_is_not_firm(low, firm)
     assert told.firm is firm
 
 
+@pytest.mark.parametrize(
+    ("cosine", "sine", "firm"), [(0.9, -0.2, True), (-0.2, -0.2, False), (0.9, 0.4, True)]
+)
+def test_of_a_vector_one_size_away_from_the_models_own_value_is_enough(cosine, sine, firm):
+    sizes = {
+        "cosine": Estimate(1.0, cosine, 1.1, "N", 0.0),
+        "sine": Estimate(0.1, sine, 0.5, "N", 0.0),
+    }
+    cause = Cause("ripple", "joint.12", sizes, 1.0, True, None)
+    one = Proved("ripple", "joint.12", {}, 1e-3, 20, {"torque": (2.0, 1.0)}, True)
+    ends = dict.fromkeys(sizes, (-2.0, 2.0))
+    built = BuildUp((one,), 1, 0.05, {}, {})
+    assert sized(built, (cause,), ends, components=set(sizes))[0].firm is firm
+
+
 @pytest.mark.parametrize(("p", "firm"), [(0.04, True), (0.1, False)])
 def test_a_name_that_only_many_sure_ones_beside_it_let_pass_is_not_firm(p, firm):
     size = Estimate(1.0, 0.5, 1.5, "N", 0.0)

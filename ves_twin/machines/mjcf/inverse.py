@@ -13,6 +13,7 @@ import numpy as np
 from scipy.signal import butter, filtfilt
 
 from ves_twin.core.types import FloatArray
+from ves_twin.effects.effect import Effect
 from ves_twin.effects.law import LawKind
 from ves_twin.effects.shifted import shifted
 from ves_twin.machines.mjcf.work import Work, sensor_rows, variables
@@ -20,6 +21,9 @@ from ves_twin.machines.mjcf.work import Work, sensor_rows, variables
 ORDER = 4
 """Of the Butterworth low-pass before differentiation, run forth and back: no phase."""
 
+
+PICKED = 20
+"""Rounds after which drives that pick up a half of each other's command are known to 1e-6."""
 
 KEPT = 24
 """Motions whose rigid-body efforts are kept: most causes change none of them."""
@@ -43,10 +47,11 @@ def efforts_of_motion(work: Work) -> tuple[dict[str, FloatArray], dict[str, Floa
     for part in positions.values():
         digest.update(np.ascontiguousarray(part).tobytes())
     moved = _moved(_Motion(digest.hexdigest(), work, rigid, positions))
-    found = {}
+    found, asked = {}, [one.actuator for one in told.compare.values() if one.actuator]
+    commands = _commands(work, asked, moved)
     for name, compared in told.compare.items():
         if compared.actuator:
-            found[name] = compared.sign * _command(work, compared.actuator, moved)[:, None]
+            found[name] = compared.sign * commands[compared.actuator][:, None]
         elif compared.sensor:
             found[name] = compared.sign * sensor_rows(model, moved.sensed, compared)
     path = np.hstack([moved.position, moved.speed])
@@ -62,7 +67,7 @@ def efforts_along(
 ) -> dict[str, FloatArray]:
     """The command (n,) that each actuator needs along qpos (n, nq), qvel and qacc (n, nv)."""
     moved = _inverted(_rigid(work.model), position, speed, pull)
-    return {name: _command(work, name, moved) for name in actuators}
+    return _commands(work, actuators, moved)
 
 
 def _rigid(model: mujoco.MjModel) -> mujoco.MjModel:
@@ -130,7 +135,22 @@ def _single(work: Work) -> list[tuple[str, str]]:
     return [(j, s) for j, s in joints.items() if work.programme.drive[s].shape[1] == 1]
 
 
-def _command(work: Work, name: str, moved: _Moved) -> FloatArray:
+def _commands(work: Work, names: Sequence[str], moved: _Moved) -> dict[str, FloatArray]:
+    """The command (n,) of each actuator, less what it picks up of those to others."""
+    talking = [e.parts for e, _ in work.effects if type(e).pick_up is not Effect.pick_up]
+    every = dict.fromkeys([*names, *(other for _, *others in talking for other in others)])
+    need = {name: _needed(work, name, moved) for name in every}
+    found = {name: work.required(name, given) for name, given in need.items()}
+    for _ in range(PICKED if talking else 0):
+        found = {
+            name: work.required(name, given - work.picked_up(name, found))
+            for name, given in need.items()
+        }
+    return found
+
+
+def _needed(work: Work, name: str, moved: _Moved) -> FloatArray:
+    """What must reach an actuator (n,)."""
     model = work.model
     actuator = model.actuator(name)
     joint = model.joint(int(actuator.trnid[0]))
@@ -147,7 +167,7 @@ def _command(work: Work, name: str, moved: _Moved) -> FloatArray:
     gain = float(actuator.gear[0]) * float(actuator.gainprm[0])
     if work.rig.description.drive.held:
         effort = shifted(effort, work.programme.time, -0.5 * work.programme.period)
-    return work.required(name, effort / gain)
+    return np.asarray(effort / gain)
 
 
 def _states(motion: _Motion) -> tuple[FloatArray, FloatArray, FloatArray]:

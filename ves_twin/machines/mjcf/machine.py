@@ -14,6 +14,7 @@ from ves_twin.core.engine_log import log_engine
 from ves_twin.core.errors import FileAccessError, InvalidInputError, UnknownNameError, one_line
 from ves_twin.core.units import to_si
 from ves_twin.diagnosis.forward import Hypothesis, Parameter
+from ves_twin.effects.bodies import MassCentre, Payload
 from ves_twin.effects.effect import Effect
 from ves_twin.effects.law import Law
 from ves_twin.effects.law_table import CAUSE as LAW
@@ -124,7 +125,7 @@ class Rig:
             raise FileAccessError(f"model file '{path}' of rig {self.description.name} is missing")
         log_engine()
         try:
-            edited = self.payloads or self.probes
+            edited = self.payloads or self.probes or self._shifted
             model = self._loaded(path) if edited else mujoco.MjModel.from_xml_path(str(path))
         except (ValueError, mujoco.FatalError) as error:
             raise InvalidInputError(str(path), one_line(error), "a MuJoCo model") from None
@@ -185,7 +186,9 @@ class Rig:
                 low, high = _bounds(entry, m, nominal, told)
                 name = entry.name(m)
                 one = entry.per_recording
-                found.append(Parameter(name, m.unit, nominal, low, high, m.sd, one))
+                found.append(
+                    Parameter(name, m.unit, nominal, low, high, m.sd, one, component=m.component)
+                )
         most = LAW_FACTORS[1]
         return (*found, *(Parameter(law.name, "1", 0.0, -most, most) for law in self.promoted))
 
@@ -248,8 +251,14 @@ class Rig:
         _ = self.hypotheses, self.parameters
 
     def _loaded(self, path: Path) -> mujoco.MjModel:
-        """The model with its payloads, bodies without a joint and without extent, and probes."""
+        """The model with its payloads, bodies without a joint and without extent, and probes.
+
+        A body whose centre may move is none that MuJoCo may simplify by where it is.
+        """
         spec = mujoco.MjSpec.from_file(str(path))
+        for body in spec.bodies:
+            if body.name in self._shifted:
+                body.simple = 0
         for probe in self.probes:
             probe.add(spec)
         for name, mass, place in self.payloads:
@@ -260,6 +269,17 @@ class Rig:
             point = body.add_body(pos=place, mass=mass, ipos=[0.0] * 3, inertia=[0.0] * 3)
             point.explicitinertial = True
         return spec.compile()
+
+    @property
+    def _shifted(self) -> set[str]:
+        """Bodies whose centre of mass may move."""
+        told = self.description
+        centres = {s.body for s in told.parameters if s.attribute.startswith("centre_")}
+        entries = [(a.kind, a.on) for a in told.effects]
+        entries += [(kind, tuple(targets)) for kind, targets in told.present.items()]
+        payloads = {name for kind, on in entries if kind == Payload.kind for name in on}
+        axes = [name for kind, on in entries if kind == MassCentre.kind for name in on]
+        return centres | payloads | {name.rpartition(".")[0] for name in axes}
 
     def _entry(self, allowed: Allowed, target: str, setting: Setting | None) -> Entry:
         effect = build_anywhere(allowed.kind, target, {})
@@ -352,4 +372,4 @@ def _sized(m: Magnitude, allowed: Allowed, setting: Setting | None, what: str) -
     if not 0.0 < smallest < largest:
         expected = "0 < smallest < largest; typical sizes of its joint or signal give them"
         raise InvalidInputError(f"sizes of {what}", (smallest, largest), expected)
-    return Magnitude(m.name, m.unit, sd, smallest, largest, m.sign)
+    return replace(m, sd=sd, smallest=smallest, largest=largest)

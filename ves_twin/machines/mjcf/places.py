@@ -12,7 +12,7 @@ from ves_twin.effects.effect import Effect
 from ves_twin.effects.element import Element
 from ves_twin.effects.place import Place
 from ves_twin.effects.row import Anywhere
-from ves_twin.machines.mjcf.description import RigDescription, Span
+from ves_twin.machines.mjcf.description import Mode, RigDescription, Span
 from ves_twin.machines.mjcf.joint_units import joint_units
 
 SINGLE = (int(mujoco.mjtJoint.mjJNT_HINGE), int(mujoco.mjtJoint.mjJNT_SLIDE))
@@ -40,11 +40,10 @@ def place_of(effect: Effect, told: RigDescription, model: mujoco.MjModel) -> Pla
         _known("body", name, {model.body(i).name for i in range(1, model.nbody)})
         return Place(element, target, mass=float(model.body_mass[model.body(name).id]))
     if element is Element.ACTUATOR:
-        _known("actuator", target, {model.actuator(i).name for i in range(model.nu)})
-        return _actuator(target, told, model)
+        return _actuator(effect, told, model)
     if element is Element.TENDON:
         return _tendon(target, told, model)
-    return _joint(target, told, model)
+    return _joint(effect.parts[0], told, model)
 
 
 def anywhere(effect: Effect) -> Anywhere:
@@ -107,8 +106,16 @@ def _joint(target: str, told: RigDescription, model: mujoco.MjModel) -> Place:
     )
 
 
-def _actuator(target: str, told: RigDescription, model: mujoco.MjModel) -> Place:
+def _actuator(effect: Effect, told: RigDescription, model: mujoco.MjModel) -> Place:
     """With the command that its joint's typical effort takes, 0 where the file says none."""
+    target, *others = effect.parts
+    for name in effect.parts:
+        _known("actuator", name, {model.actuator(i).name for i in range(model.nu)})
+    imposed = () if told.drive.mode is Mode.MOTION else told.drive.imposed
+    for joint in (driven_joint(model, name) for name in others):
+        if not joint or joint in imposed:
+            expected = "a drive whose command is known: of a joint that is not imposed"
+            raise InvalidInputError(f"target of {effect.kind}", effect.target, expected)
     actuator, joint = model.actuator(target), driven_joint(model, target)
     span, gain = told.typical.joint.get(joint, Span()), abs(actuator.gear[0] * actuator.gainprm[0])
     if not span.effort or not gain:

@@ -174,7 +174,7 @@ def _carried(work: Work, joint: str, given: FloatArray, speed: FloatArray) -> fl
 def _steady(work: Work) -> FloatArray:
     """Efforts (nv,) of the effects that are the same at any speed."""
     effort, still = np.zeros(work.model.nv), np.zeros(1)
-    for name in {e.target for e, _ in work.effects if e.steady}:
+    for name in {e.parts[0] for e, _ in work.effects if e.steady}:
         effort[int(work.model.joint(name).dofadr[0])] -= work.resistance(name, still)[0]
     return effort
 
@@ -203,9 +203,11 @@ def _open(work: Work, data: mujoco.MjData, steps: int) -> tuple[FloatArray, Floa
 def _commands(work: Work) -> FloatArray:
     """Commands (n, nu) that reach the actuators."""
     commands = np.zeros((len(work.programme.time), work.model.nu))
-    for actuator, signal in work.rig.description.drive.actuators.items():
-        column = work.programme.drive[signal][:, 0]
-        commands[:, work.model.actuator(actuator).id] = work.command(actuator, column)
+    fed = work.rig.description.drive.actuators
+    sent = {name: work.programme.drive[signal][:, 0] for name, signal in fed.items()}
+    for name, column in sent.items():
+        at = work.model.actuator(name).id
+        commands[:, at] = work.command(name, column) + work.picked_up(name, sent)
     return commands
 
 
@@ -240,7 +242,7 @@ def _stepped(
     asked = np.zeros((rows, model.nu)) if closed else _commands(work)
     resisted = [
         (name, int(model.joint(name).dofadr[0]), int(model.joint(name).qposadr[0]))
-        for name in {e.target for e, _ in work.effects if e.element is Element.JOINT}
+        for name in {e.parts[0] for e, _ in work.effects if e.element is Element.JOINT}
     ]
     at_joint = {n: [e for e, _ in work.at(Element.JOINT, n)] for n, _, _ in resisted}
     holders = {
@@ -251,7 +253,7 @@ def _stepped(
     path, sensed = np.zeros((rows, model.nq + model.nv)), np.zeros((rows, model.nsensordata))
     pull, imposed = np.zeros((rows, model.nv)), Imposed.of(work, steps)
     speed, given, reach = np.zeros(1), np.zeros(1), _Reach(work)
-    loaded = {e.target for e, _ in work.effects if type(e).carry is not Effect.carry}
+    loaded = {e.parts[0] for e, _ in work.effects if type(e).carry is not Effect.carry}
     laws, own = compiled_laws(work.laws, model), np.zeros(model.nv)
     for k in range(rows):
         imposed.move(data, k * steps)
@@ -285,18 +287,22 @@ class _Reach:
     """Commands of a closed loop as they reach the actuators, row by row, effect after effect."""
 
     def __init__(self, work: Work) -> None:
-        self.time = work.programme.time
+        self.time, model = work.programme.time, work.model
         self.chain = [
-            (effect, work.model.actuator(effect.target).id, np.zeros(len(self.time)))
+            (effect, model.actuator(effect.parts[0]).id, np.zeros(len(self.time)))
             for effect, _ in work.effects
             if effect.element is Element.ACTUATOR
         ]
+        self.talks = [(e, i) for e, i, _ in self.chain if type(e).pick_up is not Effect.pick_up]
+        self.names = {model.actuator(i).name: i for i in range(model.nu)}
 
     def at(self, asked: FloatArray, row: int) -> FloatArray:
         reach = asked.copy()
         for effect, i, given in self.chain:
             given[row] = reach[i]
             reach[i] = effect.edit_row(given, self.time, row)
+        for effect, i in self.talks:
+            reach[[i]] += effect.pick_up({name: asked[[j]] for name, j in self.names.items()})
         return reach
 
 

@@ -3,23 +3,32 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from itertools import combinations
 
 import mujoco
 import numpy as np
 
 from ves_twin.core.errors import InvalidInputError, UnknownNameError, VesTwinError
-from ves_twin.effects.actuators import ActuatorAsymmetry, ActuatorOffset, ActuatorSaturation
-from ves_twin.effects.bodies import BodyInertia, BodyPlace, MassCentre
+from ves_twin.effects.actuators import (
+    FROM,
+    ActuatorAsymmetry,
+    ActuatorOffset,
+    ActuatorSaturation,
+    DriveCrossTalk,
+)
+from ves_twin.effects.bodies import BodyInertia, BodyPlace, MassCentre, Payload
 from ves_twin.effects.effect import Effect
 from ves_twin.effects.element import Element
-from ves_twin.effects.friction import OneWayLoad, RegularizedFriction
+from ves_twin.effects.friction import RegularizedFriction
+from ves_twin.effects.presliding import DahlFriction, OneWayLoad
 from ves_twin.effects.registry import EFFECTS, attributes, build_anywhere, kind_anywhere
+from ves_twin.effects.ripple import Ripple
 from ves_twin.machines.mjcf.description import Allowed, Mode, RigDescription, Setting
-from ves_twin.machines.mjcf.places import anywhere, place_of
+from ves_twin.machines.mjcf.places import anywhere, driven_joint, place_of
 
 ALL = "*"
 
-OF_TURNING = (MassCentre.kind, BodyInertia.kind)
+OF_TURNING = (MassCentre.kind, BodyInertia.kind, Payload.kind)
 """Kinds that a body which only slides does not show."""
 
 FEW = 2
@@ -27,10 +36,12 @@ FEW = 2
 
 BY_NAME = (
     *(ActuatorAsymmetry.kind, ActuatorOffset.kind, ActuatorSaturation.kind),
-    *(OneWayLoad.kind, RegularizedFriction.kind),
+    *(OneWayLoad.kind, RegularizedFriction.kind, DahlFriction.kind),
+    *(Ripple.kind, DriveCrossTalk.kind),
 )
 """Kinds that a "*" does not mean: on most machines a force offset and dry or viscous friction do
-much the same, and each of them costs runs. A file asks for these by their names."""
+much the same, each of them costs runs, and nobody knows how many waves a ripple has. A file asks
+for these by their names."""
 
 SLIDE = int(mujoco.mjtJoint.mjJNT_SLIDE)
 
@@ -154,12 +165,25 @@ def _targets(kind: str, told: RigDescription, model: mujoco.MjModel) -> list[str
     names = names_of(model, on.element)
     if on.element is Element.ACTUATOR:
         fed = set(told.drive.actuators) if told.drive.mode is Mode.CONTROL else set(names)
-        return [name for name in names if name in fed]
+        names = [name for name in names if name in fed]
+        return _neighbours(names, model) if kind == DriveCrossTalk.kind else names
     if kind in OF_TURNING:
         names = [name for name in names if _turns(model, model.body(name).id)]
     if kind == BodyPlace.kind:
         names = [name for name in names if _turns(model, int(model.body(name).parentid[0]))]
     return [f"{name}.{axis}" for name in names for axis in "xyz"] if on.axis else names
+
+
+def _neighbours(names: list[str], model: mujoco.MjModel) -> list[str]:
+    """Every two drives of which one moves the body that carries the other's, both ways."""
+    joints = {name: driven_joint(model, name) for name in names}
+    bodies = {n: int(model.joint(j).bodyid[0]) for n, j in joints.items() if j}
+    found = []
+    for one, other in combinations(bodies, 2):
+        here, there = bodies[one], bodies[other]
+        if here in (there, model.body_parentid[there]) or there == model.body_parentid[here]:
+            found += [f"{one}{FROM}{other}", f"{other}{FROM}{one}"]
+    return found
 
 
 def _turns(model: mujoco.MjModel, body: int) -> bool:

@@ -78,7 +78,7 @@ class Work:
 
     def at(self, element: Element, name: str) -> list[tuple[Effect, Place]]:
         """Effects on one target."""
-        return [(e, p) for e, p in self.effects if e.element is element and e.target == name]
+        return [(e, p) for e, p in self.effects if e.element is element and e.parts[0] == name]
 
     def resistance(self, joint: str, speed: FloatArray) -> FloatArray:
         """Effort [N, N m] against motion of a joint that the model itself lacks (n,)."""
@@ -159,6 +159,10 @@ class Work:
         for effect, _ in self.at(Element.ACTUATOR, actuator):
             command = effect.edit_command(command, self.programme.time)
         return command
+
+    def picked_up(self, actuator: str, commands: Mapping[str, FloatArray]) -> FloatArray | float:
+        """What reaches an actuator of the commands to others (n,)."""
+        return sum(e.pick_up(commands) for e, _ in self.at(Element.ACTUATOR, actuator))
 
     def required(self, actuator: str, effort: FloatArray) -> FloatArray:
         """The command that an actuator needs (n,)."""

@@ -10,6 +10,7 @@ from ves_twin.core.quantity import digits, percent, quantity
 from ves_twin.diagnosis.residual_structure import Loud
 from ves_twin.diagnosis.rivals import Place
 from ves_twin.diagnosis.verdict import Cause, Estimate, Kind, Verdict
+from ves_twin.effects.ripple import NUMBERED, Ripple
 
 TOLD = 6
 """Names in a sentence."""
@@ -18,7 +19,11 @@ TOLD = 6
 def spoken(label: str) -> str:
     """effect@target as a person says it: "Coulomb friction at leg 3"."""
     effect, _, target = label.partition("@")
-    words = effect.replace("_", " ").replace("coulomb", "Coulomb").replace("stribeck", "Stribeck")
+    if effect == Ripple.kind and (waves := NUMBERED.fullmatch(target)):
+        return f"ripple (n = {waves[2]}) at {waves[1]}"
+    words = effect.replace("_", " ")
+    for person in ("Coulomb", "Stribeck", "Dahl"):
+        words = words.replace(person.lower(), person)
     places = target.split(".")
     if places[0] == "sensor" and len(places) == 3:  # one axis reads a share of another
         places.insert(2, "from")
