@@ -6,7 +6,10 @@ PYTHON ?= $(shell for p in python3.12 python3.11 python3 python; do \
 BIN := .venv/bin
 PIP := $(BIN)/python -m pip install --quiet --disable-pip-version-check
 
-.PHONY: demo demo-diagnosis demo-law laws test nightly check fast fuzz attack mutation types lint layers bench figures fidelity real scorecard diagnosis-scorecard picture docs clean
+# Hundreds of processes would each compile the package's sources where no bytecode may be kept.
+unexport PYTHONDONTWRITEBYTECODE
+
+.PHONY: demo demo-diagnosis demo-law laws test nightly check fast fuzz attack mutation types lint layers loop bench figures fidelity real scorecard diagnosis-scorecard picture docs clean
 
 demo: .venv/.run
 	$(BIN)/ves-twin run beam_horizontal_truth --out runs/demo
@@ -26,7 +29,9 @@ KIND ?= drawn
 demo-law: .venv/.run
 	$(BIN)/python benchmarks/demo_law.py --kind $(KIND) --out runs/demo-law
 
-test: .venv/.dev lint layers types
+# The inner loop compiles while types are checked: each takes one core, and both workers would compile.
+test: .venv/.dev
+	$(MAKE) --no-print-directory --jobs=2 lint layers types loop
 	$(BIN)/python -m pytest -n 2 --dist worksteal --durations=25 --costs=runs/test-costs.csv
 
 # Statistical suites at full size as well; ends with one table of them.
@@ -54,6 +59,10 @@ attack: .venv/.dev
 # Mutants of the kernels and of the diagnosis core; hours, and goes on where it stopped.
 mutation: .venv/.dev
 	$(BIN)/python benchmarks/mutation.py runs/mutation.jsonl
+
+# Compiles the inner loop, which takes most of a minute where no cache has it.
+loop: .venv/.run
+	$(BIN)/ves-twin run beam_horizontal_truth --no-rrd --set run.duration=0.1 --out runs/loop
 
 lint: .venv/.dev
 	$(BIN)/ruff check . && $(BIN)/ruff format --check .

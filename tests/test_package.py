@@ -4,6 +4,7 @@ import ast
 import os
 import subprocess
 import sys
+from functools import cache
 from pathlib import Path
 
 import pytest
@@ -65,24 +66,32 @@ def test_wheel_carries_models_and_scenarios_and_works_from_another_folder(tmp_pa
     assert (elsewhere / "runs" / "position_sine" / "recording.parquet").is_file()
 
 
-SOURCES = {str(p.relative_to(PACKAGE)): p.read_text() for p in sorted(PACKAGE.rglob("*.py"))}
-TREES = {name: ast.parse(text) for name, text in SOURCES.items()}
+@cache
+def sources():
+    """Text of every file of the package."""
+    return {str(p.relative_to(PACKAGE)): p.read_text() for p in sorted(PACKAGE.rglob("*.py"))}
+
+
+@cache
+def trees():
+    """What the files say: not where tests are collected, since every worker collects all."""
+    return {name: ast.parse(text) for name, text in sources().items()}
 
 
 def functions():
     """Every function of the package: name of its file, its node."""
-    for name, tree in TREES.items():
+    for name, tree in trees().items():
         for node in ast.walk(tree):
             if isinstance(node, ast.FunctionDef):
                 yield name, node
 
 
 def test_no_file_is_longer_than_400_lines():
-    assert [name for name, text in SOURCES.items() if text.count("\n") > 400] == []
+    assert [name for name, text in sources().items() if text.count("\n") > 400] == []
 
 
 def test_the_first_line_of_every_file_says_what_it_holds():
-    assert [name for name, tree in TREES.items() if not ast.get_docstring(tree)] == []
+    assert [name for name, tree in trees().items() if not ast.get_docstring(tree)] == []
 
 
 def test_no_function_is_longer_than_75_lines():

@@ -46,6 +46,7 @@ def test_a_folder_of_a_run_needs_no_more_words(run, tmp_path, capsys):
 
 
 @pytest.mark.slow
+@pytest.mark.usefixtures("unpictured")
 def test_out_of_tolerance_exits_4_and_within_it_0(run, tmp_path, capsys):
     limits = tmp_path / "limits.toml"
     words = ["compare", str(run), "--tolerance", str(limits), "--out", str(tmp_path / "out")]
@@ -58,6 +59,7 @@ def test_out_of_tolerance_exits_4_and_within_it_0(run, tmp_path, capsys):
 
 
 @pytest.mark.slow
+@pytest.mark.usefixtures("unpictured")
 def test_a_measured_recording_is_told_by_an_experiment(bare, tmp_path, capsys):
     told = tmp_path / "lab.toml"
     told.write_text(

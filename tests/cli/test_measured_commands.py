@@ -59,6 +59,7 @@ def accept_guesses(path):
 
 
 @pytest.mark.slow
+@pytest.mark.usefixtures("unpictured")
 def test_a_log_of_a_bench_is_inspected_mapped_imported_and_compared(lab, capsys):
     assert main(["inspect", "lab.csv", "--draft-map", "--json"]) == 0
     seen = json.loads(capsys.readouterr().out)
@@ -87,6 +88,7 @@ def test_a_log_of_a_bench_is_inspected_mapped_imported_and_compared(lab, capsys)
 
 
 @pytest.mark.slow
+@pytest.mark.usefixtures("unpictured")
 def test_an_experiment_may_differ_by_recording(run, tmp_path, capsys):
     heavy = vt.Plant.load("ves2_fast").with_values({"arm.mass": [13.0, 22.4, 5.0, 2.0]})
     other = vt.simulate(vt.Scenario.load("identify_fast", SCENARIO), heavy, seed=5)

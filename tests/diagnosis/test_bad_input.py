@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from toy import PERIOD, QUICK, SD, Toy, programme, record
+from toy import PERIOD, SD, Toy, programme, record
 
 from ves_twin.core.errors import InvalidInputError
 from ves_twin.core.recording.recording import Recording, RecordingInfo
@@ -196,7 +196,7 @@ def test_recordings_that_contradict_one_another_are_told_apart(settings):
     one = record(np.random.default_rng(1), FRICTION, spread=0.0)
     two = record(np.random.default_rng(2), {"bump.size": 0.1}, spread=0.0, fed=programme(5))
     three = record(np.random.default_rng(3), {"friction.size": -0.03}, spread=0.0, fed=programme(5))
-    v = diagnose(Toy(), [one, three], settings=QUICK)
+    v = diagnose(Toy(), [one, three], settings=settings)
     assert (v.verdict, v.causes) == (Kind.UNKNOWN, ())
     assert headline(v).startswith("These recordings do not agree")
     assert [a.causes for a in v.alone] == [("friction@plant",)] * 2
@@ -206,8 +206,8 @@ def test_recordings_that_contradict_one_another_are_told_apart(settings):
     # one rig with two causes, each seen by both recordings, is no contradiction
     both = {**FRICTION, "bump.size": 0.1}
     pair = [record(np.random.default_rng(k), both, spread=0.0, fed=programme(k)) for k in (1, 5)]
-    assert diagnose(Toy(), pair, settings=QUICK).verdict is Kind.SEVERAL
-    v = diagnose(Toy(), [one, two], settings=QUICK)
+    assert diagnose(Toy(), pair, settings=settings).verdict is Kind.SEVERAL
+    v = diagnose(Toy(), [one, two], settings=settings)
     assert v.verdict is not Kind.NAMED
 
 

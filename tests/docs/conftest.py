@@ -1,17 +1,25 @@
+"""The site, built once for all tests of a session."""
+
 import os
 import subprocess
 import sys
 from pathlib import Path
 
 import pytest
+from once import FOLDER, once
 
 ROOT = Path(__file__).parents[2]
 
 
 @pytest.fixture(scope="session")
-def site(tmp_path_factory):
+def site():
     """The site as `make docs` builds it, elsewhere; notebooks have tests of their own."""
-    folder = tmp_path_factory.mktemp("site")
+    return Path(once(built))
+
+
+def built() -> str:
+    """Builds the site; its folder."""
+    folder = Path(os.environ[FOLDER]) / "site"
     done = subprocess.run(
         [sys.executable, "-m", "mkdocs", "build", "--strict", "--site-dir", str(folder)],
         cwd=ROOT,
@@ -20,4 +28,4 @@ def site(tmp_path_factory):
         text=True,
     )
     assert done.returncode == 0, done.stdout + done.stderr
-    return folder
+    return str(folder)

@@ -27,34 +27,25 @@ from ves_twin.suites.law_suite import (
 from ves_twin.suites.machine import BlindRig
 from ves_twin.suites.mjcf import BlindMjcf
 
-HIDDEN = ["random_of_speed"]
-"""A curve that chance draws."""
-
-NIGHTLY = ["one_sided_spring", "rate_square"]
-"""A power of 3/2, and a sensor that bends: a column."""
+HIDDEN = ["random_of_speed", "one_sided_spring", "rate_square"]
+"""A curve that chance draws, a power of 3/2, and a sensor that bends: a column."""
 
 GAIN = 0.9
 """Of the held-out excess: what is left of it is the table's own error."""
 
 
 @pytest.fixture(scope="module")
-def scores(
-    request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory
-) -> list[LawScore]:
+def scores(tmp_path_factory: pytest.TempPathFactory) -> list[LawScore]:
     folder = tmp_path_factory.mktemp("laws") / "suite"
-    nightly = request.config.getoption("--nightly")
-    hidden = [*HIDDEN, *NIGHTLY, IN_ORDER] if nightly else HIDDEN
-    truths = make_laws([*hidden, IN_ORDER], folder, 3)
+    truths = make_laws([*HIDDEN, IN_ORDER, IN_ORDER], folder, 3)
     settings = Settings(laws=True, nulls=30, cache=folder.parent / "banks")
     answers = answer_laws(folder, settings, lambda case, answer: None)
     return [score_law(truth, answers[truth.case]) for truth in truths]
 
 
-@pytest.mark.slow
+@pytest.mark.nightly
 @pytest.mark.timeout(1800)  # five whole diagnoses, three of them with a search
-@pytest.mark.parametrize(
-    "kind", [*HIDDEN, *(pytest.param(kind, marks=pytest.mark.nightly) for kind in NIGHTLY)]
-)
+@pytest.mark.parametrize("kind", HIDDEN)
 def test_a_law_in_no_dictionary_is_found_with_place_variable_and_gain(
     scores: list[LawScore], kind: str
 ) -> None:
@@ -68,7 +59,7 @@ def test_a_law_in_no_dictionary_is_found_with_place_variable_and_gain(
     assert found.rms < 0.2
 
 
-@pytest.mark.slow
+@pytest.mark.nightly
 @pytest.mark.timeout(1800)
 def test_a_machine_in_order_gets_no_law(scores: list[LawScore]) -> None:
     assert not any(score.claimed for score in scores if score.kind == IN_ORDER)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
+from functools import lru_cache
 
 import numpy as np
 
@@ -67,12 +68,24 @@ class Toy:
     ) -> np.ndarray:
         u, time = programme.drive["drive.u"][:, 0], programme.time
         value = {p.name: p.nominal for p in self.parameters} | dict(values)
+        fed = u.tobytes(), time.tobytes()
         rows = value["plant.gain"] * u[:, None] * [0.3, 1.0]
-        rows = rows + value["plant.slope"] * np.gradient(u, time)[:, None] * [0.05, 0.2]
+        rows = rows + value["plant.slope"] * _speed(*fed) * [0.05, 0.2]
         rows = rows + value["plant.offset"] * np.ones((len(u), 2)) * [1.0, 0.3]
         for name in self.causes:
-            rows = rows + value[f"{name}.size"] * shape(name, u, time)
+            rows = rows + value[f"{name}.size"] * _shape(name, *fed)
         return rows
+
+
+@lru_cache(maxsize=64)
+def _speed(u: bytes, time: bytes) -> np.ndarray:
+    return np.gradient(np.frombuffer(u), np.frombuffer(time))[:, None]
+
+
+@lru_cache(maxsize=256)
+def _shape(name: str, u: bytes, time: bytes) -> np.ndarray:
+    """`shape`, kept: a diagnosis asks for the same programme hundreds of times."""
+    return shape(name, np.frombuffer(u), np.frombuffer(time))
 
 
 def shape(name: str, u: np.ndarray, time: np.ndarray) -> np.ndarray:

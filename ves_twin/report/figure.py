@@ -31,6 +31,7 @@ def svg(figure: Figure, name: str, caption: object) -> Html:
         caption: what is seen and what it means.
     """
     import matplotlib as mpl
+    from matplotlib.backends.backend_svg import FigureCanvasSVG
 
     stream = io.StringIO()
     settings: dict[Any, Any] = {
@@ -38,7 +39,13 @@ def svg(figure: Figure, name: str, caption: object) -> Html:
         "svg.hashsalt": name,
         "path.simplify_threshold": 0.3,
     }
+    engine = figure.get_layout_engine()
     with mpl.rc_context(settings):
+        if engine is not None:  # here at the dots of an SVG: `savefig` would draw all twice for it
+            FigureCanvasSVG(figure)
+            figure.dpi = 72.0
+            engine.execute(figure)
+            figure.set_layout_engine(None)
         figure.savefig(stream, format="svg", metadata={"Date": None, "Creator": None})
     drawing = stream.getvalue()
     drawing = drawing[drawing.index("<svg") :]

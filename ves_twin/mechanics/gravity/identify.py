@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.stats import t as student
+from scipy.special import stdtrit  # quantile of Student's t; scipy.stats is slow to import
 
 from ves_twin.core.errors import InvalidInputError
 from ves_twin.core.types import FloatArray
@@ -55,7 +55,7 @@ class Identification:
 
     def half_width(self, level: float = 0.9) -> FloatArray:
         """Half the interval of each unknown at a level of confidence."""
-        return np.asarray(self.sd * student.ppf(0.5 + level / 2.0, max(self.freedom // 6, 1)))
+        return np.asarray(self.sd * stdtrit(max(self.freedom // 6, 1), 0.5 + level / 2.0))
 
 
 def identify(
