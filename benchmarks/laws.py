@@ -1,7 +1,7 @@
 """Laws that no library has, hidden in a machine, and what a diagnosis makes of them: counts.
 
 python benchmarks/laws.py [--machine pendulum] [--each 1] [--none 4] [--library 4] [--seed N]
-    [--out runs/laws]
+    [--workers 2] [--out runs/laws]
 
 Recordings go to the folder, truths beside it; the diagnosis reads the folder alone.
 """
@@ -42,13 +42,15 @@ def main(arguments: Sequence[str] | None = None) -> None:
     parser.add_argument("--kinds", nargs="*", help="default: all of the machine")
     parser.add_argument("--machine", default=MACHINE, help="a name, or the file of an MJCF machine")
     parser.add_argument("--seed", type=int, default=int(np.random.SeedSequence().entropy) % 10**6)
+    parser.add_argument("--workers", type=int, default=bank_settings().workers, help="processes")
     parser.add_argument("--out", type=Path, default=Path("runs/laws"))
     told = parser.parse_args(arguments)
     told.kinds = told.kinds or hidden_kinds(told.machine)
     kinds = [*(told.each * told.kinds), *[IN_ORDER] * told.none, *[LIBRARY] * told.library]
     if not truth_file(told.out).is_file():
         make_laws(kinds, told.out, told.seed, told.machine)
-    answers = answer_laws(told.out, replace(bank_settings(), laws=True), _say, told.machine)
+    settings = replace(bank_settings(), laws=True, workers=told.workers)
+    answers = answer_laws(told.out, settings, _say, told.machine)
     truths = [truth for truth in read_law_truths(told.out) if truth.case in answers]
     scores = [score_law(truth, answers[truth.case]) for truth in truths]
     print("\n".join(table(scores)))
