@@ -28,7 +28,7 @@ from ves_twin.diagnosis.law.forms import (
     TONE,
 )
 from ves_twin.diagnosis.law.place import LawForward, Variable
-from ves_twin.diagnosis.law.propose import resolved
+from ves_twin.diagnosis.law.propose import Limits, resolved, search_laws
 from ves_twin.diagnosis.law.screen import law_screen, ranges, smooth_candidates
 from ves_twin.diagnosis.law.smoothness import smoothest
 from ves_twin.diagnosis.law.with_law import WithLaw
@@ -218,3 +218,25 @@ def test_a_law_whose_numbers_are_zero_leaves_the_plant_as_it_is():
     table = replace(Table(JOINT, (speed(),), (-5.0, 0.0, 5.0)))
     rows = WithLaw(FORWARD, (table,)).simulate(FED, {})
     assert_allclose(rows, FORWARD.simulate(FED, {}), atol=1e-12)
+
+
+@pytest.mark.slow
+def test_a_search_says_what_it_is_doing_until_its_end():
+    evidence, alone = dragged()
+    told: list[str] = []
+    search = search_laws(
+        evidence, alone.fit, Limits(6.0, 3.8, 0.02), lambda _, what: told.append(what)
+    )
+    assert search is not None
+    stages = list(dict.fromkeys(told))
+    assert stages[0] == "screening laws"
+    for first, then in (
+        ("fitting laws", "memories of readings"),
+        ("memories of readings", "fitting the likeliest laws again"),
+        ("fitting the likeliest laws again", "adding knots"),
+        ("adding knots", "closed forms"),
+    ):
+        assert stages.index(first) < stages.index(then)
+    after = told[len(told) - told[::-1].index("closed forms") :]
+    assert "fitting the likeliest laws again" in after
+    assert told[-1] == "screening laws"
