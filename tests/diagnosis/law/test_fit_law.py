@@ -18,7 +18,7 @@ from ves_twin.diagnosis.gain import held_out_gain
 from ves_twin.diagnosis.law.band import band_of_form
 from ves_twin.diagnosis.law.candidate import Candidate, Closed, Table, matern
 from ves_twin.diagnosis.law.contact import Hold, Play
-from ves_twin.diagnosis.law.fit_law import LawFit, fit_law
+from ves_twin.diagnosis.law.fit_law import LawFit, ended, fit_law
 from ves_twin.diagnosis.law.forms import (
     CUBE,
     DEAD_ZONE,
@@ -222,6 +222,14 @@ def test_a_law_whose_numbers_are_zero_leaves_the_plant_as_it_is():
     table = replace(Table(JOINT, (speed(),), (-5.0, 0.0, 5.0)))
     rows = WithLaw(FORWARD, (table,)).simulate(FED, {})
     assert_allclose(rows, FORWARD.simulate(FED, {}), atol=1e-12)
+
+
+@pytest.mark.parametrize("samples", [400, 15_000])
+def test_a_fit_goes_on_while_chi_2_falls_by_nats_however_long_the_record(samples: int):
+    """Of VES II fits of one law from two starts once ended 85 nats apart, each in the noise."""
+    assert not ended(5.0, 1.02 * samples, samples)
+    assert ended(0.5, samples, samples)
+    assert ended(5.0, 1e6 + samples, samples)  # far off, another noise is learnt first
 
 
 def test_columns_known_without_a_law_serve_for_what_it_is_worth_on_other_recordings():
