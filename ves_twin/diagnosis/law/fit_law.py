@@ -28,8 +28,8 @@ ENOUGH = 1.0
 """Fall of chi^2 that ends a fit: a nat is 2."""
 
 ENOUGH_SHARE = 2e-3
-"""The same as a share of chi^2 beyond noise, while the fit is far off: of noise alone, that of 15000
-samples would be 15 nats."""
+"""The same as a share of chi^2 beyond noise, while the fit is far off: of the noise itself, on
+15000 samples, it would be 15 nats."""
 
 NUISANCE_STEP = 0.5
 """Finite difference of a commissioning error, in its sd."""
