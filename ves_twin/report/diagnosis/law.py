@@ -1,4 +1,4 @@
-"""law_parts, law_sentences: a law in words, and as a picture with its band and what it rests on."""
+"""law_heading, law_parts, law_sentences: a law in words, and as a picture with its band and what it rests on."""
 
 from __future__ import annotations
 
@@ -84,6 +84,13 @@ def _else(law: LawFinding) -> str:
     if other:
         return f"As good, within {EQUAL:.0f} nats: {'; '.join(other)}."
     return f"No other law that was tried comes within {EQUAL:.0f} nats."
+
+
+def law_heading(law: LawFinding) -> str:
+    """Of the section: no law stands above a place where one is only missing."""
+    if not law.claimed:
+        return "Where a law is missing"
+    return "A law of what the causes leave" if law.part else "A law in place of a cause"
 
 
 def law_parts(law: LawFinding) -> list[Html]:
