@@ -1,4 +1,4 @@
-"""law_heading, law_parts, law_sentences: a law in words, and as a picture with its band and what it rests on."""
+"""law_heading, law_parts, law_sentences: a law in words and as a picture, with what it rests on."""
 
 from __future__ import annotations
 
