@@ -22,6 +22,9 @@ EQUAL = 3.0
 """Nats within which another law is as good: odds below 20."""
 
 
+BEYOND_DOUBT = 1000.0
+"""Nats from which more of them tell nobody anything."""
+
 DRAWN = 400
 """Places at which a law is drawn, from end to end of what was seen."""
 
@@ -65,7 +68,8 @@ def _missing(law: LawFinding) -> str:
 
 def worth_sentence(law: LawFinding) -> str:
     """What a law is worth, on held-out recordings and by odds."""
-    odds = f"{law.nats:.0f} nats more probable than no law"
+    nats = f"{law.nats:.0f}" if law.nats < BEYOND_DOUBT else f"over {BEYOND_DOUBT:.0f}"
+    odds = f"{nats} nats more probable than no law"
     gain = law.gain
     if gain is None:
         return f"It is {odds}. No held-out recording has tried it."
