@@ -1,7 +1,7 @@
 """Laws that no library has, hidden in a machine, and what a diagnosis makes of them: counts.
 
 python benchmarks/laws.py [--machine pendulum] [--each 1] [--none 4] [--library 4] [--seed N]
-    [--out runs/laws]
+    [--workers 2] [--out runs/laws]
 
 Recordings go to the folder, truths beside it; the diagnosis reads the folder alone.
 """
@@ -17,21 +17,19 @@ from pathlib import Path
 import numpy as np
 
 from ves_twin.cli.given import bank_settings
-from ves_twin.suites.hidden_law import LAW_KINDS, VES2_LAW_KINDS
 from ves_twin.suites.law_suite import (
     IN_ORDER,
     LIBRARY,
     MACHINE,
-    WHERE,
     LawAnswer,
     LawScore,
     answer_laws,
+    hidden_kinds,
     make_laws,
     read_law_truths,
     score_law,
     truth_file,
 )
-from ves_twin.suites.suite import OF_VES2
 
 
 def main(arguments: Sequence[str] | None = None) -> None:
@@ -42,16 +40,17 @@ def main(arguments: Sequence[str] | None = None) -> None:
     parser.add_argument("--none", type=int, default=4, help="machines in order")
     parser.add_argument("--library", type=int, default=4, help="machines with a library cause")
     parser.add_argument("--kinds", nargs="*", help="default: all of the machine")
-    parser.add_argument("--machine", choices=(MACHINE, *OF_VES2), default=MACHINE)
+    parser.add_argument("--machine", default=MACHINE, help="a name, or the file of an MJCF machine")
     parser.add_argument("--seed", type=int, default=int(np.random.SeedSequence().entropy) % 10**6)
+    parser.add_argument("--workers", type=int, default=bank_settings().workers, help="processes")
     parser.add_argument("--out", type=Path, default=Path("runs/laws"))
     told = parser.parse_args(arguments)
-    every = [*VES2_LAW_KINDS] if told.machine in OF_VES2 else [*LAW_KINDS, *WHERE]
-    told.kinds = told.kinds or every
+    told.kinds = told.kinds or hidden_kinds(told.machine)
     kinds = [*(told.each * told.kinds), *[IN_ORDER] * told.none, *[LIBRARY] * told.library]
     if not truth_file(told.out).is_file():
         make_laws(kinds, told.out, told.seed, told.machine)
-    answers = answer_laws(told.out, replace(bank_settings(), laws=True), _say, told.machine)
+    settings = replace(bank_settings(), laws=True, workers=told.workers)
+    answers = answer_laws(told.out, settings, _say, told.machine)
     truths = [truth for truth in read_law_truths(told.out) if truth.case in answers]
     scores = [score_law(truth, answers[truth.case]) for truth in truths]
     print("\n".join(table(scores)))

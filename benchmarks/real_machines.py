@@ -1,6 +1,7 @@
 """Diagnose measured machines of public data and print the table: what is left, what is proved.
 
-    python benchmarks/real_machines.py [SET...] [--only TEXT] [--data FOLDER] [--out FOLDER]
+    python benchmarks/real_machines.py [SET...] [--only TEXT] [--law] [--exclude KIND...]
+        [--data FOLDER] [--out FOLDER]
 
 The data are no part of the project: sets that are not there are left out, and said to be.
 """
@@ -12,6 +13,8 @@ import importlib
 import os
 import sys
 import time
+from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
 
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
@@ -22,6 +25,7 @@ from real.machine import Set
 from ves_twin.diagnosis.settings import Settings
 from ves_twin.machines.diagnose import Diagnosis, diagnose
 from ves_twin.machines.mjcf.mjcf_machine import MjcfMachine
+from ves_twin.report.diagnosis.law import law_sentences
 from ves_twin.report.diagnosis.page import diagnosis_page
 from ves_twin.report.page import write_page
 
@@ -44,8 +48,10 @@ def main() -> int:
     parser.add_argument("--data", type=Path, default=os.environ.get("VES_TWIN_DATA", DATA))
     parser.add_argument("--out", type=Path, default=Path("runs/real"))
     parser.add_argument("--only", default="", metavar="TEXT", help="questions that have it in them")
+    parser.add_argument("--law", action="store_true", help="look for a law of what causes leave")
+    parser.add_argument("--exclude", nargs="*", default=(), metavar="KIND", help="causes left out")
     told = parser.parse_args()
-    rows = []
+    settings, rows = replace(SETTINGS, laws=told.law), []
     for name in told.names or SETS:
         if name not in SETS:
             print(f"{name}: no such set; there are {', '.join(SETS)}", file=sys.stderr)
@@ -57,7 +63,7 @@ def main() -> int:
         module = importlib.import_module(f"real.{name}")
         asked = module.sets(Path(told.data), told.out / name)
         for one in (one for one in asked if told.only in one.name):
-            rows.append(row(one, told.out / name))
+            rows.append(row(one, told.out / name, settings, told.exclude))
             print(rows[-1], flush=True)
     print("\n".join(["", *HEAD, *rows]))
     return 0
@@ -69,10 +75,17 @@ HEAD = (
 )
 
 
-def row(one: Set, folder: Path) -> str:
+def row(one: Set, folder: Path, settings: Settings, exclude: Sequence[str]) -> str:
     """Diagnose one set, keep its page and its plant, and say what came out."""
     begin = time.process_time()
-    found = diagnose(one.fitted, one.rig, held_out=one.held_out, settings=SETTINGS, progress=tell)
+    found = diagnose(
+        one.fitted,
+        one.rig,
+        held_out=one.held_out,
+        exclude=exclude,
+        settings=settings,
+        progress=tell,
+    )
     minutes = (time.process_time() - begin) / 60.0
     keep(one, found, folder)
     verdict = found.verdict
@@ -85,6 +98,8 @@ def row(one: Set, folder: Path) -> str:
         )
         like = "" if p.firm else f" acts like {' or '.join([p.label, *p.acts_like])}"
         print(f"    {p.label}: {sizes}, p {p.p:.0e}{like}", file=sys.stderr)
+    if verdict.law is not None:
+        print("    " + "\n    ".join(law_sentences(verdict.law)), file=sys.stderr)
     return (
         f"| {one.name} | {before} | {after} | {one.expert} | {one.asked} | {count} | {firm} |"
         f" {minutes:.1f} |"

@@ -12,7 +12,13 @@ from ves_twin.diagnosis.gain import Gain
 from ves_twin.diagnosis.law.result import LawFinding, LawNumber, LawRival
 from ves_twin.diagnosis.verdict import Basis, Kind, Statistics, Verdict
 from ves_twin.report.diagnosis.answer import verdict_sentence
-from ves_twin.report.diagnosis.law import draw_law, law_parts, law_sentences
+from ves_twin.report.diagnosis.law import (
+    draw_law,
+    law_heading,
+    law_parts,
+    law_sentences,
+    worth_sentence,
+)
 
 X = np.linspace(-5.0, 5.0, 11)
 Y = -0.02 * np.abs(X) * X
@@ -78,6 +84,19 @@ def test_the_section_has_a_picture_where_there_is_something_to_draw(shape):
     text = "".join(map(str, law_parts(law)))
     assert ("<svg" in text) == (shape == "table")
     assert "factor of |x| x" in text
+
+
+def test_the_heading_claims_no_law_where_none_is_claimed():
+    assert law_heading(LAW) == "A law in place of a cause"
+    assert law_heading(replace(LAW, part=True)) == "A law of what the causes leave"
+    assert "missing" in law_heading(
+        replace(LAW, claimed=False, reason="what it leaves is not noise")
+    )
+
+
+def test_odds_beyond_doubt_are_not_counted():
+    assert "over 1000 nats" in worth_sentence(replace(LAW, nats=7.8e9))
+    assert f"{LAW.nats:.0f} nats" in worth_sentence(LAW)
 
 
 def test_a_picture_shows_law_band_recordings_and_truth():

@@ -8,7 +8,6 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ves_twin.core.recording.recording import Recording
-from ves_twin.core.workers import Workers
 from ves_twin.diagnosis.assess import pull_limit
 from ves_twin.diagnosis.build_up.build_up import Built, build_up
 from ves_twin.diagnosis.build_up.halves import split
@@ -18,18 +17,16 @@ from ves_twin.diagnosis.fit_context import FitContext
 from ves_twin.diagnosis.fit_job import FEW
 from ves_twin.diagnosis.forecast import forecast
 from ves_twin.diagnosis.forward import Forward
-from ves_twin.diagnosis.gain import Gain, held_out_gain
-from ves_twin.diagnosis.linearise import Linearisation, linearise
-from ves_twin.diagnosis.preprocess import Dataset, preprocess
+from ves_twin.diagnosis.gain import Gain
+from ves_twin.diagnosis.held_out import HeldOut
+from ves_twin.diagnosis.preprocess import Dataset
 from ves_twin.diagnosis.profile import profiled
 from ves_twin.diagnosis.refine import ROUGH, Fit, refine
-from ves_twin.diagnosis.runs import Runs
 from ves_twin.diagnosis.search import ITERATIONS
 from ves_twin.diagnosis.settings import Settings
-from ves_twin.diagnosis.signature_library import SignatureLibrary, build_bank, cached_bank
 from ves_twin.diagnosis.spread import spread
 from ves_twin.diagnosis.verdict import Kind
-from ves_twin.diagnosis.whitening import Whitening, whitening_of
+from ves_twin.diagnosis.whitening import whitening_of
 
 ALMOST = 0.95
 """The same of a single cause that leaves more than noise: a wrong one that moves the same channels
@@ -66,81 +63,6 @@ class Conclusion:
     built: Built | None = None
     cut: bool = False
     before: Fit | None = None
-
-
-@dataclass(frozen=True)
-class HeldOut:
-    """Held-out recordings on the grid, and what a fit is worth there.
-
-    Attributes:
-        seen: the recordings.
-        whitening: their noise.
-        settings: how sure.
-        base: their columns where nothing departs; None where none are kept.
-    """
-
-    seen: Dataset
-    whitening: Whitening
-    settings: Settings
-    base: Linearisation | None = None
-
-    @staticmethod
-    def of(
-        forward: Forward,
-        recordings: Sequence[Recording],
-        standstill: Recording | None,
-        settings: Settings,
-        workers: Workers,
-    ) -> HeldOut:
-        """Put them on the grid."""
-        seen = preprocess(forward, recordings, workers, settings.rate)
-        base = _kept_columns(seen.runs, settings) if settings.sparse and settings.cache else None
-        return HeldOut(seen, whitening_of(seen.runs, standstill), settings, base)
-
-    @property
-    def pair(self) -> tuple[Dataset, Whitening]:
-        """The recordings and their noise."""
-        return self.seen, self.whitening
-
-    def gain(self, before: Fit, after: Fit) -> Gain:
-        """Of one fit over another."""
-        return held_out_gain(
-            self.seen.runs,
-            self.seen.measured,
-            self.whitening,
-            before,
-            after,
-            self.settings.confidence,
-            self.settings.seed,
-            self.base,
-        )
-
-    def gains(self, found: Explanation, before: Fit, least: float) -> list[Gain]:
-        """Of the best explanation; of its rivals too, where that could be part of the truth.
-
-        Args:
-            found: the explanation.
-            before: the model without a cause, within its tolerances.
-            least: share of the excess from which something unexplained leaves a part of the truth.
-        """
-        first = self.gain(before, found.best)
-        if found.adequate or first.low is None or first.low <= least:
-            return [first]
-        rivals = [fit for fit in found.fits if fit is not found.best]
-        return [first, *(self.gain(before, fit) for fit in rivals)]
-
-
-def _kept_columns(runs: Runs, settings: Settings) -> Linearisation:
-    """Columns of held-out recordings where nothing departs, for all rigs that they are played on.
-
-    Raises:
-        FileAccessError: the folder of banks cannot be written.
-    """
-
-    def build() -> SignatureLibrary:
-        return build_bank(runs, hypotheses=(), base=linearise(runs, runs.origin))
-
-    return cached_bank(runs, settings.cache, build, "columns").base
 
 
 def _within(found: Explanation, limit: float) -> Fit:

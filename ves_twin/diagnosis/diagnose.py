@@ -12,13 +12,14 @@ from ves_twin.core.workers import Workers
 from ves_twin.diagnosis.assemble_verdict import Findings, assemble_verdict
 from ves_twin.diagnosis.assess import assess, pull_limit
 from ves_twin.diagnosis.both_views import both_views, is_firm
-from ves_twin.diagnosis.decide import HeldOut, decide
+from ves_twin.diagnosis.decide import decide
 from ves_twin.diagnosis.differential import differential
 from ves_twin.diagnosis.disagreement import Alone, disagreement
 from ves_twin.diagnosis.explain import explain
 from ves_twin.diagnosis.explanation import Explanation
 from ves_twin.diagnosis.fit_context import FitContext
 from ves_twin.diagnosis.forward import Excitation, Forward
+from ves_twin.diagnosis.held_out import HeldOut
 from ves_twin.diagnosis.law.explained import lawful_explanation, lawful_rest
 from ves_twin.diagnosis.law.propose import Limits
 from ves_twin.diagnosis.likeness import check_likeness
@@ -203,8 +204,7 @@ class _View:
             if end.built is not None and not unknown:
                 lawful = lawful_rest(end.built, self.limits, chosen, still, progress)
             else:
-                pair = held.pair if held else None
-                lawful = lawful_explanation(first, found, self.limits, chosen, pair, progress)
+                lawful = lawful_explanation(first, found, self.limits, chosen, held, progress)
         basis = replace(basis, left_out=tuple(seen.runs.budget.left_out))
         findings = replace(
             findings,

@@ -212,7 +212,7 @@ class _Carried:
     def of(runs: Runs, fit: Fit, base: Linearisation | None) -> _Carried:
         axes = _Axes.of(runs, fit)
         if base is not None:
-            return _Known.of(base).at(axes)
+            return _Known.of(replace(base, runs=runs)).at(axes)  # a plant with more parameters
         every = axes.where, np.concatenate([axes.sd, axes.drawn])
         return _Carried(
             linearise(runs, axes.point, axes=every, forward_step=FORWARD_STEP), axes.root

@@ -2,17 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from enum import StrEnum
 from typing import final
 
 import numpy as np
 
+from ves_twin.core.errors import InvalidInputError
 from ves_twin.core.types import FloatArray
 from ves_twin.effects.effect import Effect
 from ves_twin.effects.element import Element
 from ves_twin.effects.row import Anywhere
+from ves_twin.suites.spot import PENDULUM, Spot
 
 Function = Callable[[FloatArray], FloatArray]
 
@@ -102,57 +104,40 @@ def _random(
 Draw = Callable[[float, np.random.Generator], Function]
 
 LAW_KINDS: Mapping[str, tuple[Acts, str, Draw]] = {
-    "random_of_speed": (Acts.SPEED, "joint", lambda a, r: _random(r, 2.0, 0.03 * a, -12.0, 12.0)),
-    "random_of_position": (Acts.POSITION, "joint", lambda a, r: _random(r, 0.4, 0.05 * a, -3, 3)),
-    "sinh_drag": (Acts.SPEED, "joint", lambda a, r: lambda v: -0.02 * a * np.sinh(0.5 * v)),
+    "random_of_speed": (Acts.SPEED, "speed", lambda a, r: _random(r, 2.0, 0.03 * a, -12.0, 12.0)),
+    "random_of_position": (
+        Acts.POSITION, "position", lambda a, r: _random(r, 0.4, 0.05 * a, -3, 3),
+    ),
+    "sinh_drag": (Acts.SPEED, "speed", lambda a, r: lambda v: -0.02 * a * np.sinh(0.5 * v)),
     "stribeck": (
-        Acts.SPEED,
-        "joint",
+        Acts.SPEED, "speed",
         lambda a, r: (
             lambda v: -0.02 * a * np.tanh(v / 0.05) * (1.0 + 1.5 * np.exp(-np.abs(v) / 0.6))
         ),
     ),
     "cogging": (
-        Acts.POSITION,
-        "joint",
+        Acts.POSITION, "position",
         lambda a, r: (lambda w: lambda q: 0.03 * a * np.sin(w * q + 1.0))(r.uniform(7.0, 25.0)),
     ),
-    "cubic_spring": (Acts.POSITION, "joint", lambda a, r: lambda q: -0.1 * a * q**3),
+    "cubic_spring": (Acts.POSITION, "position", lambda a, r: lambda q: -0.1 * a * q**3),
     "one_sided_spring": (
-        Acts.POSITION,
-        "joint",
+        Acts.POSITION, "position",
         lambda a, r: lambda q: -0.15 * a * np.maximum(q - 0.2, 0.0) ** 1.5,
     ),
-    "saturation": (Acts.COMMAND, "joint", lambda a, r: lambda u: -0.06 * a * u**3),
+    "saturation": (Acts.COMMAND, "command", lambda a, r: lambda u: -0.06 * a * u**3),
     "dead_zone": (
-        Acts.COMMAND,
-        "joint",
-        lambda a, r: lambda u: -np.clip(u, -0.08 * a, 0.08 * a),
+        Acts.COMMAND, "command", lambda a, r: lambda u: -np.clip(u, -0.08 * a, 0.08 * a),
     ),
-    "rate_square": (Acts.READING, "joint.rate", lambda a, r: lambda v: 0.002 * a * v**2),
+    "rate_square": (Acts.READING, "speed", lambda a, r: lambda v: 0.002 * a * v**2),
     "angle_ripple": (
-        Acts.READING,
-        "joint.angle",
-        lambda a, r: lambda q: 0.004 * a * np.sin(9.0 * q + 0.5),
+        Acts.READING, "position", lambda a, r: lambda q: 0.004 * a * np.sin(9.0 * q + 0.5),
     ),
-}
-"""Kind -> where it acts and what draws it, by a factor of about 1, on a joint whose typical sizes
-are 1: the shipped pendulum. Half of them are in no dictionary of the diagnosis."""
+}  # fmt: skip
+"""Kind -> where it acts, on what it depends, and what draws it, by a factor of about 1, on a joint
+whose typical sizes are 1. Half of them are in no dictionary of the diagnosis."""
 
 FACTORS = (0.3, 3.0)
 """Smallest and largest factor, log-uniform."""
-
-VARIABLES = {
-    "joint": {
-        Acts.SPEED: "speed@joint",
-        Acts.POSITION: "position@joint",
-        Acts.COMMAND: "command@drive",
-    },
-    "joint.rate": {Acts.READING: "speed@joint"},
-    "joint.angle": {Acts.READING: "position@joint"},
-}
-"""Variable that a diagnosis should name, of the pendulum."""
-
 
 VES2_LAW_KINDS: Mapping[str, tuple[Acts, str, str, Draw]] = {
     "random_of_joint_speed": (
@@ -181,12 +166,33 @@ VES2_LAW_KINDS: Mapping[str, tuple[Acts, str, str, Draw]] = {
 Only the rod's is in the dictionary of the diagnosis."""
 
 
-def draw_law(kind: str, rng: np.random.Generator) -> HiddenLaw:
-    """A law of a kind, at a random size."""
+def draw_law(kind: str, rng: np.random.Generator, spots: Sequence[Spot] = (PENDULUM,)) -> HiddenLaw:
+    """A law of a kind, at a random size and one of the joints that take it.
+
+    Raises:
+        InvalidInputError: no joint takes it.
+    """
     low, high = np.log(FACTORS)
     factor = float(np.exp(rng.uniform(low, high)))
     if kind in VES2_LAW_KINDS:
         acts, place, of, draw = VES2_LAW_KINDS[kind]
         return HiddenLaw(kind, acts, place, of, draw(factor, rng))
-    acts, place, draw = LAW_KINDS[kind]
-    return HiddenLaw(kind, acts, place, VARIABLES[place][acts], draw(factor, rng))
+    acts, of, draw = LAW_KINDS[kind]
+    taking = [spot for spot in spots if takes(spot, kind)]
+    if not taking:
+        joints = ", ".join(spot.joint for spot in spots)
+        raise InvalidInputError(f"hidden law {kind}", f"joints {joints}", "one that it can act at")
+    shape = draw(factor, rng)
+    spot = taking[int(rng.integers(len(taking)))]
+    unit = {"speed": spot.speed, "position": spot.travel, "command": spot.effort}[of]
+    at = spot.actuator if acts is Acts.COMMAND else spot.joint
+    place, size = spot.columns[of] if acts is Acts.READING else (spot.joint, spot.effort)
+    return HiddenLaw(kind, acts, place, f"{of}@{at}", lambda x: size * shape(x / unit))
+
+
+def takes(spot: Spot, kind: str) -> bool:
+    """Whether a kind can be hidden at a joint."""
+    acts, of, _ = LAW_KINDS[kind]
+    if acts is Acts.READING:
+        return of in spot.columns
+    return acts is not Acts.COMMAND or bool(spot.actuator)

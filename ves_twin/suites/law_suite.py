@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import json
+import os
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
-from time import process_time
 
 import numpy as np
 
@@ -17,10 +17,12 @@ from ves_twin.core.whole_file import write_whole
 from ves_twin.diagnosis.law.result import LawFinding
 from ves_twin.diagnosis.settings import Settings
 from ves_twin.machines.diagnose import diagnose
-from ves_twin.suites.hidden_law import LAW_KINDS, VES2_LAW_KINDS, HiddenLaw, draw_law
+from ves_twin.suites.hidden_law import LAW_KINDS, VES2_LAW_KINDS, HiddenLaw, draw_law, takes
 from ves_twin.suites.machine import BlindMachine, BlindRig
 from ves_twin.suites.machines import machine_of
+from ves_twin.suites.mjcf import BlindMjcf
 from ves_twin.suites.save_bare import save_bare
+from ves_twin.suites.spot import PENDULUM, Spot, spots_of
 from ves_twin.suites.suite import OF_VES2
 
 MACHINE = "pendulum"
@@ -66,7 +68,7 @@ class LawAnswer:
     Attributes:
         verdict: kind.
         law: what the search for a law found; None if there was none.
-        seconds: processor time.
+        seconds: processor time, that of workers included.
     """
 
     verdict: str
@@ -105,7 +107,7 @@ def hidden_in(machine: BlindMachine, truth: LawTruth) -> tuple[BlindRig, HiddenL
     rng = truth.rng
     values = machine.commissioned(rng)
     if truth.kind in {*LAW_KINDS, *VES2_LAW_KINDS}:
-        law = draw_law(truth.kind, rng)
+        law = draw_law(truth.kind, rng, _spots(machine, truth.machine))
         return BlindRig(values, law=law), law
     if truth.kind == LIBRARY:
         library = machine.forward.hypotheses
@@ -120,6 +122,23 @@ def hidden_in(machine: BlindMachine, truth: LawTruth) -> tuple[BlindRig, HiddenL
         return BlindRig(values), None
     low, high = machine.outside[truth.kind]
     return BlindRig(values, truth.kind, float(np.exp(rng.uniform(np.log(low), np.log(high))))), None
+
+
+def _spots(machine: BlindMachine, name: str) -> tuple[Spot, ...]:
+    """Joints of a machine at which laws are hidden."""
+    if name == MACHINE or not isinstance(machine, BlindMjcf):
+        return (PENDULUM,)
+    return spots_of(machine.forward, machine.programme("train"))
+
+
+def hidden_kinds(name: str) -> list[str]:
+    """Kinds that can be hidden in a machine."""
+    if name in OF_VES2:
+        return [*VES2_LAW_KINDS]
+    if name == MACHINE:
+        return [*LAW_KINDS, *WHERE]
+    spots = _spots(machine_of(name), name)
+    return [kind for kind in LAW_KINDS if any(takes(spot, kind) for spot in spots)]
 
 
 def truth_file(folder: Path) -> Path:
@@ -158,14 +177,19 @@ def answer_laws(
     for place in sorted(folder.glob("case-*")):
         if place.name in found:
             continue
-        begin = process_time()
+        begin = _processor_time()
         recording, held = (load_recording(place / name) for name in FILES)
         law, verdict = _answered(recording, held, still, settings, name)
-        found[place.name] = LawAnswer(verdict, law, round(process_time() - begin, 1))
+        found[place.name] = LawAnswer(verdict, law, round(_processor_time() - begin, 1))
         told(place.name, found[place.name])
         text = json_text({case: asdict(answer) for case, answer in found.items()})
         write_whole(file, text + "\n")
     return found
+
+
+def _processor_time() -> float:
+    """Of this process and of its workers that have ended [s]."""
+    return sum(os.times()[:4])
 
 
 def _answered(

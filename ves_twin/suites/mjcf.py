@@ -164,19 +164,30 @@ class BlindMjcf(BlindMachine):
             raise InvalidInputError(
                 "cut", "no [start.JOINT.elsewhere]", "one in the machine's file"
             )
-        duration = self.rig.description.excitation.duration
-        draw = np.random.default_rng(PROGRAMMES[programme])
         if programme == "standstill":
-            return self._standing(rig, multisine(self.rig, draw, 4.0 * duration), rng)
-        faint = POOR if programme == "poor" else None
-        fed = multisine(self.rig, draw, duration + lead, faint)
-        if faint:
-            window = np.sin(np.linspace(0.0, np.pi, len(fed.time)))[:, None] ** 2
-            fed = replace(fed, drive={name: window * rows for name, rows in fed.drive.items()})
+            return self._standing(rig, self.programme(programme), rng)
+        fed = self.programme(programme, lead)
         whole = self._measured(rig, fed, rng)
         first = round(lead / fed.period)
         signals = {name: values[first:] for name, values in whole.signals.items()}
         return replace(whole, time=whole.time[: len(whole.time) - first], signals=signals)
+
+    def programme(self, name: str, lead: float = 0.0) -> Excitation:
+        """What is fed in, of `PROGRAMMES`; of a standstill, in which all of it is none, its rows.
+
+        Args:
+            name: which one.
+            lead: by how much it is longer [s].
+        """
+        duration = self.rig.description.excitation.duration
+        draw = np.random.default_rng(PROGRAMMES[name])
+        if name == "standstill":
+            return multisine(self.rig, draw, 4.0 * duration)
+        if name != "poor":
+            return multisine(self.rig, draw, duration + lead)
+        fed = multisine(self.rig, draw, duration + lead, POOR)
+        window = np.sin(np.linspace(0.0, np.pi, len(fed.time)))[:, None] ** 2
+        return replace(fed, drive={signal: window * rows for signal, rows in fed.drive.items()})
 
     def play(self, rig: BlindRig, programme: Excitation, rng: np.random.Generator) -> Recording:
         """Commands from a given start."""
@@ -245,17 +256,17 @@ class BlindMjcf(BlindMachine):
             told.file,
             told.payloads,
             compiled=model,
-            hidden=self._hidden(rig, at),
+            hidden=self._hidden(rig),
         )
 
-    def _hidden(self, rig: BlindRig, at: Place) -> tuple[tuple[Effect, Place], ...]:
-        """A law that no library has, at the first driven joint, its actuator, or a column."""
+    def _hidden(self, rig: BlindRig) -> tuple[tuple[Effect, Place], ...]:
+        """A law that no library has, at a joint or its actuator; one of a column comes later."""
         law = rig.law
         if law is None or law.acts is Acts.READING:
             return ()
         if law.acts is not Acts.COMMAND:
-            return ((HiddenEffort(at.name, law), at),)
-        name = next(iter(self.rig.description.drive.actuators))
+            return ((HiddenEffort(law.place, law), joint_of(self.rig, law.place)),)
+        name = law.of.partition("@")[2]
         return ((HiddenCommand(name, law), Place(Element.ACTUATOR, name)),)
 
     def _recorded(

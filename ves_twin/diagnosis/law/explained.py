@@ -12,6 +12,7 @@ from ves_twin.diagnosis.build_up.build_up import Built
 from ves_twin.diagnosis.evidence import Evidence
 from ves_twin.diagnosis.explanation import Explanation
 from ves_twin.diagnosis.gain import Gain
+from ves_twin.diagnosis.held_out import HeldOut
 from ves_twin.diagnosis.law.finding import law_finding
 from ves_twin.diagnosis.law.lean import LeanEvidence
 from ves_twin.diagnosis.law.place import LawForward
@@ -19,11 +20,10 @@ from ves_twin.diagnosis.law.propose import Limits, Search, search_laws
 from ves_twin.diagnosis.law.rest import search_rest
 from ves_twin.diagnosis.law.result import LawFinding
 from ves_twin.diagnosis.law.screen import runs_of
-from ves_twin.diagnosis.preprocess import Dataset
 from ves_twin.diagnosis.refine import Fit
 from ves_twin.diagnosis.runs import Progress, Runs
 from ves_twin.diagnosis.settings import Settings
-from ves_twin.diagnosis.whitening import Whitening, whitening_of
+from ves_twin.diagnosis.whitening import whitening_of
 
 LONGEST = 300.0
 """Time [s] that a search nobody asked for may take."""
@@ -50,7 +50,7 @@ def lawful_explanation(
     found: Explanation | None,
     limits: Limits,
     settings: Settings,
-    held: tuple[Dataset, Whitening] | None,
+    held: HeldOut | None,
     progress: Progress,
 ) -> Lawful | None:
     """Look for a law.
@@ -60,7 +60,7 @@ def lawful_explanation(
         found: the best of the library, which is not good enough; None if it has nothing.
         limits: of a claim.
         settings: whether laws are wanted, and how sure.
-        held: held-out recordings and their noise.
+        held: held-out recordings.
         progress: told how far it is.
 
     Returns:
@@ -75,7 +75,7 @@ def lawful_explanation(
     search = search_laws(evidence, commissioning, limits, progress)
     if search is None:
         return None
-    finding = law_finding(search, settings, held)
+    finding = law_finding(search, held, progress)
     if not finding.claimed or found is None:
         return Lawful(finding, None)
     return Lawful(finding, _explained(found, search))
@@ -107,8 +107,8 @@ def lawful_rest(
     if search is None:
         return None
     there = replace(held, runs=replace(held.runs, forward=search.evidence.runs.forward))
-    noise = whitening_of(there.runs, standstill)
-    finding = replace(law_finding(search, settings, (there, noise)), part=True)
+    tried = HeldOut(there, whitening_of(there.runs, standstill), settings)
+    finding = replace(law_finding(search, tried, progress), part=True)
     if not finding.claimed:
         return Lawful(finding, None)
     return Lawful(finding, _explained(built.found, search))

@@ -8,7 +8,8 @@ import numpy as np
 from scipy.stats import norm
 
 from ves_twin.core.types import FloatArray
-from ves_twin.diagnosis.gain import Gain, held_out_gain
+from ves_twin.diagnosis.gain import Gain
+from ves_twin.diagnosis.held_out import HeldOut
 from ves_twin.diagnosis.law.band import band_of_form
 from ves_twin.diagnosis.law.candidate import Closed, Table
 from ves_twin.diagnosis.law.fit_law import LawFit
@@ -17,10 +18,8 @@ from ves_twin.diagnosis.law.propose import Search
 from ves_twin.diagnosis.law.result import LawFinding, LawNumber, LawRival
 from ves_twin.diagnosis.law.screen import columns_about, values_of
 from ves_twin.diagnosis.law.smoothness import best_of, projected
-from ves_twin.diagnosis.preprocess import Dataset
 from ves_twin.diagnosis.refine import refine
-from ves_twin.diagnosis.settings import Settings
-from ves_twin.diagnosis.whitening import Whitening
+from ves_twin.diagnosis.runs import Progress, silent
 from ves_twin.effects.law import Law, LawShape, variable_along
 
 SOURCE = "ves-twin diagnose"
@@ -48,22 +47,22 @@ INFORMED = 0.5
 """Share of its prior sd below which a point of the recordings says something."""
 
 
-def law_finding(
-    search: Search, settings: Settings, held: tuple[Dataset, Whitening] | None
-) -> LawFinding:
+def law_finding(search: Search, held: HeldOut | None, progress: Progress = silent) -> LawFinding:
     """What a search came to.
 
     Args:
         search: laws and their evidence.
-        settings: how sure.
-        held: held-out recordings on the grid, and their noise.
+        held: held-out recordings.
+        progress: told what is being done.
     """
     best = search.best
     if best.candidate is None:
         raise TypeError("a search without laws")
     candidate = best.candidate
     law = replace(candidate.law(best.numbers), source=SOURCE)
-    gain = _gain(search, settings, held) if held else None
+    progress(0.0, "trying the law on held-out recordings")
+    gain = _gain(search, held) if held else None
+    progress(0.5, "the band of the law")
     reason = search.reason or _gated(gain)
     along = _along(search, law)
     return LawFinding(
@@ -102,9 +101,8 @@ def _gated(gain: Gain | None) -> str:
     return ""
 
 
-def _gain(search: Search, settings: Settings, held: tuple[Dataset, Whitening]) -> Gain:
+def _gain(search: Search, held: HeldOut) -> Gain:
     """On held-out recordings, over commissioning errors alone, held within what is credible."""
-    seen, whitening = held
     none, best = search.none.fit, search.best
     if none.pull > search.limits.pull:
         none = refine(
@@ -116,16 +114,8 @@ def _gain(search: Search, settings: Settings, held: tuple[Dataset, Whitening]) -
             none.step_share,
             farthest=search.limits.pull,
         )
-    forward = best.fit.local.runs.forward
-    gain = held_out_gain(
-        replace(seen.runs, forward=forward),
-        seen.measured,
-        whitening,
-        none,
-        best.fit,
-        settings.confidence,
-        settings.seed,
-    )
+    runs = replace(held.seen.runs, forward=best.fit.local.runs.forward)
+    gain = replace(held, seen=replace(held.seen, runs=runs)).gain(none, best.fit)
     # a hold has no size that could be taken out again
     return gain if best.count else replace(gain, without=None)
 

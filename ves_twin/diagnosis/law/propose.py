@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -173,8 +173,9 @@ def search_laws(
     second = adapted(evidence, best.fit)
     none = _again(second, none)
     ends = both(ends, ranges(plant, best))
-    tables = _first([_further(second, fit, ends) for fit in _first(tables, 3)], 3)
+    tables = _refitted(_first(tables, 3), lambda fit: _further(second, fit, ends), progress)
     others = [_again(second, fit) for fit in _first(others, 3)]
+    progress(0.0, "adding knots")
     fine = resolved(second, tables[0])
     if fine is not tables[0] and fine.candidate is not None:
         tables = [fine, *tables[1:]]
@@ -264,7 +265,7 @@ def _chosen(
     kept += [table] if table is not None and table not in kept else []
     third = adapted(evidence, kept[0].fit)
     none = _again(third, none)
-    again = _first([_again(third, fit) for fit in kept], len(kept))
+    again = _refitted(kept, lambda fit: _again(third, fit), progress)
     found = Search(third, none, tuple(again), 0.0, ends, limits)
     lead = again[0].log_evidence - found.allowance(again[0])
     near = [f for f in again if f.log_evidence >= lead and found.leaves_noise(f)]
@@ -293,6 +294,17 @@ def _joints(fits: Sequence[LawFit]) -> list[LawPlace]:
 
 def _again(evidence: Evidence, fit: LawFit) -> LawFit:
     return fit_law(evidence, fit.candidate, fit.fit, fit.numbers)
+
+
+def _refitted(
+    fits: Sequence[LawFit], refit: Callable[[LawFit], LawFit], progress: Progress
+) -> list[LawFit]:
+    """Fits once more, by falling evidence."""
+    found = []
+    for n, fit in enumerate(fits):
+        progress(n / len(fits), "fitting the likeliest laws again")
+        found.append(refit(fit))
+    return _first(found, len(found))
 
 
 def _first(fits: Sequence[LawFit], count: int) -> list[LawFit]:

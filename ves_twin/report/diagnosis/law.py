@@ -1,4 +1,4 @@
-"""law_parts, law_sentences: a law in words, and as a picture with its band and what it rests on."""
+"""law_heading, law_parts, law_sentences: a law in words and as a picture, with what it rests on."""
 
 from __future__ import annotations
 
@@ -21,6 +21,9 @@ if TYPE_CHECKING:
 EQUAL = 3.0
 """Nats within which another law is as good: odds below 20."""
 
+
+BEYOND_DOUBT = 1000.0
+"""Nats from which more of them tell nobody anything."""
 
 DRAWN = 400
 """Places at which a law is drawn, from end to end of what was seen."""
@@ -65,7 +68,8 @@ def _missing(law: LawFinding) -> str:
 
 def worth_sentence(law: LawFinding) -> str:
     """What a law is worth, on held-out recordings and by odds."""
-    odds = f"{law.nats:.0f} nats more probable than no law"
+    nats = f"{law.nats:.0f}" if law.nats < BEYOND_DOUBT else f"over {BEYOND_DOUBT:.0f}"
+    odds = f"{nats} nats more probable than no law"
     gain = law.gain
     if gain is None:
         return f"It is {odds}. No held-out recording has tried it."
@@ -84,6 +88,13 @@ def _else(law: LawFinding) -> str:
     if other:
         return f"As good, within {EQUAL:.0f} nats: {'; '.join(other)}."
     return f"No other law that was tried comes within {EQUAL:.0f} nats."
+
+
+def law_heading(law: LawFinding) -> str:
+    """Of the section: no law stands above a place where one is only missing."""
+    if not law.claimed:
+        return "Where a law is missing"
+    return "A law of what the causes leave" if law.part else "A law in place of a cause"
 
 
 def law_parts(law: LawFinding) -> list[Html]:

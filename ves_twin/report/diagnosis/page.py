@@ -15,7 +15,7 @@ from ves_twin.report.diagnosis.answer import (
 )
 from ves_twin.report.diagnosis.basis import basis_sentences, gain_sentence, rests_on
 from ves_twin.report.diagnosis.credibility import credibility
-from ves_twin.report.diagnosis.law import law_parts
+from ves_twin.report.diagnosis.law import law_heading, law_parts
 from ves_twin.report.diagnosis.limits import limit_sentences, next_sentences, rival_words
 from ves_twin.report.diagnosis.pictures import (
     answer_figure,
@@ -81,8 +81,7 @@ def diagnosis_page(verdict: Verdict, title: str = "Diagnosis", plant: str = "") 
         parts += _pictures(verdict, exhibit)
     parts += proved_parts(verdict)
     if verdict.law is not None:
-        what = "A law of what the causes leave" if verdict.law.part else "A law in place of a cause"
-        parts.insert(1, section(what, *law_parts(verdict.law)))
+        parts.insert(1, section(law_heading(verdict.law), *law_parts(verdict.law)))
     if verdict.rivals:
         note = paragraph(CHI2, "note")
         parts.append(section("Rivals, and why they lost", note, _rivals(verdict.rivals)))
