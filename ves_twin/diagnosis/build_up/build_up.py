@@ -10,6 +10,7 @@ from scipy.stats import norm
 
 from ves_twin.core.types import FloatArray
 from ves_twin.diagnosis.adequacy import cells, misfit
+from ves_twin.diagnosis.build_up.averaged import averaged_half_widths
 from ves_twin.diagnosis.build_up.converged import converged
 from ves_twin.diagnosis.build_up.discrepancy import discrepancy
 from ves_twin.diagnosis.build_up.halves import Halves, carried_point, halves_at
@@ -253,7 +254,7 @@ def build_up(desk: FitContext, start: Explanation, fitted: Dataset, held: Datase
     plain = Evidence(fitted.runs, fitted.measured, _on(start.evidence.whitening, fitted.runs))
     found, before = start, _in_noise(plain, before)
     if shown is not None:
-        sure = _widened(evidence, shown, desk.settings.confidence)
+        sure = _widened(evidence, shown, desk.settings.confidence, halves.regression, proof.proved)
         found = _explained(desk, start, _in_noise(plain, sure))
     return Built(found, before, report_of(halves, proof, ends), fitted, held)
 
@@ -332,11 +333,21 @@ def _in_noise(evidence: Evidence, fit: Fit) -> Fit:
     return replace(fit, posterior=inverse * np.outer(search.unit[:-1], search.unit[:-1]))
 
 
-def _widened(evidence: Evidence, fit: Fit, confidence: float) -> Fit:
-    """With intervals that count what stretches of time scatter by."""
+def _widened(
+    evidence: Evidence,
+    fit: Fit,
+    confidence: float,
+    regression: Regression,
+    proved: Sequence[int],
+) -> Fit:
+    """With intervals that count what stretches of time scatter by, and what else may be there."""
     if not len(fit.sizes):
         return fit
+    left = np.asarray(bare_residual(evidence, fit), float)
+    wide = averaged_half_widths(regression, proved, evidence.whitening, left, confidence)
+    names = [name for cause in fit.causes for name in cause.parameters]
     half = half_widths(evidence, fit, confidence)
+    half = np.maximum(half, [wide.get(name, 0.0) for name in names])
     sd = half / float(norm.isf(0.5 * (1.0 - confidence)))
     own = np.sqrt(np.maximum(np.diag(fit.covariance), 1e-300))
     grown = np.maximum(sd / own, 1.0)
