@@ -23,6 +23,9 @@ STEPS = 4_000
 SWAPS = 0.4
 """Share of steps that put one cause in the place of another: alone in and out they part seldom."""
 
+ROUNDING = 1e-9
+"""Of a column's square, added to what nuisances leave of it: they may leave nothing."""
+
 BURNT, EVERY = 0.2, 5
 """Share of the steps that is thrown away, and steps from one draw to the next."""
 
@@ -39,7 +42,7 @@ class _Chain:
 
     gram: FloatArray
     slope: FloatArray
-    places: Sequence[IntArray]
+    places: list[IntArray]
     spread: float
 
     def drawn(self, start: BoolArray, rng: np.random.Generator) -> FloatArray:
@@ -65,7 +68,7 @@ class _Chain:
         return other
 
     def _columns(self, chosen: BoolArray) -> IntArray:
-        parts = [self.places[n] for n in np.flatnonzero(chosen)]
+        parts = [at for at, there in zip(self.places, chosen, strict=True) if there]
         return np.concatenate(parts).astype(int) if parts else np.zeros(0, int)
 
     def _posterior(self, chosen: BoolArray) -> tuple[float, tuple[FloatArray, FloatArray]]:
@@ -76,7 +79,7 @@ class _Chain:
         whitened = solve_triangular(root, self.slope[at], lower=True)
         volume = np.sum(np.log(np.diag(root))) + len(at) * np.log(self.spread)
         log_odds = 0.5 * whitened @ whitened - volume + np.log(ODDS) * np.count_nonzero(chosen)
-        return float(log_odds), (root, whitened)
+        return float(log_odds), (np.asarray(root), np.asarray(whitened, float))
 
     def _draw(
         self, chosen: BoolArray, here: tuple[FloatArray, FloatArray], rng: np.random.Generator
@@ -155,7 +158,8 @@ def _without(design: FloatArray, target: FloatArray, first: int) -> tuple[FloatA
     inner = cho_factor(gram[:first, :first] + np.eye(first))
     cross = gram[:first, first:]
     left = gram[first:, first:] - cross.T @ cho_solve(inner, cross)
-    return 0.5 * (left + left.T), slope[first:] - cross.T @ cho_solve(inner, slope[:first])
+    left = 0.5 * (left + left.T) + ROUNDING * np.diag(np.diag(gram)[first:])
+    return left, slope[first:] - cross.T @ cho_solve(inner, slope[:first])
 
 
 def _candidates(
