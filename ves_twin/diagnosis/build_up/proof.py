@@ -158,10 +158,9 @@ class Bench:
         size = np.sqrt(np.mean(np.square(parts), axis=0))
         return np.asarray(size > ACTS * np.max(size))
 
-    def reversed(self, trial: int) -> bool:
-        """Whether a trial is fitted with a sign that no machine has."""
-        at = self.places[trial]
-        return self.regression.trials[trial].positive and bool(self.fit.shares[at[0]] < 0.0)
+    def impossible(self, trial: int) -> bool:
+        """Whether a trial is fitted with a sign that no machine has, or far out of its range."""
+        return self.regression.impossible(trial, self.fit.shares[self.places[trial]])
 
     def compared(self, trial: int, without: FloatArray, beside: FloatArray) -> Difference:
         """Paired test of losses (rows, c) on the channels where a trial acts."""
@@ -265,5 +264,5 @@ def _each(bench: Bench, kept: Sequence[int]) -> dict[int, Difference]:
         tests = [bench.compared(n, loss(e, scale), beside) for e in (refitted, plain)]
         told = replace(tests[0], p=max(test.p for test in tests))
         grows = np.sum(bench.bare(rest)[acts]) <= np.sum(bare[acts])
-        found[n] = replace(told, p=1.0) if grows or bench.reversed(n) else told
+        found[n] = replace(told, p=1.0) if grows or bench.impossible(n) else told
     return found

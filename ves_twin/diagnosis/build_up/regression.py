@@ -24,6 +24,12 @@ ROUNDS = 3
 """Times that the discrepancy is learnt anew from what a fit leaves; it moves sizes by less than a
 hundredth of their sd then (TX40)."""
 
+BEYOND = 1.5
+"""Times the end of its range at which a linear size is held to be none of that cause's: columns of
+finite sizes, and what is not chosen yet, may move it past the end a little. Chosen before it was
+tried: a gain of a drive's torque, five times as large as its range allows, stood for the inertia
+and friction that a bench's model lacks."""
+
 RIDGE = 1e-3
 """Prior weight while nothing is known of the discrepancy, in rows."""
 
@@ -116,6 +122,27 @@ class Regression:
             size = np.sqrt(np.mean(np.square(share), axis=1))
             found.append(WIDE / np.maximum(size, 1e-9))
         return found
+
+    @cached_property
+    def limits(self) -> list[tuple[FloatArray, FloatArray]]:
+        """Least and largest amplitudes of each trial that its range allows, in prior sd (width,).
+
+        Of a trial with one column for several sizes those of the first, which is its level.
+        """
+        runs, found = self.half.runs, []
+        for trial, prior in zip(self.trials, self.prior, strict=True):
+            at = runs.indices(trial.cause)[: trial.width]
+            unit = np.array(trial.sizes[: trial.width]) * prior
+            with np.errstate(divide="ignore", invalid="ignore"):
+                ends = np.nan_to_num(np.stack([runs.low[at], runs.high[at]]) / unit, nan=np.inf)
+            low = np.zeros(len(at)) if trial.positive else ends.min(axis=0)
+            found.append((low, ends.max(axis=0)))
+        return found
+
+    def impossible(self, trial: int, shares: FloatArray) -> bool:
+        """Whether amplitudes [prior sd] have a sign that no machine has, or are far out of range."""
+        low, high = self.limits[trial]
+        return bool(np.any(shares < BEYOND * low) or np.any(shares > BEYOND * high))
 
     def design(self, chosen: Sequence[int]) -> tuple[SingleArray, FloatArray]:
         """Columns (k, rows, c) of nuisances and trials, and the prior sd of each."""
@@ -231,8 +258,8 @@ class Regression:
         slope = outside.T @ left  # the fit itself is at its optimum
         ends = np.cumsum([0, *(self.trials[n].width for n in others)])
         where = {n: np.arange(ends[k], ends[k + 1]) for k, n in enumerate(others)}
-        wrong = {n for n in others if self.trials[n].positive and slope[where[n][0]] < 0.0}
-        return Gains(gram, slope, where, frozenset(wrong))
+        low, high = (np.concatenate([self.limits[n][k] for n in others]) for k in (0, 1))
+        return Gains(gram, slope, where, low, high)
 
 
 @dataclass(frozen=True)
@@ -243,18 +270,19 @@ class Gains:
         gram: of their whitened columns, less what the fit can explain (m, m).
         slope: of chi^2 along each, halved (m,).
         where: columns of each trial.
-        wrong: trials that would enter with a sign that no machine has.
+        low, high: amplitudes that the range of each allows (m,).
     """
 
     gram: FloatArray
     slope: FloatArray
     where: dict[int, IntArray]
-    wrong: frozenset[int]
+    low: FloatArray
+    high: FloatArray
 
     def of(self, *trials: int) -> float:
-        """Chi^2 that trials take together; nothing where a sign is wrong."""
-        if self.wrong.intersection(trials):
-            return 0.0
+        """Chi^2 that trials take together, as far as their ranges allow."""
         at = np.concatenate([self.where[n] for n in trials])
         matrix = self.gram[np.ix_(at, at)] + np.eye(len(at))
-        return float(self.slope[at] @ np.linalg.solve(matrix, self.slope[at]))
+        free = np.linalg.solve(matrix, self.slope[at])
+        shares = np.clip(free, self.low[at], self.high[at])
+        return max(float(2.0 * self.slope[at] @ shares - shares @ matrix @ shares), 0.0)

@@ -179,10 +179,11 @@ class Selector:
         for n in rest:
             columns = (half.columns[n] * weight).reshape(regression.trials[n].width, -1)
             inner = columns @ left.ravel()
-            if regression.trials[n].positive and inner[0] < 0.0:
-                continue
             gram = columns @ columns.T + np.diag(1.0 / np.square(regression.prior[n]))
-            score = float(inner @ np.linalg.solve(gram, inner))
+            sizes = np.linalg.solve(gram, inner)
+            if regression.impossible(n, sizes / regression.prior[n]):
+                continue
+            score = float(inner @ sizes)
             if score > top:
                 best, top = n, score
         if best in pick:
@@ -269,7 +270,7 @@ class Selector:
         return chosen
 
     def _pruned(self, chosen: list[int]) -> _Choice:
-        """Without those of a wrong sign, and those without which the criterion is better."""
+        """Without those that cannot be, and those without which the criterion is better."""
         now = self._choice(self.swapped(list(chosen)))
         while now.chosen:
             losses = losses_of(self.regression, now.fit)
@@ -282,12 +283,11 @@ class Selector:
 
 
 def losses_of(regression: Regression, fit: LinearFit) -> dict[int, float]:
-    """Chi^2 a column that is lost where a chosen trial is taken out; -1 where its sign is wrong."""
+    """Chi^2 a column that is lost where a chosen trial is taken out; -1 where it cannot be."""
     inverse = np.linalg.inv(fit.hessian)
     found = {}
     for n, at in regression.places(fit.chosen).items():
         shares = fit.shares[at]
         value = float(shares @ np.linalg.solve(inverse[np.ix_(at, at)], shares)) / len(at)
-        wrong = regression.trials[n].positive and shares[0] < 0.0
-        found[n] = -1.0 if wrong else value
+        found[n] = -1.0 if regression.impossible(n, shares) else value
     return found
