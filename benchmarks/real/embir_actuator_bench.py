@@ -6,6 +6,7 @@ Standing, that estimate is fed in and the torque sensor is compared.
 
 from __future__ import annotations
 
+from itertools import product
 from pathlib import Path
 
 from real.machine import OF_JOINTS, Set, effects, machine, read, stretch
@@ -48,7 +49,9 @@ speed = {speed}
 travel = {travel}
 [typical.signal."a1.torque"]
 span = {effort}
-[[parameters]]
+"""
+
+KNOWN = """[[parameters]]
 joint = "turn"
 attribute = "armature"
 sd = 9e-6
@@ -57,6 +60,7 @@ joint = "turn"
 attribute = "frictionloss"
 sd = 0.003
 """
+"""The bare shaft to 5 and 20 %: so it was asked first. Of what hangs on it this is not true."""
 
 STALL = """<mujoco model="stall">
   <option gravity="0 0 0"><flag contact="disable"/></option>
@@ -99,6 +103,16 @@ travel = 0.01
 span = 0.9
 """
 
+ZERO = """
+[[effects]]
+kind = "sensor_offset"
+on = ["trs605.1"]
+cause = false
+per_recording = true
+sd = 0.03
+"""
+"""A torque sensor's zero as it is in each recording; the data's page tells -0.035 N m of others."""
+
 RUNS = (
     ("g6", "g6_a", "g6_b", (0.34, 18.0, 10.0), "0.041 of 0.146 N m"),
     ("rotor_back", "rotor_back_a", "rotor_back_b", (0.5, 33.0, 15.0), "0.056 of 0.220 N m"),
@@ -111,10 +125,11 @@ HELD = 2.0 / 3.0
 """Share of a run that is fitted where there is no second one."""
 
 
-def turning(folder: Path, name: str, sizes: tuple[float, float, float]) -> Rig:
+def turning(folder: Path, name: str, sizes: tuple[float, float, float], known: str) -> Rig:
     """The bare shaft, and what may hang on it."""
     effort, speed, travel = sizes
-    told = TURNING.format(name=name, effort=effort, speed=speed, travel=travel) + effects(
+    told = TURNING.format(name=name, effort=effort, speed=speed, travel=travel) + known
+    told += effects(
         *((kind, ["turn"]) for kind in OF_JOINTS),
         ("actuator_delay", ["a1"]),
         ("sensor_gain", ["a1.torque.1"]),
@@ -127,22 +142,24 @@ def sets(data: Path, folder: Path) -> list[Set]:
     here = data / "embir_actuator_bench"
     told = STANDING + effects(
         ("sensor_gain", ["trs605.1"]),
-        ("sensor_offset", ["trs605.1"]),
         ("sensor_delay", ["trs605"]),
         *((f"actuator_{kind}", ["a1"]) for kind in ("delay", "deadband", "asymmetry")),
     )
-    stall = machine(folder, "stall", STALL, told)
+    stall = machine(folder, "stall", STALL, told + effects(("sensor_offset", ["trs605.1"])))
+    zeros = machine(folder, "stall", STALL, told + ZERO)
     one, two, turned = (read(stall, here / f"stall_kt_{n}.csv") for n in ("a", "b", "signflip"))
     found = [
         Set("bench, stall", stall, [one], [two], "gain 0.968, 0.986", "gain named"),
+        Set("bench, stall, own zeros", zeros, [one], [two], "gain 0.968, 0.986", "gain named"),
         Set("bench, sign", stall, [turned], [two], "gain -0.941", "sign, offset before a fit"),
     ]
-    for name, fitted, held, sizes, expert in RUNS:
-        rig = turning(folder, name, sizes)
+    for (name, fitted, held, sizes, expert), known in product(RUNS, (KNOWN, "")):
+        rig = turning(folder, name, sizes, known)
         first = read(rig, here / f"grp_{fitted}.csv")
         last = float(first.time[-1])
         both = [first, read(rig, here / f"grp_{held}.csv")] if held else []
         cut = HELD * last
         one, two = both or (stretch(first, 0.0, cut), stretch(first, cut, last))
-        found.append(Set(f"bench, {name}", rig, [one], [two], expert, "not worse, inertia named"))
+        label = f"bench, {name}" if known else f"bench, {name}, open"
+        found.append(Set(label, rig, [one], [two], expert, "not worse, inertia named"))
     return found
