@@ -36,6 +36,15 @@ def test_a_clock_with_gaps_repeats_and_steps_back_is_told(tmp_path):
     assert clock.longest[0].start == pytest.approx(0.499, abs=1e-9)
 
 
+def test_a_clock_whose_rows_come_unevenly_has_no_gaps_to_list(tmp_path):
+    time = np.cumsum(np.where(np.arange(1000) % 3 == 2, 0.01, 0.004))
+    log = inspect_log(open_log(lab(tmp_path / "a.csv", time, {"x": np.sin(time)})))
+    assert log.tables[0].clock.uneven
+    text = inspection_text(log)
+    assert "uneven, 166.7 Hz on average, steps up to 0.01 s" in text
+    assert "gap" not in text
+
+
 def test_holes_of_a_clock_are_counted_without_a_warning(tmp_path):
     """Infinities and a NaN that signals, next to one another, as damaged files have them."""
     time = np.arange(400.0) * 1e-3

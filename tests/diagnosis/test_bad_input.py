@@ -248,3 +248,10 @@ def test_a_small_column_that_moves_against_a_wrong_model_is_no_turned_one():
     turned = preprocess.preprocess(Toy(), [with_out(data, data["out"] * [-0.5, 1.0])])
     with pytest.raises(InvalidInputError, match="the other sign"):
         check_likeness(turned, turned.runs.one(turned.runs.origin))
+
+
+def test_a_turned_column_is_told_with_the_offset_beside():
+    data = record(np.random.default_rng(1))
+    turned = preprocess.preprocess(Toy(), [with_out(data, data["out"] * [-0.5, 1.0] + [0.7, 0.0])])
+    with pytest.raises(InvalidInputError, match=r"-0\.50\d times it, and 0\.69 beside"):
+        check_likeness(turned, turned.runs.one(turned.runs.origin))

@@ -23,7 +23,7 @@ from ves_twin.diagnosis.refine import refine
 from ves_twin.diagnosis.refusal import refusal
 from ves_twin.diagnosis.rivals import Standing
 from ves_twin.diagnosis.settings import Settings
-from ves_twin.diagnosis.verdict import Kind
+from ves_twin.diagnosis.verdict import Estimate, Kind
 from ves_twin.diagnosis.whitening import whitening_declared
 from ves_twin.report.diagnosis.answer import headline, next_step, tone
 from ves_twin.report.diagnosis.basis import gain_words, taken_words
@@ -423,6 +423,20 @@ def proof_of(verdict, firm):
         false_discovery_rate=0.05,
         left={"out.0": Left(0.02, 0.08, "1", 0.01, 0.3, {"out.1": 0.7}, {"drive.u": 0.2})},
         inseparable=(Inseparable(("friction@plant", "lag@plant"), 14.0),),
+    )
+
+
+def test_a_tolerance_that_gives_way_to_a_fault_is_told_with_what_was_proved(proven):
+    """A part that the model has with a tolerance, and that was exchanged, is no cause beside it."""
+    verdict = proof_of(proven, firm=True)
+    assert "strained" not in headline(verdict)
+    limit = verdict.statistics.naming_limit
+    best = replace(verdict.rivals[0], standing=Standing.KEPT, pull=limit + 10.0)
+    other = replace(
+        verdict, rivals=(best,), tuned={"inertia@hub:value": Estimate(3e-4, 2e-4, 4e-4, "1", 1e-4)}
+    )
+    assert f"by up to {limit + 10.0:.0f} sd: inertia at hub 0.0003 (model 0.0001)" in headline(
+        other
     )
 
 

@@ -11,6 +11,9 @@ from ves_twin.core.types import FloatArray
 GAP = 1.5
 """A step longer than so many periods is a gap."""
 
+UNEVEN = 0.05
+"""Share of the steps from which long ones are no gaps: rows come as they come, and none is lost."""
+
 LISTED = 5
 """Gaps that are told one by one: the longest."""
 
@@ -60,6 +63,11 @@ class ClockReport:
     def rate(self) -> float:
         """Rows a second by the median step [Hz]; 0 where there is none."""
         return 1.0 / self.period if self.period > 0.0 else 0.0
+
+    @property
+    def uneven(self) -> bool:
+        """Whether long steps are so many that they are how the rows come, not gaps."""
+        return self.gaps > UNEVEN * self.rows
 
 
 _COUNTS = ("gaps", "repeats", "back")

@@ -27,7 +27,7 @@ def _table(table: TableReport) -> Iterator[str]:
         yield "  clock: none found; a map can give a rate, or name the column"
     else:
         yield f"  clock: {_clock(table.clock)}"
-        for gap in table.clock.longest:
+        for gap in () if table.clock.uneven else table.clock.longest:
             yield f"    gap of {gap.length:.4g} s after {gap.start:.9g} s"
     if table.candidates:
         yield f"  rising too: {', '.join(table.candidates)}"
@@ -42,11 +42,15 @@ def _table(table: TableReport) -> Iterator[str]:
 def _clock(clock: ClockReport) -> str:
     unit = f"{clock.unit}{' by a guess' if clock.guessed else ''}"
     words = [f"{clock.column} [{unit}]"]
-    if clock.period > 0.0:
+    if clock.uneven:
+        mean = (clock.rows - 1) / (clock.stop - clock.start)
+        longest = clock.longest[0].length
+        words.append(f"uneven, {mean:.4g} Hz on average, steps up to {longest:.3g} s")
+    elif clock.period > 0.0:
         words.append(f"{clock.rate:.6g} Hz, jitter {clock.jitter:.1%}")
     words.append(f"{clock.start:.9g} to {clock.stop:.9g} s")
     counted = (
-        (clock.gaps, "gaps"),
+        (0 if clock.uneven else clock.gaps, "gaps"),
         (clock.repeats, "repeated times"),
         (clock.back, "steps back"),
         (clock.missing, "rows without a time"),

@@ -72,13 +72,21 @@ def _oddities(seen: Dataset, nominal: SingleArray, rows: slice) -> Iterator[tupl
             text = f"a column that moves as {channels[other].name} should"
             yield own.name, text, "its own; columns look swapped"
         elif match[i, i] < -CLEAR and abs(np.log(spread[i] / should[i])) < np.log(TURNED):
-            yield own.name, "a column that moves against the prediction", "the other sign"
+            came = _turned(seen.measured[rows][:, i], nominal[rows][:, i], own.unit)
+            yield own.name, came, "the other sign"
         elif match[i, i] > CLEAR:
             ratio = float(spread[i] / should[i])
             for word, factor in FACTORS.get(own.unit, {}).items():
                 if abs(np.log(ratio / factor)) < NEAR:
                     came = f"{ratio:.3g} times what the plant predicts"
                     yield own.name, came, f"{own.unit}; it looks like {word}"
+
+
+def _turned(measured: SingleArray, nominal: SingleArray, unit: str) -> str:
+    """Words for a column that is turned, with the offset that its line has beside."""
+    slope, beside = np.polyfit(nominal, measured, 1)
+    there = f"{slope:.3g} times it, and {beside:.2g} {unit.removeprefix('1')}".strip()
+    return f"a column that moves against the prediction: {there} beside"
 
 
 def _centred(rows: SingleArray) -> FloatArray:

@@ -33,6 +33,7 @@ LOG = "t,f,m,set,x,a,fx,fy,fz\n" + "\n".join(
     ("old", "new", "words"),
     [
         ('kind = "backlash"', 'kind = "backlsh"', "did you mean 'backlash'"),
+        ('kind = "backlash"', 'kind = "backlash"\nper_recording = true', "expected cause = false"),
         ('on = ["drive"]', 'on = ["drve"]', "did you mean 'drive'"),
         ('unit = "N*m"', 'unit = "Nm"', "unknown unit 'Nm'"),
         ('attribute = "mass"', 'attribute = "mas"', "did you mean 'mass'"),

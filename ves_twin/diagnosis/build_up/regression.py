@@ -140,7 +140,7 @@ class Regression:
         return found
 
     def impossible(self, trial: int, shares: FloatArray) -> bool:
-        """Whether amplitudes [prior sd] have a sign that no machine has, or are far out of range."""
+        """Whether amplitudes [prior sd] have a sign that none has, or leave their range by far."""
         low, high = self.limits[trial]
         return bool(np.any(shares < BEYOND * low) or np.any(shares > BEYOND * high))
 

@@ -255,6 +255,14 @@ class Allowed(Part):
     per_recording: bool = False
     source: str = ""
 
+    @model_validator(mode="after")
+    def _of_one_recording(self) -> Allowed:
+        if self.per_recording and (self.cause or not self.sd):
+            raise ValueError(
+                "expected cause = false and an sd beside per_recording: a cause is the same in all"
+            )
+        return self
+
 
 class Span(Part):
     """Typical sizes at a joint or of a signal, from which sizes of effects follow."""

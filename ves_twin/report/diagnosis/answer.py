@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from ves_twin.core.quantity import percent
+from ves_twin.core.quantity import percent, quantity
 from ves_twin.diagnosis.disagreement import disagree
-from ves_twin.diagnosis.verdict import Cause, Kind, Verdict
+from ves_twin.diagnosis.rivals import Standing
+from ves_twin.diagnosis.verdict import Cause, Estimate, Kind, Verdict
 from ves_twin.report.diagnosis.basis import gain_words, taken_share
 from ves_twin.report.diagnosis.law import worth_sentence
 from ves_twin.report.diagnosis.limits import next_sentences
@@ -20,6 +21,9 @@ from ves_twin.report.diagnosis.words import (
 
 STRANGER = 0.5
 """Share of a channel's own spread that stays unexplained where the model is hardly this machine."""
+
+STRANGEST = 2
+"""Numbers of the model that are told where tolerances do not hold: what moved by most."""
 
 
 def headline(verdict: Verdict) -> str:
@@ -155,11 +159,31 @@ def _proved(verdict: Verdict) -> str:
     for begin, names in zip(begins, (firm, like, ended), strict=True):
         more = f" and {len(names) - TOLD} more" if len(names) > TOLD else ""
         said += f" {begin} {', '.join(names[:TOLD])}{more}." if names else ""
+    said += strained_sentence(verdict)
     if verdict.verdict is Kind.PARTIAL:
         said += " Something more stays unexplained."
     if verdict.law is not None and verdict.law.part and verdict.law.claimed:
         said += f" Of what they leave, a law takes a part: {verdict.law.words}."
     return said
+
+
+def strained_sentence(verdict: Verdict) -> str:
+    """Which of the model's own numbers had to leave their tolerances beside; else empty."""
+    best = next((rival for rival in verdict.rivals if rival.standing is Standing.KEPT), None)
+    limit = verdict.statistics.naming_limit
+    if best is None or best.pull is None or limit is None or best.pull <= limit:
+        return ""
+
+    def off(one: Estimate) -> float:
+        return abs(one.value - one.nominal) / max(one.high - one.low, 1e-30)
+
+    moved = sorted(verdict.tuned.items(), key=lambda item: -off(item[1]))
+    told = [
+        f"{spoken(name.rpartition(':')[0])} {quantity(one.value, one.unit)}"
+        f" (model {quantity(one.nominal, one.unit)})"
+        for name, one in moved[:STRANGEST]
+    ]
+    return f" Tolerances are strained, by up to {best.pull:.0f} sd: {', '.join(told)}."
 
 
 def _begin(verdict: Verdict) -> str:

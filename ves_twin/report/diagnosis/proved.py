@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from ves_twin.core.quantity import UNSURE, digits, percent, quantity
+from ves_twin.core.quantity import UNSURE, percent, quantity
 from ves_twin.diagnosis.build_up.result import TOGETHER, Left, Proved
 from ves_twin.diagnosis.verdict import Verdict
 from ves_twin.report.diagnosis.words import spoken
@@ -99,8 +99,9 @@ def _proved(verdict: Verdict) -> list[Html]:
 def _rows(one: Proved, verdict: Verdict) -> list[tuple[str, ...]]:
     ranked = sorted(one.takes.items(), key=lambda item: item[1][1] - item[1][0])[:SHOWN]
     takes = "; ".join(
-        f"{name} {digits(before)} to {quantity(after, verdict.left[name].unit)}"
+        f"{name} {quantity(before, unit)} to {quantity(after, unit)}"
         for name, (before, after) in ranked
+        for unit in [verdict.left[name].unit]
     )
     rows: list[tuple[str, ...]] = []
     for n, (name, size) in enumerate(one.parameters.items()):

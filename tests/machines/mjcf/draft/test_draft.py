@@ -247,3 +247,20 @@ def test_where_no_name_tells_the_effort_is_the_one_that_the_other_s_motion_needs
         found = draft(model, [tmp_path / "log.csv"], tmp_path / "m.toml", 100.0)
         signals = tomllib.loads(found.text)["signals"]
         assert (*signals["y.position"]["columns"], *signals["u.effort"]["columns"]) == wanted
+
+
+def test_a_torque_is_taken_before_the_voltage_of_a_supply(swing, write):
+    model, columns = swing
+    rows = len(columns["t"])
+    supply = {"t": columns["t"], "c1 voltage [V]": 36.0 + 0.5 * (np.arange(rows) % 3)}
+    supply |= {f"{n} [{u}]": columns[n] for n, u in (("tau", "Nm"), ("q", "rad"))}
+    _, rig = drafted(model, write(supply))
+    assert columns_of(rig)["drive.effort"] == "tau [Nm]"
+
+
+def test_rows_that_come_unevenly_are_no_thousand_gaps(swing, write):
+    model, columns = swing
+    kept = np.delete(np.arange(len(columns["t"])), slice(3, None, 5))  # steps of 10 and 20 ms
+    found, _ = drafted(model, write({n: v[kept] for n, v in columns.items()}))
+    assert "clock t: uneven, steps of 0.01 to 0.02 s; rows are read at even steps" in found.look
+    assert not any("gaps" in words for words in found.look)

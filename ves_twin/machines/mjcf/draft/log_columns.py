@@ -11,7 +11,7 @@ import numpy as np
 from ves_twin.core.errors import InvalidInputError
 from ves_twin.core.types import BoolArray, FloatArray
 from ves_twin.data.clock_fields import clock_fields
-from ves_twin.data.clock_report import GAP, usual_step
+from ves_twin.data.clock_report import GAP, UNEVEN, usual_step
 from ves_twin.data.log import Column, Kind
 from ves_twin.data.open_log import open_log
 
@@ -99,6 +99,10 @@ def _period(time: FloatArray, clock: str, notes: list[str]) -> float:
     period = usual_step(time[np.isfinite(time)])
     steps = np.diff(time)
     wide = steps[steps > GAP * period]
+    if len(wide) > UNEVEN * len(steps):
+        came = f"steps of {np.min(steps[steps > 0.0]):.3g} to {np.max(wide):.3g} s"
+        notes.append(f"clock {clock}: uneven, {came}; rows are read at even steps")
+        return period
     if len(wide):
         notes.append(f"clock {clock}: {len(wide)} gaps, the longest of {np.max(wide):.4g} s")
     if np.any(steps <= 0.0):

@@ -46,6 +46,10 @@ ARTICLE = {q: f"{'an' if q.value[0] == 'e' else 'a'} {q.value}" for q in Quantit
 UNIT, KIND, WORD, NUMBER, ONLY = 2.0, 2.0, 2.0, 2.0, 1.0
 """Weight of each piece of evidence: any two of them are worth a match."""
 
+CONSTANT = 1.5
+"""Weight of an electrical unit where the spot has another: a column in the spot's own unit is
+nearer, and a supply's voltage is in volts, too."""
+
 WRONG_NUMBER, WRONG_KIND, WISH = -3.0, -2.0, -0.5
 """Weight against: another number, a word of another quantity, what was asked for, not measured."""
 
@@ -80,7 +84,8 @@ def likeness(column: str, unit: str, spot: Spot, only: bool, zero: bool) -> Like
     wish = is_setpoint(column) and not MEASURED & words
     if _ruled_out(words, wish, spot) or not _unit_fits(spelled(unit), spot):
         return None
-    evidence = [(UNIT, f"unit {unit}")] if unit else []
+    foreign = spelled(unit) in ELECTRICAL and spot.unit not in {"1", spelled(unit)}
+    evidence = [(CONSTANT if foreign else UNIT, f"unit {unit}")] if unit else []
     evidence += _of_kind(words, bool(unit), wish, spot) + _of_words(words, spot)
     numbers = [int(w) for w in words_of(bare_name(column)) if w.isdigit()]
     if numbers and not only:
