@@ -1,5 +1,7 @@
 """What is chosen for a proof: worth no less than what is hidden, and no cause in another's place."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from linear import KINDS, Linear, drawn, halves
@@ -42,3 +44,44 @@ def test_plain_errors_by_products_are_those_of_the_columns():
         left = regression._plainly(*regression.design(chosen))
         direct = float(np.sum(np.log(regression.half.rms(left))))
         assert regression.plain_error(chosen) == pytest.approx(direct, abs=1e-5)
+
+
+class Narrow(Linear):
+    """Viscous friction up to 0.1 alone."""
+
+    @property
+    def parameters(self):
+        return tuple(
+            replace(p, low=-0.1, high=0.1) if p.name.startswith("viscous") else p
+            for p in super().parameters
+        )
+
+    @property
+    def hypotheses(self):
+        return tuple(
+            replace(h, largest=(0.1,)) if h.effect == "viscous" else h for h in super().hypotheses
+        )
+
+
+def test_a_cause_far_beyond_its_range_is_not_chosen_in_the_place_of_another():
+    """Friction of 0.6 has the columns of viscous friction, and no machine has so much of it."""
+    hidden = {"viscous@a:size": 0.6}
+    found = {}
+    for plant in (Linear, Narrow):
+        regression = halves(plant(("viscous", "twin", "offset")), hidden, 8).regression
+        found[plant] = {regression.trials[n].cause.label for n in Selector(regression).run()}
+    assert "viscous@a" in found[Linear]
+    assert "twin@a" in found[Narrow]
+    assert "viscous@a" not in found[Narrow]
+
+
+def test_what_a_trial_takes_is_told_within_its_range():
+    """chi^2 falls by 2 a s - a^2 m at an amplitude a of at most 0.1 in place of 0.6."""
+    hidden = {"viscous@a:size": 0.6}
+    taken = {}
+    for plant in (Linear, Narrow):
+        regression = halves(plant(("viscous", "offset")), hidden, 5).regression
+        at = [trial.cause.label for trial in regression.trials].index("viscous@a")
+        taken[plant] = regression.gains(regression.fit([]), [at]).of(at)
+    share = 0.1 / 0.6
+    assert taken[Narrow] / taken[Linear] == pytest.approx(2.0 * share - share**2, rel=0.15)
