@@ -36,12 +36,27 @@ def test_draws_of_the_chain_have_the_moments_of_all_choices_enumerated(monkeypat
     columns = rng.standard_normal((40, 4))
     columns[:, 1] = columns[:, 0] + 0.3 * columns[:, 1]  # much like the first
     target = 0.5 * columns[:, 0] + 0.2 * columns[:, 2] + rng.standard_normal(40)
-    chain = _Chain(columns.T @ columns, columns.T @ target, [np.array([k]) for k in range(4)], 0.7)
+    free = np.full(4, np.inf)
+    places = [np.array([k]) for k in range(4)]
+    chain = _Chain(columns.T @ columns, columns.T @ target, places, 0.7, -free, free)
     drawn = chain.drawn(np.array([True, False, False, False]), np.random.default_rng(1))[:, 0]
     drawn = drawn[~np.isnan(drawn)]
     mean, sd = enumerated(columns, target, 0.7)
     assert drawn.mean() == pytest.approx(mean, abs=0.1 * sd)  # draws are correlated
     assert drawn.std() == pytest.approx(sd, rel=0.1)
+
+
+def test_a_choice_with_an_amplitude_that_cannot_be_is_never_drawn():
+    rng = np.random.default_rng(4)
+    columns = rng.standard_normal((40, 2))
+    columns[:, 1] = columns[:, 0] + 0.1 * columns[:, 1]
+    target = columns[:, 0] + 0.1 * rng.standard_normal(40)
+    ends = np.array([np.inf, 0.01])
+    places = [np.array([0]), np.array([1])]
+    chain = _Chain(columns.T @ columns, columns.T @ target, places, 1.0, -ends, ends)
+    drawn = chain.drawn(np.array([True, False]), np.random.default_rng(1))
+    alone = np.isnan(drawn[:, 0])
+    assert np.all(np.isnan(drawn[alone, 1]))
 
 
 def widths(plant, hidden, proved):

@@ -10,7 +10,7 @@ from scipy.linalg import cho_factor, cho_solve, solve_triangular
 
 from ves_twin.core.types import BoolArray, FloatArray, IntArray
 from ves_twin.diagnosis.build_up.memory import independent_rows
-from ves_twin.diagnosis.build_up.regression import Regression
+from ves_twin.diagnosis.build_up.regression import BEYOND, Regression
 from ves_twin.diagnosis.whitening import Whitening
 
 ODDS = 0.1
@@ -38,12 +38,15 @@ class _Chain:
         gram, slope: of all candidate columns, nuisances taken out (k, k) and (k,).
         places: columns of each candidate.
         spread: prior sd of every amplitude.
+        low, high: amplitudes beyond which no machine is (k,).
     """
 
     gram: FloatArray
     slope: FloatArray
     places: list[IntArray]
     spread: float
+    low: FloatArray
+    high: FloatArray
 
     def drawn(self, start: BoolArray, rng: np.random.Generator) -> FloatArray:
         """Amplitudes (draws, k) along a chain that begins at a choice; nan where not chosen."""
@@ -52,7 +55,7 @@ class _Chain:
         for step in range(STEPS):
             other = self._other(chosen, rng)
             worth, there = self._posterior(other)
-            if np.log(rng.random()) < worth - log_odds:
+            if np.isfinite(worth) and np.log(rng.random()) < worth - log_odds:
                 chosen, log_odds, here = other, worth, there
             if step >= BURNT * STEPS and step % EVERY == 0:
                 found.append(self._draw(chosen, here, rng))
@@ -72,11 +75,14 @@ class _Chain:
         return np.concatenate(parts).astype(int) if parts else np.zeros(0, int)
 
     def _posterior(self, chosen: BoolArray) -> tuple[float, tuple[FloatArray, FloatArray]]:
-        """Logarithm of the odds of a choice; root of the precision, and mean, of its amplitudes."""
+        """Log odds of a choice, none if it cannot be; root of the precision, and whitened mean."""
         at = self._columns(chosen)
         precision = self.gram[np.ix_(at, at)] + np.eye(len(at)) / self.spread**2
         root = np.linalg.cholesky(precision)
         whitened = solve_triangular(root, self.slope[at], lower=True)
+        likeliest = solve_triangular(root.T, whitened)
+        if np.any(likeliest < self.low[at]) or np.any(likeliest > self.high[at]):
+            return -np.inf, (root, whitened)
         volume = np.sum(np.log(np.diag(root))) + len(at) * np.log(self.spread)
         log_odds = 0.5 * whitened @ whitened - volume + np.log(ODDS) * np.count_nonzero(chosen)
         return float(log_odds), (np.asarray(root), np.asarray(whitened, float))
@@ -129,7 +135,9 @@ def averaged_half_widths(
     alone = np.linalg.solve(gram[np.ix_(own, own)] + 1e-6 * np.eye(len(own)), slope[own])
     spread = float(np.sqrt(np.mean(np.square(alone))))
     candidates = _candidates(regression, proved, gram, slope - gram[:, own] @ alone, first)
-    chain = _Chain(gram, slope, [where[n] - first for n in candidates], max(spread, 1e-9))
+    low, high = (BEYOND * np.concatenate([at[k] for at in regression.limits]) for k in (0, 1))
+    places = [where[n] - first for n in candidates]
+    chain = _Chain(gram, slope, places, max(spread, 1e-9), low, high)
     drawn = chain.drawn(np.isin(candidates, proved), np.random.default_rng(0))
     off = np.full(len(slope), np.nan)
     off[own] = alone

@@ -40,6 +40,9 @@ def stand_ins(proof: Proof) -> dict[int, list[int]]:
         for k in likely:
             if trials[k].cause.label in {trials[m].cause.label for m in found[n]}:
                 continue
+            alone = regression.solve([*rest, k], fit.whitening)
+            if regression.impossible(k, alone.shares[regression.places([*rest, k])[k]]):
+                continue
             worse = loss(wider.innovations([*rest, k]), scale)
             told = wider.compared(n, worse, beside)
             if told.p > SIGNIFICANT and told.total < HALF * proof.differences[n].total:
