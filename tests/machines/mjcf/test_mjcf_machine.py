@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 import slide
-from two_link import TIME, programme, write_files
+from two_link import TARGETS, TIME, programme, write_files
 
 import ves_twin as vt
 from ves_twin.cli.main import main
@@ -187,7 +187,8 @@ def test_causes_that_cannot_be_told_apart_get_a_next_experiment_in_the_log_s_own
 
 def test_nothing_is_offered_where_an_actuator_drives_no_joint(tmp_path):
     """Its numbers of typical effort and travel are those of joints."""
-    path = write_files(tmp_path)
+    kinds = {kind: on for kind, on in TARGETS.items() if kind != "drive_cross_talk"}  # of joints
+    path = write_files(tmp_path, kinds=kinds)
     model = tmp_path / "two_link.xml"
     text = model.read_text().replace(
         '<motor name="hinge" joint="swing"/>', '<motor name="hinge" tendon="rope"/>'

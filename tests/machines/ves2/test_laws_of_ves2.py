@@ -230,7 +230,8 @@ def squares(fit: LawFit, held: Dataset) -> float:
     return float(np.mean(np.square(z)))
 
 
-@pytest.mark.slow
+@pytest.mark.nightly
+@pytest.mark.timeout(1800)
 def test_a_hidden_drag_of_a_joint_is_found_with_place_variable_and_gain():
     search = searched(HIDDEN)
     best = search.best

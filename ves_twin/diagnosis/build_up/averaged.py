@@ -78,14 +78,14 @@ class _Chain:
         """Log odds of a choice, none if it cannot be; root of the precision, and whitened mean."""
         at = self._columns(chosen)
         precision = self.gram[np.ix_(at, at)] + np.eye(len(at)) / self.spread**2
-        root = np.linalg.cholesky(precision)
-        whitened = solve_triangular(root, self.slope[at], lower=True)
+        root = np.asarray(np.linalg.cholesky(precision), float)
+        whitened = np.asarray(solve_triangular(root, self.slope[at], lower=True), float)
         likeliest = solve_triangular(root.T, whitened)
         if np.any(likeliest < self.low[at]) or np.any(likeliest > self.high[at]):
             return -np.inf, (root, whitened)
         volume = np.sum(np.log(np.diag(root))) + len(at) * np.log(self.spread)
         log_odds = 0.5 * whitened @ whitened - volume + np.log(ODDS) * np.count_nonzero(chosen)
-        return float(log_odds), (np.asarray(root), np.asarray(whitened, float))
+        return float(log_odds), (root, whitened)
 
     def _draw(
         self, chosen: BoolArray, here: tuple[FloatArray, FloatArray], rng: np.random.Generator
