@@ -127,15 +127,19 @@ class Regression:
     def limits(self) -> list[tuple[FloatArray, FloatArray]]:
         """Least and largest amplitudes of each trial that its range allows, in prior sd (width,).
 
-        Of a trial with one column for several sizes those of the first, which is its level.
+        Of a bent column its sign alone: it holds near its sizes, and says nothing of an end.
         """
         runs, found = self.half.runs, []
         for trial, prior in zip(self.trials, self.prior, strict=True):
             at = runs.indices(trial.cause)[: trial.width]
+            free = np.full(len(at), np.inf)
             unit = np.array(trial.sizes[: trial.width]) * prior
             with np.errstate(divide="ignore", invalid="ignore"):
                 ends = np.nan_to_num(np.stack([runs.low[at], runs.high[at]]) / unit, nan=np.inf)
             low = np.zeros(len(at)) if trial.positive else ends.min(axis=0)
+            if trial.bent:
+                found.append((np.full(len(at), 0.0 if trial.positive else -np.inf), free))
+                continue
             found.append((low, ends.max(axis=0)))
         return found
 
