@@ -56,11 +56,12 @@ def test_slow_error_below_a_row_s_noise_is_judged_by_all_of_it(regression):
     assert preferred(regression, [some, more]) is more
 
 
-def test_what_is_small_beside_slow_error_is_judged_one_step_ahead(regression):
-    """Few rows of slow error are independent: altogether they say little of what is faster."""
+def test_what_shows_one_step_ahead_alone_is_not_worth_its_price(regression):
+    """Few rows of slow error are independent: they say little of what is small and faster."""
     slow, fast = coloured(regression, 150.0, 1), coloured(regression, 2.0, 2)
     some, more = offer(regression, FEW, slow + 0.3 * fast), offer(regression, [*FEW, 2], slow)
-    assert preferred(regression, [some, more]) is more
+    assert preferred(regression, [some, more]) is some
+    assert preferred(regression, [some, offer(regression, [*FEW, 2], 0.3 * fast)]).chosen[-1] == 2
 
 
 def test_memory_of_a_first_order_colour_is_its_closed_form():

@@ -9,6 +9,7 @@ import pytest
 
 from ves_twin.diagnosis.build_up import build_up
 from ves_twin.diagnosis.build_up.build_up import _Builder, _likeliest
+from ves_twin.diagnosis.build_up.plain_selector import PlainSelector
 from ves_twin.diagnosis.build_up.proof import prove
 from ves_twin.diagnosis.build_up.select import Selector
 from ves_twin.diagnosis.build_up.trials import Trial
@@ -103,6 +104,14 @@ def test_what_a_dead_band_hides_is_found_beside_it(forward):
         assert found[name] == pytest.approx(size, rel=0.1)
 
 
+def test_a_dead_band_and_what_acts_beyond_it_are_chosen_by_plain_squares(forward):
+    builder = builder_of(forward)
+    regression = builder.halves(builder.fitted.runs.origin, ()).regression
+    chosen = PlainSelector(regression).run()
+    names = {regression.trials[n].cause.effect for n in chosen}
+    assert {"actuator_gain", "actuator_deadband"} <= names
+
+
 def test_a_fit_looks_from_the_sizes_of_bent_columns_too(forward, monkeypatch):
     builder = builder_of(forward)
     origin = builder.fitted.runs.origin
@@ -133,36 +142,38 @@ def test_a_fit_begins_where_least_is_left(forward):
     assert _likeliest(evidence, starts) is true
 
 
-def test_a_round_that_leaves_more_than_the_one_before_is_not_kept(forward, monkeypatch):
+def chosen_by(monkeypatch, forward, ahead, plainly):
+    """Effects that stay of what each selection is made to choose."""
+
+    def choosing(kinds):
+        def run(selector, begin=()):
+            labels = [trial.cause.label for trial in selector.regression.trials]
+            return [labels.index(f"actuator_{kind}@valve") for kind in kinds(len(begin))]
+
+        return run
+
+    monkeypatch.setattr(Selector, "run", choosing(ahead))
+    monkeypatch.setattr(PlainSelector, "run", choosing(plainly))
     builder = builder_of(forward)
     origin = builder.fitted.runs.origin
-    rounds: list[int] = []
-
-    def run(selector: Selector, begin=()) -> list[int]:
-        if not selector.families:
-            rounds.append(len(begin))
-        labels = [trial.cause.label for trial in selector.regression.trials]
-        if len(rounds) > 1:
-            return [labels.index("actuator_asymmetry@valve")]
-        return [labels.index(f"actuator_{kind}@valve") for kind in ("gain", "deadband")]
-
-    monkeypatch.setattr(Selector, "run", run)
     halves, chosen, _ = builder.chosen(builder.halves(origin, ()), origin)
-    names = {halves.regression.trials[n].cause.effect for n in chosen}
+    return {halves.regression.trials[n].cause.effect for n in chosen}
+
+
+def test_a_round_that_leaves_more_than_the_one_before_is_not_kept(forward, monkeypatch):
+    begun: list[int] = []
+
+    def kinds(count):
+        begun.append(count)
+        return ("asymmetry",) if count else ("gain", "deadband")
+
+    names = chosen_by(monkeypatch, forward, kinds, kinds)
     assert names == {"actuator_gain", "actuator_deadband"}
-    assert rounds == [0, 2]
+    assert begun == [0, 0, 2, 2]
 
 
 def test_of_two_choices_the_one_that_leaves_less_in_full_is_kept(forward, monkeypatch):
-    builder = builder_of(forward)
-    origin = builder.fitted.runs.origin
-
-    def run(selector: Selector, begin=()) -> list[int]:
-        labels = [trial.cause.label for trial in selector.regression.trials]
-        kinds = ("gain", "deadband") if selector.families else ("asymmetry",)
-        return [labels.index(f"actuator_{kind}@valve") for kind in kinds]
-
-    monkeypatch.setattr(Selector, "run", run)
-    halves, chosen, _ = builder.chosen(builder.halves(origin, ()), origin)
-    names = {halves.regression.trials[n].cause.effect for n in chosen}
+    names = chosen_by(
+        monkeypatch, forward, lambda _: ("asymmetry",), lambda _: ("gain", "deadband")
+    )
     assert names == {"actuator_gain", "actuator_deadband"}

@@ -18,6 +18,7 @@ from ves_twin.diagnosis.build_up.idle import idle
 from ves_twin.diagnosis.build_up.nearest import nearest
 from ves_twin.diagnosis.build_up.offer import Offer, preferred
 from ves_twin.diagnosis.build_up.paired import loss
+from ves_twin.diagnosis.build_up.plain_selector import PlainSelector
 from ves_twin.diagnosis.build_up.proof import Bench, Proof, prove
 from ves_twin.diagnosis.build_up.regression import Regression
 from ves_twin.diagnosis.build_up.report import report_of
@@ -128,12 +129,12 @@ class _Builder:
         return halves, _places(halves, present), point
 
     def offered(self, regression: Regression, present: Sequence[int]) -> list[list[int]]:
-        """What the selection chooses with exchanges, and with families in their place.
+        """What the selection chooses by what is left one step ahead, and by plain squares.
 
-        Neither serves all: families let gains in for frictions (the workshop's arm), and without
-        them a double pendulum's frictions are told as a delay. Full fits say which it is.
+        Neither serves all: whitening in time hides what acts slowly (a double pendulum's
+        frictions, an excavator's valve), and plain squares have few independent rows (TX40).
         """
-        both = (Selector(regression, families).run(present) for families in (False, True))
+        both = (Selector(regression).run(present), PlainSelector(regression).run(present))
         return list({tuple(sorted(one)): one for one in both}.values())
 
     def tried(self, halves: Halves, chosen: list[int], point: FloatArray) -> Offer:

@@ -50,6 +50,8 @@ def paired(difference: FloatArray, piece: IntArray) -> Difference:
         difference: loss without less loss with, row by row (n,).
         piece: number of the contiguous stretch that each row belongs to (n,).
     """
+    if not len(difference):
+        return Difference(1.0, 0.0, 0)
     numbers = _blocks(piece, _length(difference, piece))
     sums = np.bincount(numbers, difference)
     sums = sums[np.bincount(numbers) > 0]

@@ -96,6 +96,21 @@ class LinearFit:
 
 
 @dataclass(frozen=True)
+class PlainFit:
+    """Amplitudes by plain squares.
+
+    Attributes:
+        shares: amplitudes in prior sd, nuisances first (k,).
+        scale: those sd (k,).
+        rms: of what is left of each channel (c,).
+    """
+
+    shares: FloatArray
+    scale: FloatArray
+    rms: FloatArray
+
+
+@dataclass(frozen=True)
 class Regression:
     """Linear fits on one half.
 
@@ -200,21 +215,58 @@ class Regression:
             tuple(chosen), whitening, scale, shares, hessian, gradient, samples, residual
         )
 
-    def plain_error(self, chosen: Sequence[int]) -> float:
-        """Sum over channels of the log of what plain least squares leave, in their units."""
+    def plain(
+        self, chosen: Sequence[int], weights: FloatArray | None = None, prior: float = RIDGE
+    ) -> PlainFit:
+        """Amplitudes by plain squares, and what they leave of each channel.
+
+        Args:
+            chosen: numbers of trials.
+            weights: of the squares of each channel in units of its level (c,); one if None.
+            prior: weight of the squares of amplitudes in their prior sd.
+        """
         gram, cross, power = self._products
         shared = np.arange(len(self.half.shared) + len(self.half.own))
         at = np.concatenate([shared, *(self._columns[n] for n in chosen)]).astype(int)
         scale = np.concatenate([np.ones(len(shared)), *(self.prior[n] for n in chosen)])
         inner = gram[:, at[:, None], at] * np.outer(scale, scale)
         slope = cross[:, at] * scale
-        hessian = inner.sum(axis=0) + RIDGE * np.eye(len(at))
-        shares = np.linalg.solve(hessian, slope.sum(axis=0))
+        weights = np.ones(len(power)) if weights is None else weights
+        hessian = np.tensordot(weights, inner, axes=1) + prior * np.eye(len(at))
+        shares = np.linalg.solve(hessian, weights @ slope)
         left = power - 2.0 * slope @ shares + inner @ shares @ shares
-        rms = self.level * np.sqrt(
-            np.maximum(left, 0.0) / np.maximum(self.half.kept.sum(axis=0), 1)
-        )
-        return float(np.sum(np.log(np.maximum(rms, 1e-30))))
+        mean = np.maximum(left, 0.0) / np.maximum(self.half.kept.sum(axis=0), 1)
+        return PlainFit(shares, scale, np.maximum(self.level * np.sqrt(mean), 1e-30))
+
+    def plain_error(self, chosen: Sequence[int]) -> float:
+        """Sum over channels of the log of what plain least squares leave, in their units."""
+        return float(np.sum(np.log(self.plain(chosen).rms)))
+
+    def price(self, samples: float, width: int) -> float:
+        """Chi^2 that trials of so many columns must take to enter, of so many samples.
+
+        Source: Chen and Chen 2008, Extended Bayesian information criteria, Biometrika 95.
+        """
+        return float(width * (np.log(samples) + 2.0 * np.log(max(self._causes, 1))))
+
+    def width(self, trials: Sequence[int]) -> int:
+        """Columns of trials together."""
+        return sum(self.trials[n].width for n in trials)
+
+    def rest(self, chosen: Sequence[int]) -> list[int]:
+        """Trials of causes that are not chosen yet."""
+        used = {self.trials[n].cause.label for n in chosen}
+        return [n for n, trial in enumerate(self.trials) if trial.cause.label not in used]
+
+    def variants(self, trial: int) -> list[int]:
+        """Trials of the same cause."""
+        label = self.trials[trial].cause.label
+        return [n for n, other in enumerate(self.trials) if other.cause.label == label]
+
+    @cached_property
+    def _causes(self) -> int:
+        """How many causes may be chosen."""
+        return len({trial.cause.label for trial in self.trials})
 
     @cached_property
     def _columns(self) -> list[IntArray]:

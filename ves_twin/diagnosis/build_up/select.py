@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import cached_property
 
 import numpy as np
 
@@ -46,11 +45,9 @@ class Selector:
 
     Attributes:
         regression: on the fitted half.
-        families: whether one kind at all places may enter at once, and nothing is exchanged then.
     """
 
     regression: Regression
-    families: bool = False
 
     def run(self, begin: Sequence[int] = ()) -> list[int]:
         """Chosen trials, each cause once at most.
@@ -58,8 +55,6 @@ class Selector:
         Args:
             begin: trials to begin with.
         """
-        if self.families:
-            return self._lasting(*self._entered(list(begin)))
         now = self._grown(list(begin))
         while True:
             other = self._exchanged(now) or self._grown(now.chosen)
@@ -74,7 +69,7 @@ class Selector:
         there is one cause's, it passes for discrepancy whose whitening hides it (dry friction of
         both joints of a double pendulum).
         """
-        rest, regression = self._rest([]), self.regression
+        rest, regression = self.regression.rest([]), self.regression
         if not rest:
             return []
         learnt = regression.fit([])
@@ -88,10 +83,6 @@ class Selector:
                 sound = self.swapped(few)
                 found.setdefault(frozenset(sound), sound)
         return [few for few in found.values() if few]
-
-    def price(self, samples: float, width: int) -> float:
-        """Chi^2 that trials must take to enter."""
-        return float(width * (np.log(samples) + 2.0 * np.log(max(self._causes, 1))))
 
     def _grown(self, chosen: list[int]) -> _Choice:
         """With all that is worth its price beside a choice, and without what is not any more."""
@@ -111,13 +102,15 @@ class Selector:
     def _exchanged(self, now: _Choice) -> _Choice | None:
         """The choice with one cause in the place of another, if that is clearly better."""
         regression, trials = self.regression, self.regression.trials
-        rest, promises = self._rest(now.chosen), list[tuple[float, int, int]]()
+        rest, promises = self.regression.rest(now.chosen), list[tuple[float, int, int]]()
         for n in now.chosen:
             without = regression.solve([k for k in now.chosen if k != n], now.fit.whitening)
             gains = regression.gains(without, [*rest, n])
-            worth = gains.of(n) - self.price(now.fit.samples, trials[n].width)
+            worth = gains.of(n) - self.regression.price(now.fit.samples, trials[n].width)
             for k in rest:
-                promise = gains.of(k) - self.price(now.fit.samples, trials[k].width) - worth
+                promise = (
+                    gains.of(k) - self.regression.price(now.fit.samples, trials[k].width) - worth
+                )
                 promises.append((promise, n, k))
         for promise, n, k in sorted(promises, reverse=True)[:TRIED]:
             if promise <= 0.0:
@@ -129,39 +122,36 @@ class Selector:
 
     def _choice(self, chosen: list[int]) -> _Choice:
         fit = self.regression.fit(chosen)
-        return _Choice(chosen, fit, self._evidence(fit, self._width(chosen)))
-
-    @cached_property
-    def _causes(self) -> int:
-        """How many causes may be chosen."""
-        return len({trial.cause.label for trial in self.regression.trials})
-
-    def _rest(self, chosen: Sequence[int]) -> list[int]:
-        """Trials of causes that are not chosen yet."""
-        trials = self.regression.trials
-        used = {trials[n].cause.label for n in chosen}
-        return [n for n, trial in enumerate(trials) if trial.cause.label not in used]
+        return _Choice(chosen, fit, self._evidence(fit, self.regression.width(chosen)))
 
     def _next(self, chosen: list[int], fit: LinearFit) -> tuple[list[int], LinearFit | None]:
         """The trials to add, and the fit with them; None where nothing is worth its price."""
-        rest = self._rest(chosen)
+        rest = self.regression.rest(chosen)
         if not rest:
             return [], None
         regression, samples = self.regression, fit.samples
         gains = regression.gains(fit, rest)
-        offers = [[max(rest, key=lambda n: gains.of(n) - self.price(samples, self._width([n])))]]
+        offers = [
+            [
+                max(
+                    rest,
+                    key=lambda n: (
+                        gains.of(n) - self.regression.price(samples, self.regression.width([n]))
+                    ),
+                )
+            ]
+        ]
         pair = self._pair(gains, rest)
         offers += [list(pair)] if pair and self._synergy(gains, pair, offers[0]) else []
-        offers += self._families(gains, rest) if self.families else []
-        worth = [self._worth(gains, offer, samples) for offer in offers]
+        worth = [gains.of(*o) - regression.price(samples, regression.width(o)) for o in offers]
         pick, top = offers[int(np.argmax(worth))], max(worth)
         there = regression.fit([*chosen, *pick], fit.whitening, 2) if top > 0.0 else None
         slow, by_slow = self._slow(chosen, fit, rest, pick if there else [])
         if by_slow is not None:
             limit = self._evidence(fit, 0)
             if there is not None:
-                limit = max(limit, self._evidence(there, self._width(pick)))
-            if self._evidence(by_slow, self._width(slow)) > limit:
+                limit = max(limit, self._evidence(there, self.regression.width(pick)))
+            if self._evidence(by_slow, self.regression.width(slow)) > limit:
                 return slow, by_slow
         return pick, there
 
@@ -194,10 +184,7 @@ class Selector:
         """Log evidence of a fit by its discrepancy's size, less the price of what was added."""
         rows = fit.samples / len(fit.whitening.mixing[0])
         _, size = np.linalg.slogdet(fit.whitening.mixing[0])
-        return float(rows * size - 0.5 * self.price(fit.samples, width))
-
-    def _width(self, trials: Sequence[int]) -> int:
-        return sum(self.regression.trials[n].width for n in trials)
+        return float(rows * size - 0.5 * self.regression.price(fit.samples, width))
 
     def _pair(self, gains: Gains, rest: list[int]) -> tuple[int, int] | None:
         """The two trials of different causes that take most together."""
@@ -216,52 +203,15 @@ class Selector:
         """Whether two together take more than the best alone could announce twice over."""
         return gains.of(*pair) > 2.0 * gains.of(*single)
 
-    def _worth(self, gains: Gains, offer: list[int], samples: float) -> float:
-        """Gain less price; a family was looked at once, however many members it has."""
-        width = self._width(offer)
-        if len(offer) < 3:
-            return gains.of(*offer) - self.price(samples, width)
-        once = self.price(samples, 1) - np.log(samples)
-        return float(gains.of(*offer) - width * np.log(samples) - once)
-
-    def _families(self, gains: Gains, rest: list[int]) -> list[list[int]]:
-        """One kind of cause at every place, and all kinds at one place of couplings."""
-        trials = self.regression.trials
-        found = []
-        for effect in dict.fromkeys(trials[n].cause.effect for n in rest):
-            best: dict[str, int] = {}
-            for n in rest:
-                cause = trials[n].cause
-                if cause.effect != effect or gains.of(n) <= 0.0:
-                    continue
-                if cause.target not in best or gains.of(n) > gains.of(best[cause.target]):
-                    best[cause.target] = n
-            if len(best) > 2:
-                found.append(list(best.values()))
-        return found
-
-    def _lasting(self, chosen: list[int], fit: LinearFit) -> list[int]:
-        """Without trials that take less than ln n a column of chi^2 beside all others."""
-        regression = self.regression
-        chosen = self.swapped(list(chosen))
-        while chosen:
-            fit = regression.fit(chosen, fit.whitening, 2)
-            losses = losses_of(regression, fit)
-            worst = min(chosen, key=lambda n: losses[n])
-            if losses[worst] > np.log(fit.samples):
-                break
-            chosen.remove(worst)
-        return chosen
-
     def swapped(self, chosen: list[int]) -> list[int]:
         """With the best variant of each cause in place of the one that was chosen, by plain error.
 
         Whitened by a discrepancy, a friction with a wrong gap can pass for a right one with slow
         error beside it (the damper: gaps of 1 and 6 mm).
         """
-        trials, regression = self.regression.trials, self.regression
+        regression = self.regression
         for place, n in enumerate(list(chosen)):
-            variants = [k for k, t in enumerate(trials) if t.cause.label == trials[n].cause.label]
+            variants = regression.variants(n)
             if len(variants) < 2:
                 continue
             rest = [k for k in chosen if k != n]

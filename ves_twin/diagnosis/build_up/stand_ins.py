@@ -25,8 +25,7 @@ def stand_ins(proof: Proof) -> dict[int, list[int]]:
     """Of each proved trial those that held-out rows cannot tell from it, by falling likeness."""
     regression = proof.bench.regression
     trials, kept = regression.trials, list(proof.proved)
-    used = {trials[n].cause.label for n in kept}
-    others = [n for n, trial in enumerate(trials) if trial.cause.label not in used]
+    others = regression.rest(kept)
     fit = regression.solve(kept, proof.bench.fit.whitening)
     bench = replace(proof.bench, fit=fit)
     scale = bench.scale(kept)
