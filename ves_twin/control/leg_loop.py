@@ -8,7 +8,6 @@ import numpy as np
 
 from ves_twin.core.compiled import compiled
 from ves_twin.core.errors import InvalidInputError
-from ves_twin.core.sections import chebyshev
 from ves_twin.core.types import FloatArray, Record
 
 PARAMETERS = np.dtype(
@@ -73,11 +72,14 @@ def chebyshev_section(rate: float, edge: float = EDGE) -> tuple[FloatArray, Floa
 
     Source: thesis Table 5-1, errata E-43, E-44.
     """
+    from scipy.signal import cheby2  # slow to import
+
     if rate <= 2.0 * edge:
         raise InvalidInputError(
             "rate of the leg loop", rate, f"more than {2.0 * edge:g} Hz, twice the edge"
         )
-    return chebyshev(edge, 4.0, rate)
+    numerator, denominator = cheby2(2, 4.0, edge, fs=rate)
+    return np.asarray(numerator), np.asarray(denominator)
 
 
 @compiled

@@ -7,7 +7,6 @@ import numpy as np
 from ves_twin.control import arm_servo, leg_loop
 from ves_twin.control.belief import Belief
 from ves_twin.core.errors import InvalidInputError
-from ves_twin.core.sections import butterworth, passed
 from ves_twin.core.types import Block
 from ves_twin.plant.hydraulics import fill_chambers, refuse_idle
 from ves_twin.plant.layout import Layout
@@ -202,12 +201,15 @@ def _fill_legs(p: np.void, legs: Legs, clock: Clock, belief: Belief) -> None:
 
 def fill_sensor(p: np.void, table: ParameterTable, tick: float) -> None:
     """Write the force sensor's PARAMETERS for a sampling time [s]."""
+    from scipy.signal import butter, lfilter  # slow to import
+
     corner = table.number("sensor.corner")
     if corner >= 0.5 / tick:
         raise InvalidInputError(
             "sensor.corner", corner, f"less than half a tick's rate, {0.5 / tick:.1f} Hz"
         )
-    numerator, denominator = butterworth(corner, 1.0 / tick)
+    numerator, denominator = butter(2, corner, fs=1.0 / tick)
+    impulse = lfilter(numerator, denominator, np.eye(1, int(1.0 / tick))[0])
     full_scale = table.array("sensor.range")
     share = table.array("sensor.crosstalk")
     p["gain"] = np.eye(6) + share * np.outer(full_scale, 1.0 / full_scale)
@@ -215,7 +217,7 @@ def fill_sensor(p: np.void, table: ParameterTable, tick: float) -> None:
     p["offset"] = table.array("sensor.offset")
     p["drift"] = table.array("sensor.drift")
     # the table gives the sd of the filtered reading; white noise loses this share in the filter
-    p["noise"] = table.array("sensor.noise") / passed(corner, 1.0 / tick)
+    p["noise"] = table.array("sensor.noise") / np.sqrt(np.sum(impulse**2))
     p["wander"] = table.array("sensor.wander")
     p["wander_decay"] = np.exp(-SLOW * tick / table.number("sensor.wander_time"))
     p["wander_kick"] = np.sqrt(1.0 - p["wander_decay"] ** 2)

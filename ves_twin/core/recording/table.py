@@ -40,14 +40,10 @@ def batch_of(
     schema: pa.Schema, time: FloatArray, signals: Mapping[str, FloatArray]
 ) -> pa.RecordBatch:
     """Rows as a record batch of a schema; signals (n, width) in the schema's order."""
-    columns = [time, *(column for values in signals.values() for column in values.T)]
-    return pa.record_batch([_array(column) for column in columns], schema=schema)
-
-
-def _array(column: FloatArray) -> pa.Array:
-    """As `pa.array` makes it, which would import pandas first."""
-    numbers = np.ascontiguousarray(column, dtype=np.float64)
-    return pa.Array.from_buffers(pa.float64(), len(numbers), [None, pa.py_buffer(numbers)])
+    arrays = [pa.array(time)]
+    for values in signals.values():
+        arrays += [pa.array(np.ascontiguousarray(values[:, i])) for i in range(values.shape[1])]
+    return pa.record_batch(arrays, schema=schema)
 
 
 def with_info(schema: pa.Schema, info: RecordingInfo) -> pa.Schema:
