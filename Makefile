@@ -98,7 +98,7 @@ diagnosis-scorecard: .venv/.run
 	$(BIN)/python benchmarks/suites.py --size full --folder runs/blind --page docs/diagnosis-scorecard.md
 
 figures: .venv/.dev
-	$(BIN)/python -m pytest -n 0 --figures docs/figures.md \
+	$(BIN)/python -m pytest -n 0 --nightly --figures docs/figures.md \
 		tests/mechanics/kinematics/test_stewart.py tests/plant tests/simulator
 
 # laws that no library has, hidden in the pendulum: counts for docs/laws.md

@@ -9,6 +9,8 @@ import ves_twin as vt
 from ves_twin.cli.main import main
 from ves_twin.core.recording.files import save_recording
 
+pytestmark = pytest.mark.usefixtures("standing")
+
 CHANGES = {
     "run.duration": 4.0,
     "plant": "ves2",

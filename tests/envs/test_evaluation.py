@@ -136,7 +136,7 @@ def test_a_policy_that_fails_is_named_in_one_line(answer):
 
 
 def score(environment, policy):
-    found = evaluate(Trial(environment, policy, "train-v0", "ves2_fast"), range(100, 102))
+    found = evaluate(Trial(environment, policy, "train-v0", "ves2_fast"), [100])
     assert set(found.outcomes) == {"completed"}
     return found.figures
 

@@ -174,8 +174,7 @@ def test_scenarios_that_hide_nothing_are_refused():
 )
 def test_each_baseline_is_better_than_nothing(environment, policy):
     found = [
-        evaluate(Trial(environment, name, "none", "ves2_fast"), range(100, 103))
-        for name in (policy, "still")
+        evaluate(Trial(environment, name, "none", "ves2_fast"), [100]) for name in (policy, "still")
     ]
     assert set(found[0].outcomes) == {"completed"}
     assert found[0].figures["return"].iqm > found[1].figures["return"].iqm

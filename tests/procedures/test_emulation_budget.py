@@ -36,7 +36,8 @@ def test_an_error_since_a_time_leaves_the_run_before_it_as_it_was():
 
 @pytest.mark.slow
 def test_the_sources_add_up_to_everything_but_small_cross_terms(tmp_path):
-    procedure = load_procedure("emulation_error_budget", {"duration": 4.0})
+    changes = {"plant": "ves2_crosstalk_fast", "duration": 4.0}
+    procedure = load_procedure("emulation_error_budget", changes)
     values = procedure.carry_out(RunContext(tmp_path)).values
     rms = {name: 1e3 * np.linalg.norm(row[:3]) for name, row in values["rms"].items()}
     assert set(values["ranked"][:2]) == {"leg bandwidth", "delay"}  # docs/emulation-error.md

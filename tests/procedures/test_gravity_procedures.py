@@ -48,7 +48,7 @@ def test_the_shipped_calibration_is_what_its_scenario_makes(calibrated):
 
 @pytest.mark.slow
 def test_a_known_weight_shows_what_is_hidden(tmp_path):
-    changes = {"pin": "weight", "poses.choice": "grid"}
+    changes = {"plant": "ves2_crosstalk_fast", "pin": "weight", "poses.choice": "grid"}
     values = carried_out("calibrate_47_poses", tmp_path, changes)
     assert values["hidden_from_gravity_poses"] == []
     mass = values["parameters"][0]
@@ -57,7 +57,12 @@ def test_a_known_weight_shows_what_is_hidden(tmp_path):
 
 @pytest.mark.slow
 def test_a_frozen_platform_stalls_at_several_newtons_and_a_constant_tilt_hides(tmp_path):
-    changes = {"poses.count": 30, "poses.choice": "grid", "passes": 4}
+    changes = {
+        "plant": "ves2_crosstalk_fast",
+        "poses.count": 30,
+        "poses.choice": "grid",
+        "passes": 4,
+    }
     values = carried_out("frozen_platform_droop", tmp_path, changes)
     assert 0.3 < values["droop_max_deg"] < 0.8
     frozen = np.array(values["frozen"]["peak"])

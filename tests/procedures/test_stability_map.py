@@ -6,6 +6,7 @@ import sys
 
 import numpy as np
 import pytest
+from sizes import nightly_but
 
 import ves_twin as vt
 from ves_twin.control.leg_loop import FilterPlace
@@ -70,7 +71,7 @@ def test_rigid_plant_has_the_limits_of_one_axis():
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("plant", ["ves2", "ves2_pressure_fitted"])
+@pytest.mark.parametrize("plant", nightly_but(1, ["ves2", "ves2_pressure_fitted"]))
 def test_filter_on_the_error_needs_half_the_payload_and_on_the_feedback_less(plant, figure):
     limits = {place: share(HIGH_GAIN, place, plant=plant) for place in ("error", "feedback")}
     assert limits["error"] >= 0.45

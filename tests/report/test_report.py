@@ -61,6 +61,11 @@ def proven(settings):
     return said(settings, {"friction.size": 0.1}, held_out=[held])
 
 
+@pytest.fixture(scope="module")
+def proven_page(proven):
+    return diagnosis_page(proven, "Diagnosis of <run>", "The plant is plant.toml.")
+
+
 def first_screen(page):
     return words_of(page[page.index("<h1>") : page.index("<section>")])
 
@@ -75,8 +80,10 @@ def second_screen(page):
     return words_of(page.split("<section>")[1])
 
 
-def test_the_first_screen_says_what_was_found_how_sure_what_next_and_on_what_it_rests(proven):
-    page = diagnosis_page(proven, "Diagnosis of <run>", "The plant is plant.toml.")
+def test_the_first_screen_says_what_was_found_how_sure_what_next_and_on_what_it_rests(
+    proven, proven_page
+):
+    page = proven_page
     top = first_screen(page)
     assert "Diagnosis of &lt;run&gt;" in top
     size = proven.causes[0].parameters["friction.size"]
@@ -89,8 +96,8 @@ def test_the_first_screen_says_what_was_found_how_sure_what_next_and_on_what_it_
     assert page.index("<figure>") < page.index("<section>")  # one picture
 
 
-def test_the_figures_behind_it_have_size_interval_gain_and_basis(proven):
-    top = second_screen(diagnosis_page(proven, "Diagnosis of <run>", "The plant is plant.toml."))
+def test_the_figures_behind_it_have_size_interval_gain_and_basis(proven, proven_page):
+    top = second_screen(proven_page)
     size = proven.causes[0].parameters["friction.size"]
     ends = re.search(r"([-\d.e]+) to ([-\d.e]+)", top)
     width = size.high - size.low  # of which the printed digits show a tenth
@@ -171,9 +178,9 @@ def test_an_unknown_shows_the_nearest_and_does_not_accept_it(settings):
     data = record(np.random.default_rng(3), added=(u**3)[:, None] * [0.02, 0.0], fed=HELD)
     verdict = diagnose(Toy(), [data], settings=settings)
     assert verdict.verdict is Kind.UNKNOWN
-    top = first_screen(diagnosis_page(verdict))
-    assert "no cause in the library explains" in top
     page = diagnosis_page(verdict)
+    top = first_screen(page)
+    assert "no cause in the library explains" in top
     assert "Nearest, and not accepted" in second_screen(page)
     assert "nearest cause" in top
 
@@ -552,7 +559,7 @@ def test_validated_is_said_of_external_held_out_recordings_with_a_gain_and_of_no
     )
     for verdict in without:
         assert factor(verdict, "validation").standing is Pedigree.OPEN
-        assert "validated" not in diagnosis_page(verdict)
+        assert "validated" not in diagnosis_page(replace(verdict, exhibit=None))
 
 
 def test_what_is_declared_is_called_assumed_and_what_is_flawed_is_not_called_measured(proven):

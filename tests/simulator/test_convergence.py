@@ -10,10 +10,10 @@ pytestmark = pytest.mark.slow
 
 @pytest.fixture(scope="module")
 def runs() -> dict[int, np.ndarray]:
-    """Base motion of 8 s of the beam at 1, 2 and 4 sub-steps a tick."""
+    """Base motion of 5 s of the beam at 1, 2 and 4 sub-steps a tick."""
     found = {}
     for substeps in (1, 2, 4):
-        changes = {"run.duration": 8.0, "run.substeps": substeps}
+        changes = {"run.duration": 5.0, "run.substeps": substeps}
         found[substeps] = vt.simulate(vt.Scenario.load("beam_horizontal_truth", changes))[
             "truth.pose"
         ]

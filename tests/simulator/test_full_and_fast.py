@@ -1,8 +1,7 @@
 """The fast rig agrees with the full one in every shipped scenario, and the scenarios are stable."""
 
 import numpy as np
-import pytest
-from shipped import fast_run, full_run
+from shipped import each_scenario, fast_run, full_run
 
 import ves_twin as vt
 from ves_twin.report.rerun.rig import DrawnRig
@@ -40,10 +39,6 @@ ERROR_AGREEMENT = 0.05
 def runs(name):
     """A scenario as shipped, in both fidelities, with the same noise."""
     return full_run(name)[0], fast_run(name)
-
-
-def each_scenario(names):
-    return pytest.mark.parametrize("name", [pytest.param(n, marks=pytest.mark.slow) for n in names])
 
 
 @each_scenario([n for n in scenario_questions() if n not in ENDS_EARLY])
@@ -122,7 +117,7 @@ def test_free_floating_base_answers_the_arm_and_then_drifts_by_noise(name, figur
         3.0,
         "mm",
     )
-    quiet = vt.simulate(vt.Scenario.load(name, {"run.noise": False}))
+    quiet = vt.simulate(vt.Scenario.load(name, {"run.noise": False, "plant": "ves2_fast"}))
     calm = np.abs(quiet["truth.pose"] - quiet["reference.pose"])
     assert calm[late].max(axis=0)[TURN].max() < 0.2 * error[late].max(axis=0)[TURN].max()
 

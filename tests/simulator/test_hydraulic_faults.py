@@ -183,7 +183,7 @@ ALL = {
 }  # fmt: skip
 
 
-@pytest.mark.slow
+@pytest.mark.nightly
 def test_all_faults_together_converge_in_the_substep(figure):
     runs = {n: hold("ves2_pressure", ALL, **MOVING, **{"run.substeps": n}) for n in (1, 2, 4, 8)}
     clean = hold("ves2_pressure", {}, **MOVING)

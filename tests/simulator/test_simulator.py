@@ -4,7 +4,7 @@ import copy
 
 import numpy as np
 import pytest
-from shipped import full_run
+from shipped import each_scenario, full_run
 
 import ves_twin as vt
 from ves_twin.core.errors import ControllerError, UnreachableError
@@ -88,8 +88,7 @@ def test_every_scenario_starts_settled_and_records_every_signal(name):
 CLOSURE_LIMIT = 1e-5  # m, the figure asked of every scenario
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize("name", list(scenario_questions()))
+@each_scenario(scenario_questions())
 def test_legs_stay_closed_in_every_scenario(name, figure):
     _, gap = full_run(name)
     figure(f"loop closure in {name}", gap * 1e3, CLOSURE_LIMIT * 1e3, "mm")

@@ -34,9 +34,9 @@ on = ["joint_1", "joint_2", "joint_3", "joint_4", "joint_5", "joint_6"]
 
 @pytest.fixture(scope="module")
 def arm(tmp_path_factory):
-    """The arm with three kinds of causes."""
+    """The arm with three kinds of causes, excited half as long."""
     folder = tmp_path_factory.mktemp("arm")
-    text = (FILES / "arm.toml").read_text()
+    text = (FILES / "arm.toml").read_text().replace('duration = "12 s"', 'duration = "6 s"')
     kinds = ("viscous_friction", "coulomb_friction", "joint_spring")
     text = text[: text.index("[[effects]]")] + "".join(map(SMALL.format, kinds))
     (folder / "arm.xml").write_text((FILES / "arm.xml").read_text())

@@ -14,10 +14,13 @@ import pickle
 import shutil
 import tempfile
 from collections.abc import Callable
+from functools import partial
 from pathlib import Path
 from typing import ParamSpec, TypeVar
 
 import pytest
+
+from ves_twin.simulator.simulate import simulate
 
 FOLDER = "VES_TWIN_TESTS_ONCE"
 
@@ -50,6 +53,12 @@ def once(
 def banks() -> Path:
     """A folder of signature libraries that all tests share, as those of a user's diagnoses do."""
     return Path(os.environ[FOLDER]) / "banks"
+
+
+@pytest.fixture
+def standing(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The rig that stands for 20 s to tell its noise stands once a session, not once a comparison."""
+    monkeypatch.setattr("ves_twin.machines.ves2.loop_noise.simulate", partial(once, simulate))
 
 
 def pytest_configure(config: pytest.Config) -> None:

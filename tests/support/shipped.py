@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+
 import mujoco
 import numpy as np
 import pytest
@@ -11,8 +13,21 @@ import ves_twin as vt
 from ves_twin.simulator.outcome import Outcome
 from ves_twin.simulator.simulate import recording_info
 
+ALIKE = {
+    "admittance_tuning", "beam_model_method", "gravity_compensation", "identify_slow",
+    "microgravity_capture", "operation_session", "platform_tracking", "vibration_damping",
+    "vibration_free_reach",
+}  # fmt: skip
+"""Of each another scenario does the like by day; run whole in `make nightly` alone."""
+
 PIECE = 0.1
 """Time between two looks at the legs [s]; a run in pieces is the run at once, to the last bit."""
+
+
+def each_scenario(names: Iterable[str]) -> pytest.MarkDecorator:
+    """A test of each of some shipped scenarios, run whole."""
+    marks = {name: [pytest.mark.slow, *[pytest.mark.nightly] * (name in ALIKE)] for name in names}
+    return pytest.mark.parametrize("name", [pytest.param(n, marks=m) for n, m in marks.items()])
 
 
 def full_run(name: str) -> tuple[vt.Recording, float]:

@@ -9,7 +9,7 @@ from functools import cache
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
-from pendulum import FED, MACHINE, SDS
+from pendulum import FED, MACHINE, SDS, TORQUE, fed
 
 from ves_twin.core.errors import InvalidInputError
 from ves_twin.core.recording.recording import Recording, RecordingInfo
@@ -59,15 +59,18 @@ def dragged() -> tuple[Evidence, LawFit]:
 
 
 @cache
-def hidden(of: str, curve: Callable[[np.ndarray], np.ndarray]) -> tuple[Evidence, LawFit]:
+def hidden(
+    of: str, curve: Callable[[np.ndarray], np.ndarray], rows: int = len(TORQUE)
+) -> tuple[Evidence, LawFit]:
     """A pendulum with a curve, and commissioning errors fitted alone."""
+    programme = fed(TORQUE[:rows, 0])
     x = np.linspace(-12.0, 12.0, 8001)
     knots, values = (tuple(x.tolist()),), tuple(curve(x).tolist())
     law = Law("joint", LawKind.EFFORT, LawShape.TABLE, (of,), knots, values)
-    rows = FORWARD.simulate(FED, {"body_mass@link:mass": 1.004}, False, (law,))
+    rows = FORWARD.simulate(programme, {"body_mass@link:mass": 1.004}, False, (law,))
     rows = rows + np.random.default_rng(3).standard_normal(rows.shape) * SDS
-    signals = {"joint.angle": rows[:, :1], "joint.rate": rows[:, 1:], **FED.drive}
-    recording = Recording(FED.time, signals, RecordingInfo("measured", scenario="dragged"))
+    signals = {"joint.angle": rows[:, :1], "joint.rate": rows[:, 1:], **programme.drive}
+    recording = Recording(programme.time, signals, RecordingInfo("measured", scenario="dragged"))
     seen = preprocess(FORWARD, [recording])
     evidence = Evidence(seen.runs, seen.measured, whitening_declared(seen.runs))
     base = linearise(seen.runs, seen.runs.origin, forward_step=1.0)
@@ -248,7 +251,7 @@ def test_columns_known_without_a_law_serve_for_what_it_is_worth_on_other_recordi
 
 @pytest.mark.slow
 def test_a_search_says_what_it_is_doing_until_its_end():
-    evidence, alone = dragged()
+    evidence, alone = hidden("speed@joint", square, 700)  # its stages, not what it finds
     told: list[str] = []
     search = search_laws(
         evidence, alone.fit, Limits(6.0, 3.8, 0.02), lambda _, what: told.append(what)

@@ -86,7 +86,7 @@ def test_the_fit_from_there_ends_in_the_noise():
     assert fitted().temper < 1.3  # a table's lines between its knots are seen at such loudness
 
 
-@pytest.mark.slow
+@pytest.mark.nightly
 def test_the_closed_form_is_fitted_from_its_share_of_the_table():
     evidence, _ = looked()
     found = closed_forms(evidence, fitted(), ranges(forward(), fitted()))

@@ -32,9 +32,11 @@ def write_crane():
     Path("crane.toml").write_text(blocks("toml")[1])
 
 
-def write_logs():
+def write_logs(log="12.0", check="10.0"):
+    """The logs of the page, or shorter ones."""
     (Path("crane.xml")).write_text(blocks("xml")[0])
-    Path("machine.py").write_text(blocks("python")[0])
+    made = blocks("python")[0].replace('"log.csv", 12.0', f'"log.csv", {log}')
+    Path("machine.py").write_text(made.replace('"check.csv", 10.0', f'"check.csv", {check}'))
     runpy.run_path("machine.py")
 
 
@@ -78,7 +80,7 @@ def test_the_page_shows_the_draft_that_its_first_command_writes(tmp_path, monkey
 @pytest.mark.slow
 def test_the_file_of_the_appendix_names_the_hidden_friction(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
-    write_logs()
+    write_logs("6.0", "5.0")
     write_crane()
     plant = ["--plant", "crane.toml", "--out"]
     assert main(["compare", "log.csv", *plant, "compared"]) == 0

@@ -16,6 +16,8 @@ from ves_twin.report.comparison.page import comparison_page
 from ves_twin.report.comparison.words import gap_sentence, place_sentence, trust_sentence
 from ves_twin.scenario.experiment import Experiment
 
+pytestmark = pytest.mark.usefixtures("standing")
+
 FAST = "ves2_pressure_fast"
 
 

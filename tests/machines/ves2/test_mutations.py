@@ -113,7 +113,7 @@ def test_intact_noise_with_a_memory_is_left_in_peace(settings, still, cases):
     assert score(SLOW_NONE[:count], settings, standstill=still)[QUIET] == (count, count)
 
 
-@pytest.mark.slow
+@pytest.mark.nightly
 def test_without_nuisances_every_rig_in_order_is_called_faulty(tmp_path, cases):
     """What scales, a stop watch and a datasheet leave open then has to be some cause."""
     count, sure = cases(3), exact(sd=0.0)
@@ -121,7 +121,7 @@ def test_without_nuisances_every_rig_in_order_is_called_faulty(tmp_path, cases):
     assert score(NONE[:count], settings, sure)[QUIET] == (0, count)
 
 
-@pytest.mark.slow
+@pytest.mark.nightly
 def test_without_whitening_noise_with_a_memory_is_called_a_fault(
     monkeypatch, tmp_path, still, cases
 ):
