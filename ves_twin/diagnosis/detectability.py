@@ -11,13 +11,15 @@ from ves_twin.diagnosis.refine import ROUGH, refine
 from ves_twin.diagnosis.whitening import Whitening
 
 STEPS = 6
-"""Of a search at most: sizes in sigma sort cases, a hundredth of them matters to nobody."""
+"""Of a search at most: d within a hundredth is enough to sort cases."""
 
 
 def detectability(
     local: Linearisation, whitening: Whitening, shift: FloatArray, rounds: int = 3
 ) -> float:
     """D of a departure: the root of the least chi^2 that commissioning errors alone leave of it.
+
+    To a hundredth, from above: a search ends where it hardly falls any more.
 
     d^2 = min over nu of |W (f(shift) - f(nu))|^2 + sum (nu / sd)^2. For a linear model this is
     <s, s> of the marginalised signature.

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from scipy.signal import lfilter
@@ -96,6 +96,23 @@ class Linear:
             ways = np.array([1.0, 1.0 if name == "sum" else -1.0])
             rows += values.get(f"coupling@{name}:size", 0.0) * np.outer(speeds @ ways, ways)
         return rows
+
+
+class Narrow(Linear):
+    """Viscous friction up to 0.1 alone."""
+
+    @property
+    def parameters(self):
+        return tuple(
+            replace(p, low=-0.1, high=0.1) if p.name.startswith("viscous") else p
+            for p in super().parameters
+        )
+
+    @property
+    def hypotheses(self):
+        return tuple(
+            replace(h, largest=(0.1,)) if h.effect == "viscous" else h for h in super().hypotheses
+        )
 
 
 def motion(seed: int) -> Excitation:

@@ -48,7 +48,7 @@ def test_causes_that_halve_what_is_left_are_worth_their_price(regression):
 
 
 def test_slow_error_below_a_row_s_noise_is_judged_by_all_of_it(regression):
-    """One step ahead declared noise is larger than what changes: both look alike there."""
+    """It is a fifth of the declared noise of a row, and smooth over hundreds of them."""
     time = PERIOD * np.arange(len(regression.half.target))
     tones = [np.sin(w * time + p) for w, p in ((0.7, 0.2), (1.1, 1.0), (1.6, 2.0), (2.3, 0.5))]
     slow = 0.002 * np.column_stack([sum(tones[:3]), sum(tones[1:])])

@@ -107,9 +107,8 @@ def test_what_a_dead_band_hides_is_found_beside_it(forward):
 def test_a_dead_band_and_what_acts_beyond_it_are_chosen_by_plain_squares(forward):
     builder = builder_of(forward)
     regression = builder.halves(builder.fitted.runs.origin, ()).regression
-    chosen = PlainSelector(regression).run()
-    names = {regression.trials[n].cause.effect for n in chosen}
-    assert {"actuator_gain", "actuator_deadband"} <= names
+    names = {regression.trials[n].cause.effect for n in PlainSelector(regression).run()}
+    assert names == {"actuator_gain", "actuator_deadband", "actuator_delay"}
 
 
 def test_a_fit_looks_from_the_sizes_of_bent_columns_too(forward, monkeypatch):
@@ -172,8 +171,8 @@ def test_a_round_that_leaves_more_than_the_one_before_is_not_kept(forward, monke
     assert begun == [0, 0, 2, 2]
 
 
-def test_of_two_choices_the_one_that_leaves_less_in_full_is_kept(forward, monkeypatch):
-    names = chosen_by(
-        monkeypatch, forward, lambda _: ("asymmetry",), lambda _: ("gain", "deadband")
-    )
+@pytest.mark.parametrize("first", [True, False])
+def test_of_two_choices_the_one_that_leaves_less_in_full_is_kept(forward, monkeypatch, first):
+    both = (lambda _: ("gain", "deadband"), lambda _: ("asymmetry",))
+    names = chosen_by(monkeypatch, forward, *(both if first else both[::-1]))
     assert names == {"actuator_gain", "actuator_deadband"}

@@ -1,10 +1,8 @@
 """What is chosen for a proof: worth no less than what is hidden, and no cause in another's place."""
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
-from linear import KINDS, Linear, drawn, halves
+from linear import KINDS, Linear, Narrow, drawn, halves
 
 from ves_twin.diagnosis.build_up.select import Selector
 
@@ -44,23 +42,6 @@ def test_plain_errors_by_products_are_those_of_the_columns():
         left = regression._plainly(*regression.design(chosen))
         direct = float(np.sum(np.log(regression.half.rms(left))))
         assert regression.plain_error(chosen) == pytest.approx(direct, abs=1e-5)
-
-
-class Narrow(Linear):
-    """Viscous friction up to 0.1 alone."""
-
-    @property
-    def parameters(self):
-        return tuple(
-            replace(p, low=-0.1, high=0.1) if p.name.startswith("viscous") else p
-            for p in super().parameters
-        )
-
-    @property
-    def hypotheses(self):
-        return tuple(
-            replace(h, largest=(0.1,)) if h.effect == "viscous" else h for h in super().hypotheses
-        )
 
 
 def test_a_cause_far_beyond_its_range_is_not_chosen_in_the_place_of_another():

@@ -129,7 +129,7 @@ class _Builder:
         return halves, _places(halves, present), point
 
     def offered(self, regression: Regression, present: Sequence[int]) -> list[list[int]]:
-        """What the selection chooses by what is left one step ahead, and by plain squares.
+        """What the selection chooses by one-step prediction errors, and by plain squares.
 
         Neither serves all: whitening in time hides what acts slowly (a double pendulum's
         frictions, an excavator's valve), and plain squares have few independent rows (TX40).

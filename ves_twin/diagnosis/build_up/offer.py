@@ -36,7 +36,7 @@ class Offer:
     def of(regression: Regression, chosen: list[int], evidence: Evidence, fit: Fit) -> Offer:
         """With what a fit leaves."""
         residual = np.asarray(bare_residual(evidence, fit), float)
-        rms = np.maximum(regression.half.rms(residual), 1e-30)
+        rms = np.maximum(regression.half.rms(residual), regression.quietest)
         return Offer(chosen, evidence, fit, residual, rms)
 
     @property
@@ -51,9 +51,9 @@ def preferred(regression: Regression, offers: Sequence[Offer]) -> Offer:
         2 log odds = -sum_c n_c log rms_c^2 - price(sum_c n_c)
 
     n_c are rows over twice their memory, of the offer that leaves least: where what is left is
-    slow, few rows are independent. Judged by what is left one step ahead as well, more causes were
-    taken and held-out rows lost by them: model error is no noise that goes on as it was (the
-    damper). Without a price there were false ones (the workshop's arm).
+    slow, few rows are independent. Judged by one-step prediction errors as well, more causes were
+    taken, and held-out rows were told worse: model error does not repeat there (the damper).
+    Without a price there were false ones (the workshop's arm).
 
     Args:
         regression: that the trials belong to.

@@ -1,4 +1,4 @@
-"""PlainSelector: causes that take most of the plain error, rows that remember each other aside."""
+"""PlainSelector: chooses causes by plain least squares, counting only independent rows."""
 
 from __future__ import annotations
 
@@ -19,11 +19,11 @@ ROUNDS = 3
 
 @dataclass(frozen=True)
 class _Scale:
-    """What plain squares are weighed by, as one choice leaves them.
+    """Weight and number of independent rows of each channel, from the residual of a choice.
 
     Attributes:
         weights: of the squares of each channel in its level (c,).
-        count: rows of each that count by themselves (c,).
+        count: independent rows of each (c,).
     """
 
     weights: FloatArray
@@ -32,14 +32,16 @@ class _Scale:
 
 @dataclass(frozen=True)
 class PlainSelector:
-    """Forward selection by plain squares: where what is missing is slow, it passes for discrepancy.
+    """Forward selection by plain squares.
 
-    Whitening in time hides then what acts slowly. Here a channel of n_c independent rows is worth
+    A slow cause looks like coloured model error, which whitening in time removes. Plain squares
+    keep it; rows count as far as they are independent. With n_c independent rows of channel c,
 
-        2 log odds = -sum_c n_c log rms_c^2 - sum (nu / sd)^2 - k (ln n + 2 ln m),
+        2 log odds = -sum_c n_c log rms_c^2 - a'a - k (ln n + 2 ln m),
 
-    k columns of m causes, n the sum of n_c. One by one or two together enter, the best variant of
-    each stays, and those go without which the odds are better.
+    a the amplitudes of nuisances and causes in their prior sd, k columns of m causes, n the sum of
+    n_c. One by one or two together enter, the best variant of each stays, and those go without
+    which the odds are better.
 
     Attributes:
         regression: on the fitted half.
@@ -53,11 +55,11 @@ class PlainSelector:
         Args:
             begin: trials to begin with.
         """
-        chosen = list(begin)
+        chosen = self._pruned(self._swapped(list(begin), self._scale(begin)))
         for _ in range(MOST):
             scale = self._scale(chosen)
             more = self._more(chosen, scale)
-            if not more:
+            if not more or len(chosen) >= MOST:
                 break
             other = self._pruned(self._swapped([*chosen, *more], scale))
             seen = self._scale(other)
@@ -78,16 +80,20 @@ class PlainSelector:
             found = regression.plain(chosen, weights, 1.0)
         return _Scale(weights, count)
 
-    def _odds(self, chosen: Sequence[int], scale: _Scale) -> float:
-        """Logarithm of the odds of a choice; minus infinity where a size cannot be."""
+    def _told(self, chosen: Sequence[int], scale: _Scale) -> tuple[float, list[int]]:
+        """Logarithm of the odds of a choice, and those of it whose size cannot be."""
         regression = self.regression
         fit = regression.plain(chosen, scale.weights, 1.0)
-        for n, at in regression.places(chosen).items():
-            if regression.impossible(n, fit.shares[at]):
-                return -np.inf
+        places = regression.places(chosen)
+        odd = [n for n, at in places.items() if regression.impossible(n, fit.shares[at])]
         told = -2.0 * float(scale.count @ np.log(fit.rms)) - float(fit.shares @ fit.shares)
         price = regression.price(float(np.sum(scale.count)), regression.width(chosen))
-        return 0.5 * (told - price)
+        return 0.5 * (told - price), odd
+
+    def _odds(self, chosen: Sequence[int], scale: _Scale) -> float:
+        """The same; minus infinity where a size cannot be."""
+        odds, odd = self._told(chosen, scale)
+        return -np.inf if odd else odds
 
     def _more(self, chosen: list[int], scale: _Scale) -> list[int]:
         """The trial to add, or two that take more than twice what one does; none if none is worth.
@@ -95,36 +101,43 @@ class PlainSelector:
         Two that hide each other, as a dead band and what acts beyond it, enter together.
         """
         trials, now = self.regression.trials, self._odds(chosen, scale)
-        worth = {n: self._odds([*chosen, n], scale) - now for n in self.regression.rest(chosen)}
-        likely = sorted(worth, key=lambda n: worth[n], reverse=True)[:PAIRED]
-        if not likely:
-            return []
+        told = {n: self._told([*chosen, n], scale) for n in self.regression.rest(chosen)}
+        likely = sorted(told, key=lambda n: told[n][0], reverse=True)[:PAIRED]
+        worth = {n: odds - now for n, (odds, odd) in told.items() if not odd}
         both = {
             (a, b): self._odds([*chosen, a, b], scale) - now
             for a, b in combinations(likely, 2)
             if trials[a].cause.label != trials[b].cause.label
         }
-        one, two = likely[0], max(both, key=lambda pair: both[pair], default=None)
-        if two is not None and both[two] > 2.0 * max(worth[one], CLEAR):
+        one = max(worth, key=lambda n: worth[n], default=None)
+        two = max(both, key=lambda pair: both[pair], default=None)
+        alone = 0.0 if one is None else worth[one]
+        if two is not None and both[two] > 2.0 * max(alone, CLEAR):
             return list(two)
-        return [one] if worth[one] > CLEAR else []
+        return [one] if one is not None and alone > CLEAR else []
 
     def _swapped(self, chosen: list[int], scale: _Scale) -> list[int]:
         """With the best variant of each cause."""
         for place, n in enumerate(chosen):
-            others = [*chosen[:place], *chosen[place + 1 :]]
-            variants = self.regression.variants(n)
-            best = max(variants, key=lambda k: self._odds([*others, k], scale))
-            chosen = [*chosen[:place], best, *chosen[place + 1 :]]
+            variants = [n, *(k for k in self.regression.variants(n) if k != n)]
+            if len(variants) > 1:
+                rest = [*chosen[:place], *chosen[place + 1 :]]
+                odds = {k: self._odds([*rest, k], scale) for k in variants}
+                best = max(variants, key=lambda k: odds[k])
+                chosen = [*chosen[:place], best, *chosen[place + 1 :]]
         return chosen
 
     def _pruned(self, chosen: list[int]) -> list[int]:
-        """Without those without which the odds are better."""
+        """Without those that cannot be, and those without which the odds are better."""
         while chosen:
             scale = self._scale(chosen)
+            odds, odd = self._told(chosen, scale)
+            if odd:
+                chosen = [n for n in chosen if n != odd[-1]]
+                continue
             fewer = [[k for k in chosen if k != n] for n in chosen]
             best = max(fewer, key=lambda some: self._odds(some, scale))
-            if self._odds(best, scale) < self._odds(chosen, scale):
+            if self._odds(best, scale) < odds:
                 break
             chosen = best
         return chosen

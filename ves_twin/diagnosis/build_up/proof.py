@@ -212,6 +212,8 @@ def prove(regression: Regression, held: Half, chosen: Sequence[int], more: int =
     kept, dropped = list(chosen), dict[int, float]()
     back: list[int] | None = None
     whole = Bench(regression.fit(chosen), held, regression)
+    if not whole.whole.any():
+        return Proof((), {}, dict.fromkeys(kept, 1.0), tested, whole)
     bench, found = whole, _each(whole, kept)
     null = more + _null([found[n].p for n in kept])
     while True:

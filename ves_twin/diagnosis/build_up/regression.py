@@ -31,6 +31,10 @@ it was tried: a gain of a drive's torque, five times as large as its range allow
 inertia and friction that a bench's model lacks. Held to bent columns as well it lost the valve of
 the excavator (0.175 cm in place of 0.082)."""
 
+QUIET = 0.01
+"""Share of a channel's declared noise that plain squares tell nothing below: slow error is less
+than the noise of a row (the excavator), and what rounding leaves of a still channel is no error."""
+
 RIDGE = 1e-3
 """Prior weight while nothing is known of the discrepancy, in rows."""
 
@@ -125,9 +129,13 @@ class Regression:
     @cached_property
     def level(self) -> FloatArray:
         """Rms of what is to be explained in each channel (c,), declared noise at least."""
+        return np.asarray(np.maximum(self.half.rms(self.half.target), self.quietest / QUIET))
+
+    @cached_property
+    def quietest(self) -> FloatArray:
+        """Rms of each channel below which nothing is told (c,)."""
         channels = [self.half.runs.forward.channels[c] for c in self.half.runs.columns]
-        sds = np.array([channel.sd for channel in channels])
-        return np.asarray(np.maximum(self.half.rms(self.half.target), sds))
+        return np.maximum(QUIET * np.array([channel.sd for channel in channels]), 1e-30)
 
     @cached_property
     def prior(self) -> list[FloatArray]:
@@ -236,18 +244,22 @@ class Regression:
         shares = np.linalg.solve(hessian, weights @ slope)
         left = power - 2.0 * slope @ shares + inner @ shares @ shares
         mean = np.maximum(left, 0.0) / np.maximum(self.half.kept.sum(axis=0), 1)
-        return PlainFit(shares, scale, np.maximum(self.level * np.sqrt(mean), 1e-30))
+        return PlainFit(shares, scale, np.maximum(self.level * np.sqrt(mean), self.quietest))
 
     def plain_error(self, chosen: Sequence[int]) -> float:
         """Sum over channels of the log of what plain least squares leave, in their units."""
         return float(np.sum(np.log(self.plain(chosen).rms)))
 
     def price(self, samples: float, width: int) -> float:
-        """Chi^2 that trials of so many columns must take to enter, of so many samples.
+        """Least fall of chi^2 for which trials enter: the extended Bayesian criterion.
+
+        Args:
+            samples: that count.
+            width: columns of the trials.
 
         Source: Chen and Chen 2008, Extended Bayesian information criteria, Biometrika 95.
         """
-        return float(width * (np.log(samples) + 2.0 * np.log(max(self._causes, 1))))
+        return float(width * (np.log(max(samples, 1.0)) + 2.0 * np.log(max(self._causes, 1))))
 
     def width(self, trials: Sequence[int]) -> int:
         """Columns of trials together."""

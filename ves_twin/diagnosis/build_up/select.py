@@ -86,10 +86,6 @@ class Selector:
 
     def _grown(self, chosen: list[int]) -> _Choice:
         """With all that is worth its price beside a choice, and without what is not any more."""
-        return self._pruned(self._entered(chosen)[0])
-
-    def _entered(self, chosen: list[int]) -> tuple[list[int], LinearFit]:
-        """With all that is worth its price beside a choice."""
         fit = self.regression.fit(chosen)
         while len(chosen) < MOST:
             more, there = self._next(chosen, fit)
@@ -97,21 +93,20 @@ class Selector:
                 break
             chosen = self.swapped([*chosen, *more])
             fit = self.regression.fit(chosen, there.whitening, 2)
-        return chosen, fit
+        return self._pruned(chosen)
 
     def _exchanged(self, now: _Choice) -> _Choice | None:
         """The choice with one cause in the place of another, if that is clearly better."""
         regression, trials = self.regression, self.regression.trials
-        rest, promises = self.regression.rest(now.chosen), list[tuple[float, int, int]]()
+        rest, promises = regression.rest(now.chosen), list[tuple[float, int, int]]()
+
+        def worth(gains: Gains, n: int) -> float:
+            return gains.of(n) - regression.price(now.fit.samples, trials[n].width)
+
         for n in now.chosen:
             without = regression.solve([k for k in now.chosen if k != n], now.fit.whitening)
             gains = regression.gains(without, [*rest, n])
-            worth = gains.of(n) - self.regression.price(now.fit.samples, trials[n].width)
-            for k in rest:
-                promise = (
-                    gains.of(k) - self.regression.price(now.fit.samples, trials[k].width) - worth
-                )
-                promises.append((promise, n, k))
+            promises += [(worth(gains, k) - worth(gains, n), n, k) for k in rest]
         for promise, n, k in sorted(promises, reverse=True)[:TRIED]:
             if promise <= 0.0:
                 break
@@ -126,26 +121,19 @@ class Selector:
 
     def _next(self, chosen: list[int], fit: LinearFit) -> tuple[list[int], LinearFit | None]:
         """The trials to add, and the fit with them; None where nothing is worth its price."""
-        rest = self.regression.rest(chosen)
+        regression, rest = self.regression, self.regression.rest(chosen)
         if not rest:
             return [], None
-        regression, samples = self.regression, fit.samples
         gains = regression.gains(fit, rest)
-        offers = [
-            [
-                max(
-                    rest,
-                    key=lambda n: (
-                        gains.of(n) - self.regression.price(samples, self.regression.width([n]))
-                    ),
-                )
-            ]
-        ]
+
+        def worth(offer: list[int]) -> float:
+            return gains.of(*offer) - regression.price(fit.samples, regression.width(offer))
+
+        offers = [max(([n] for n in rest), key=worth)]
         pair = self._pair(gains, rest)
         offers += [list(pair)] if pair and self._synergy(gains, pair, offers[0]) else []
-        worth = [gains.of(*o) - regression.price(samples, regression.width(o)) for o in offers]
-        pick, top = offers[int(np.argmax(worth))], max(worth)
-        there = regression.fit([*chosen, *pick], fit.whitening, 2) if top > 0.0 else None
+        pick = max(offers, key=worth)
+        there = regression.fit([*chosen, *pick], fit.whitening, 2) if worth(pick) > 0.0 else None
         slow, by_slow = self._slow(chosen, fit, rest, pick if there else [])
         if by_slow is not None:
             limit = self._evidence(fit, 0)

@@ -38,14 +38,12 @@ def _fewer(proof: Proof, trial: int) -> list[int]:
     """Trials of causes with fewer numbers at the same place that do as well, the best first."""
     regression = proof.bench.regression
     trials, kept = regression.trials, list(proof.proved)
-    used = {trials[k].cause.label for k in kept}
     cause = trials[trial].cause
     others = [
         k
-        for k, one in enumerate(trials)
-        if one.cause.target == cause.target
-        and len(one.cause.parameters) < len(cause.parameters)
-        and one.cause.label not in used
+        for k in regression.rest(kept)
+        if trials[k].cause.target == cause.target
+        and len(trials[k].cause.parameters) < len(cause.parameters)
     ]
     if not others:
         return []
