@@ -12,9 +12,8 @@ from ves_twin.suites.machine import BlindRig
 
 
 @pytest.fixture(scope="module")
-def settings(banks, request):
-    causes = Settings().causes if request.config.getoption("--nightly") else 1
-    return Settings(nulls=40, causes=causes, cache=banks)
+def settings(banks):
+    return Settings(nulls=40, cache=banks)
 
 
 def record(seed, programme="train", hidden=None):
