@@ -73,7 +73,7 @@ def _page(figures: list[Figure]) -> str:
         "# Figures of the rig",
         "",
         "Measured by the tests named beside them; `make figures` writes this page anew.",
-        "Each row repeats with `.venv/bin/python -m pytest TEST`. Speed is in"
+        "Each row repeats with `.venv/bin/python -m pytest --nightly -n 0 TEST`. Speed is in"
         " [speed.md](speed.md), since it depends on the machine.",
         "",
         "| what | measured | asked | test |",

@@ -60,8 +60,9 @@ def test_noise_is_that_many_times_the_plant_s_own():
 def test_one_command_scores_every_challenge_as_evaluate_does(capsys, monkeypatch):
     kept = {}  # the same scores in both forms
 
-    def scored(trial, *more):
-        return kept[trial] if trial in kept else kept.setdefault(trial, evaluate(trial, *more))
+    def scored(trial, seeds, *more):
+        key = trial, tuple(seeds)
+        return kept[key] if key in kept else kept.setdefault(key, evaluate(trial, seeds, *more))
 
     monkeypatch.setattr("ves_twin.envs.challenges.evaluate", scored)
     words = ["evaluate", "VibrationDamping-v0", "--policy", "still", "--seeds", "1", "--challenges"]
@@ -75,6 +76,7 @@ def test_one_command_scores_every_challenge_as_evaluate_does(capsys, monkeypatch
     assert main([*words, "--plant", "ves2_fast"]) == 0
     lines = capsys.readouterr().out.splitlines()
     assert [line.split("  ")[1] for line in lines[3:]] == list(CHALLENGES)
+    assert len(kept) == len(CHALLENGES)  # both forms ask for the same seeds
 
 
 @pytest.fixture(scope="module")

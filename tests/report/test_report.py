@@ -541,7 +541,9 @@ def factor(verdict, name):
     return next(one for one in credibility(verdict) if one.name == name)
 
 
-def test_validated_is_said_of_external_held_out_recordings_with_a_gain_and_of_nothing_else(proven):
+def test_validated_is_said_of_external_held_out_recordings_with_a_gain_and_of_nothing_else(
+    proven, proven_page
+):
     """Every other basis, whatever else it has, must not bring the word onto the page."""
     assert proven.basis.recordings == "unknown"  # a toy wrote them
     external = replace(proven, basis=replace(proven.basis, recordings="external"))
@@ -560,6 +562,8 @@ def test_validated_is_said_of_external_held_out_recordings_with_a_gain_and_of_no
     for verdict in without:
         assert factor(verdict, "validation").standing is Pedigree.OPEN
         assert "validated" not in diagnosis_page(replace(verdict, exhibit=None))
+    assert proven.exhibit is not None  # of the first the page with its pictures, too
+    assert "validated" not in proven_page
 
 
 def test_what_is_declared_is_called_assumed_and_what_is_flawed_is_not_called_measured(proven):

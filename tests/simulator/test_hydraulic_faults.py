@@ -183,6 +183,14 @@ ALL = {
 }  # fmt: skip
 
 
+@pytest.mark.slow
+def test_halving_the_substep_changes_little_under_all_faults_together():
+    one, two = (hold("ves2_pressure", ALL, **MOVING, **{"run.substeps": n}) for n in (1, 2))
+    effect = np.max(np.abs(one["leg.length"] - hold("ves2_pressure", {}, **MOVING)["leg.length"]))
+    gap = np.max(np.abs(one["leg.length"] - two["leg.length"]))
+    assert gap < 0.025 * effect  # a half of the 5 % below: the first halving is the largest
+
+
 @pytest.mark.nightly
 def test_all_faults_together_converge_in_the_substep(figure):
     runs = {n: hold("ves2_pressure", ALL, **MOVING, **{"run.substeps": n}) for n in (1, 2, 4, 8)}

@@ -113,9 +113,10 @@ def test_a_folder_whose_key_is_gone_is_refused(suite, tmp_path):
         make_suite(RECIPE, suite, tmp_path / "other", silent)
 
 
-def test_answering_imports_no_generator_and_reads_no_key(tmp_path):
+@pytest.mark.parametrize("hidden", nightly_but(1, [Hidden.SINGLE, Hidden.NONE]))
+def test_answering_imports_no_generator_and_reads_no_key(tmp_path, hidden):
     """A fresh process, in which opening the key or importing a generator ends in an error."""
-    suite, recipe = tmp_path / "suite", Recipe("pendulum", {Hidden.SINGLE: 1}, 3)
+    suite, recipe = tmp_path / "suite", Recipe("pendulum", {hidden: 1}, 3)
     make_suite(recipe, suite, suite.with_name("key"), silent)
     code = f"""
 import builtins, sys

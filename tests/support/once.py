@@ -57,7 +57,11 @@ def banks() -> Path:
 
 @pytest.fixture
 def standing(monkeypatch: pytest.MonkeyPatch) -> None:
-    """The rig that stands for 20 s to tell its noise stands once a session, not once a comparison."""
+    """The rig that stands 20 s to tell the noise of a comparison stands once a session.
+
+    In the place of `simulate` in `loop_noise` alone, for the body of a test: what a module's
+    fixtures compare is made before it, so that `healthy_result` takes the path of a user.
+    """
     monkeypatch.setattr("ves_twin.machines.ves2.loop_noise.simulate", partial(once, simulate))
 
 

@@ -11,6 +11,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from sizes import nightly_but
 
 from ves_twin.cli.main import main
 from ves_twin.data.import_map import ImportMap
@@ -78,9 +79,10 @@ def test_the_page_shows_the_draft_that_its_first_command_writes(tmp_path, monkey
 
 
 @pytest.mark.slow
-def test_the_file_of_the_appendix_names_the_hidden_friction(tmp_path, monkeypatch):
+@pytest.mark.parametrize(("log", "check"), nightly_but(1, [("6.0", "5.0"), ("12.0", "10.0")]))
+def test_the_file_of_the_appendix_names_the_hidden_friction(tmp_path, monkeypatch, log, check):
     monkeypatch.chdir(tmp_path)
-    write_logs("6.0", "5.0")
+    write_logs(log, check)
     write_crane()
     plant = ["--plant", "crane.toml", "--out"]
     assert main(["compare", "log.csv", *plant, "compared"]) == 0

@@ -13,7 +13,7 @@ from ves_twin.suites.machine import BlindRig
 
 @pytest.fixture(scope="module")
 def settings(banks):
-    return Settings(nulls=40, causes=1, cache=banks)
+    return Settings(nulls=40, cache=banks)
 
 
 def record(seed, programme="train", hidden=None):

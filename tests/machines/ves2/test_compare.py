@@ -12,9 +12,11 @@ from ves_twin.data.quality.check import Grade
 from ves_twin.machines.compare import compare
 from ves_twin.machines.comparison import Basis
 from ves_twin.machines.machine import Named
+from ves_twin.machines.ves2 import loop_noise
 from ves_twin.report.comparison.page import comparison_page
 from ves_twin.report.comparison.words import gap_sentence, place_sentence, trust_sentence
 from ves_twin.scenario.experiment import Experiment
+from ves_twin.simulator.simulate import simulate
 
 pytestmark = pytest.mark.usefixtures("standing")
 
@@ -27,6 +29,7 @@ def one(recording, **options):
 
 @pytest.fixture(scope="module")
 def healthy_result(healthy):
+    assert loop_noise.simulate is simulate  # the rig stands here: `standing` comes later
     return one(healthy)
 
 
