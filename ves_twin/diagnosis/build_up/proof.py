@@ -24,6 +24,11 @@ NULL_FROM = 0.5
 AGAIN = 0.5
 """Share of that rate at which a trial that was dropped may come back: dropping went one by one."""
 
+STRAINED = 5.0
+"""Sd beyond which a tolerance is not taken to do a cause's work, unless it is that far off beside
+all causes as well: columns of a gain hold what causes do, and 95 % less gain would stand for all
+frictions of an axis (EMPS, as it is drafted)."""
+
 ACTS = 0.05
 """Share of its strongest channel's part from which a trial counts as acting on a channel."""
 
@@ -117,12 +122,26 @@ class Bench:
         first = len(self.regression.half.shared) + len(self.regression.half.own)
         parts = [np.arange(first), *(self.places[n] for n in (trials if of is None else of))]
         at = np.concatenate(parts).astype(int)
-        matrix = self.fit.hessian[np.ix_(at, at)]
-        shares = np.linalg.solve(matrix, self.fit.gradient[at])
+        shares = self._held(at, first)
         kept = np.concatenate([np.arange(first), *(self.places[n] for n in trials)]).astype(int)
         amplitude = np.zeros(len(self.fit.scale))
         amplitude[at] = shares
         return kept, amplitude[kept]
+
+    def _held(self, at: IntArray, nuisances: int) -> FloatArray:
+        """Amplitudes of columns, nuisances no farther off than beside all, or STRAINED."""
+        limit = np.full(len(at), np.inf)
+        limit[:nuisances] = np.maximum(STRAINED, np.abs(self.fit.shares[:nuisances]))
+        matrix, slope = self.fit.hessian[np.ix_(at, at)], self.fit.gradient[at]
+        shares, free = np.zeros(len(at)), np.ones(len(at), bool)
+        while True:
+            gradient = slope[free] - matrix[np.ix_(free, ~free)] @ shares[~free]
+            shares[free] = np.linalg.solve(matrix[np.ix_(free, free)], gradient)
+            beyond = free & (np.abs(shares) > limit)
+            if not beyond.any():
+                return shares
+            shares[beyond] = np.sign(shares[beyond]) * limit[beyond]
+            free &= ~beyond
 
     def innovations(self, trials: Sequence[int], of: Sequence[int] | None = None) -> FloatArray:
         """What a subset leaves of the held-out rows (rows, c); arguments as of `subset`."""
