@@ -13,7 +13,7 @@ from ves_twin.diagnosis.build_up.halves import halves_at, split
 from ves_twin.diagnosis.build_up.inseparable import inseparable
 from ves_twin.diagnosis.build_up.nearest import nearest
 from ves_twin.diagnosis.build_up.paired import paired
-from ves_twin.diagnosis.build_up.proof import FALSE_SHARE, prove
+from ves_twin.diagnosis.build_up.proof import FALSE_SHARE, STRAINED, prove
 from ves_twin.diagnosis.build_up.report import report_of
 from ves_twin.diagnosis.build_up.select import Selector
 from ves_twin.diagnosis.build_up.spanned import spanned_by
@@ -296,3 +296,30 @@ def test_what_predicts_better_with_a_sign_that_no_machine_has_is_not_proved():
     assert prove(regression, both.held, [there]).proved == (there,)
     trials = [replace(t, positive=t.cause.label == "coulomb@a") for t in regression.trials]
     assert prove(replace(regression, trials=trials), both.held, [there]).proved == ()
+
+
+def test_a_tolerance_does_no_causes_work_far_beyond_its_sd():
+    """Both rotors are too heavy by 50 sd of the mass, which would stand for either of them."""
+    two = halves(Linear(("rotor", "viscous")), {"rotor@a:size": 0.5, "rotor@b:size": 0.5}, 12)
+    labels = [trial.cause.label for trial in two.regression.trials]
+    chosen = [labels.index("rotor@a"), labels.index("rotor@b")]
+    proof = prove(two.regression, two.held, chosen)
+    assert set(proof.proved) == set(chosen)
+    for some in (chosen[:1], chosen[1:], []):
+        at, shares = proof.bench.subset(some)
+        full = np.abs(proof.bench.fit.shares[:2])
+        assert np.all(np.abs(shares[:2]) <= np.maximum(STRAINED, full) + 1e-9)
+        free = at[2:]
+        left = proof.bench.fit.gradient[free] - proof.bench.fit.hessian[np.ix_(free, at)] @ shares
+        assert left == pytest.approx(np.zeros(len(free)), abs=1e-6 * len(two.held.target))
+
+
+def test_held_out_rows_without_a_sample_prove_nothing():
+    two = halves(Linear(), {"viscous@a:size": 0.6}, 12)
+    labels = [trial.cause.label for trial in two.regression.trials]
+    chosen = [labels.index("viscous@a")]
+    holes = (np.ones_like(two.held.runs.kept),)
+    held = replace(two.held, runs=replace(two.held.runs, holes=holes))
+    proof = prove(two.regression, held, chosen)
+    assert proof.proved == ()
+    assert proof.dropped == dict.fromkeys(chosen, 1.0)
