@@ -26,8 +26,8 @@ AGAIN = 0.5
 
 STRAINED = 5.0
 """Sd beyond which a tolerance is not taken to do a cause's work, unless it is that far off beside
-all causes as well: columns of a gain hold what causes do, and 95 % less gain would stand for all
-frictions of an axis (EMPS, as it is drafted)."""
+all that are in as well: columns of a gain hold what causes do, and 95 % less gain would stand for
+all frictions of an axis (EMPS, as it is drafted)."""
 
 ACTS = 0.05
 """Share of its strongest channel's part from which a trial counts as acting on a channel."""
@@ -129,7 +129,7 @@ class Bench:
         return kept, amplitude[kept]
 
     def _held(self, at: IntArray, nuisances: int) -> FloatArray:
-        """Amplitudes of columns, nuisances no farther off than beside all, or STRAINED."""
+        """Amplitudes of columns, nuisances no farther off than in the bench's fit, or STRAINED."""
         limit = np.full(len(at), np.inf)
         limit[:nuisances] = np.maximum(STRAINED, np.abs(self.fit.shares[:nuisances]))
         matrix, slope = self.fit.hessian[np.ix_(at, at)], self.fit.gradient[at]

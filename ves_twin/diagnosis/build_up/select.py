@@ -106,7 +106,8 @@ class Selector:
         for n in now.chosen:
             without = regression.solve([k for k in now.chosen if k != n], now.fit.whitening)
             gains = regression.gains(without, [*rest, n])
-            promises += [(worth(gains, k) - worth(gains, n), n, k) for k in rest]
+            lost = worth(gains, n)
+            promises += [(worth(gains, k) - lost, n, k) for k in rest]
         for promise, n, k in sorted(promises, reverse=True)[:TRIED]:
             if promise <= 0.0:
                 break
