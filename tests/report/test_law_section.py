@@ -14,6 +14,7 @@ from ves_twin.diagnosis.verdict import Basis, Kind, Statistics, Verdict
 from ves_twin.report.diagnosis.answer import verdict_sentence
 from ves_twin.report.diagnosis.law import (
     draw_law,
+    law_figure,
     law_heading,
     law_parts,
     law_sentences,
@@ -66,6 +67,19 @@ def test_without_a_claim_the_reason_and_the_place_are_told_and_no_law():
     assert said.startswith("No law is claimed: what it leaves is not noise.")
     assert "joint" in said
     assert "A law does" not in verdict_sentence(verdict(none))
+
+
+def test_a_reader_is_sent_to_a_law_without_a_claim_only_if_it_is_worth_something():
+    none = replace(LAW, claimed=False, reason="what it leaves is not noise")
+    idle = replace(none, gain=replace(LAW.gain, share=0.0))
+    assert "look there first" in law_sentences(none)[0]
+    assert "look there" not in law_sentences(idle)[0]
+
+
+def test_a_caption_speaks_of_points_only_where_points_are_drawn():
+    drawn, bare = (str(law_figure(law)) for law in (LAW, replace(LAW, points=())))
+    assert "Points" in drawn
+    assert "Points" not in bare
 
 
 def test_a_law_of_time_says_that_it_foretells_nothing():

@@ -1,24 +1,29 @@
-"""Which of two choices of causes is kept: by what both leave, less the price of what they hold."""
+"""Which of several choices of causes is kept: by what they leave of held-out rows."""
+
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from linear import PERIOD, Linear, halves
+from linear import Linear, halves
 from scipy.signal import lfilter
 
 from ves_twin.diagnosis.build_up.memory import independent_rows, memory
 from ves_twin.diagnosis.build_up.offer import Offer, preferred
 
-FEW, MANY = [0, 1], [0, 1, 2, 3, 4, 5]
+
+@pytest.fixture(scope="module")
+def both():
+    return halves(Linear(), {"viscous@a:size": 0.6}, 3)
 
 
 @pytest.fixture(scope="module")
-def regression():
-    return halves(Linear(), {"viscous@a:size": 0.6}, 3).regression
+def regression(both):
+    return both.regression
 
 
-def offer(regression, chosen, residual):
-    rms = np.maximum(regression.half.rms(residual), 1e-30)
-    return Offer(chosen, None, None, residual, rms)
+def offer(both, residual, dropped=None):
+    proof = SimpleNamespace(dropped=dropped or {})
+    return Offer(both, None, proof, None, frozenset(), residual)
 
 
 def coloured(regression, memory_rows, seed):
@@ -28,40 +33,45 @@ def coloured(regression, memory_rows, seed):
     return np.sqrt(1.0 - share**2) * lfilter([1.0], [1.0, -share], noise, axis=0)[500:]
 
 
-def test_of_two_that_leave_the_same_fewer_causes_are_preferred(regression):
+def test_the_choice_that_leaves_less_of_held_out_rows_is_kept(both, regression):
     left = coloured(regression, 10.0, 1)
-    some, more = offer(regression, FEW, left), offer(regression, MANY, left)
-    assert preferred(regression, [more, some]) is some
+    some, more = offer(both, left), offer(both, 0.9 * left)
+    assert preferred([some, more]) is more
+    assert preferred([more, some]) is more
 
 
-@pytest.mark.parametrize("seed", range(3))
-def test_causes_that_take_no_more_than_chance_are_not_worth_their_price(regression, seed):
-    left = coloured(regression, 10.0, seed)
-    some, more = offer(regression, FEW, left), offer(regression, MANY, 0.98 * left)
-    assert preferred(regression, [some, more]) is some
-
-
-def test_causes_that_halve_what_is_left_are_worth_their_price(regression):
+def test_of_two_that_leave_the_same_the_first_is_kept(both, regression):
     left = coloured(regression, 10.0, 1)
-    some, more = offer(regression, FEW, left), offer(regression, MANY, 0.5 * left)
-    assert preferred(regression, [some, more]) is more
+    first, second = offer(both, left), offer(both, left.copy())
+    assert preferred([first, second]) is first
 
 
-def test_slow_error_below_a_row_s_noise_is_judged_by_all_of_it(regression):
-    """It is a fifth of the declared noise of a row, and smooth over hundreds of them."""
-    time = PERIOD * np.arange(len(regression.half.target))
-    tones = [np.sin(w * time + p) for w, p in ((0.7, 0.2), (1.1, 1.0), (1.6, 2.0), (2.3, 0.5))]
-    slow = 0.002 * np.column_stack([sum(tones[:3]), sum(tones[1:])])
-    some, more = offer(regression, FEW, slow), offer(regression, [*FEW, 2], 0.1 * slow)
-    assert preferred(regression, [some, more]) is more
+def test_a_channel_whose_error_is_slow_says_less_than_one_of_many_independent_rows(
+    both, regression
+):
+    slow, fast = coloured(regression, 150.0, 1)[:, :1], coloured(regression, 2.0, 2)[:, 1:]
+    one = offer(both, np.hstack([0.5 * slow, fast]))
+    other = offer(both, np.hstack([slow, 0.8 * fast]))
+    assert preferred([one, other]) is other
 
 
-def test_what_shows_one_step_ahead_alone_is_not_worth_its_price(regression):
-    """Few rows of slow error are independent: they say little of what is small and faster."""
-    slow, fast = coloured(regression, 150.0, 1), coloured(regression, 2.0, 2)
-    some, more = offer(regression, FEW, slow + 0.3 * fast), offer(regression, [*FEW, 2], slow)
-    assert preferred(regression, [some, more]) is some
-    assert preferred(regression, [some, offer(regression, [*FEW, 2], 0.3 * fast)]).chosen[-1] == 2
+def test_rows_that_were_not_measured_say_nothing(both, regression):
+    left = coloured(regression, 10.0, 1)
+    rows = np.zeros((len(left), 1), bool)
+    rows[: len(rows) // 2] = True
+    held = SimpleNamespace(
+        runs=SimpleNamespace(slices=both.held.runs.slices, kept=~np.repeat(rows, 2, axis=1)),
+        rms=lambda values: np.sqrt(np.mean(values[~rows[:, 0]] ** 2, axis=0)),
+    )
+    part = SimpleNamespace(held=held, regression=regression)
+    wild = np.where(rows, 100.0, 0.9) * left
+    assert preferred([offer(part, left), offer(part, wild)]).held_out is wild
+
+
+def test_causes_that_held_out_rows_speak_against_are_rejected(both, regression):
+    labels = [trial.cause.label for trial in regression.trials]
+    told = offer(both, np.zeros_like(regression.half.target), {0: 1.0, 1: 0.3})
+    assert told.rejected == {labels[0]}
 
 
 def test_memory_of_a_first_order_colour_is_its_closed_form():

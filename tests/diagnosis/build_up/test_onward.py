@@ -7,10 +7,11 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from ves_twin.diagnosis.build_up import build_up
-from ves_twin.diagnosis.build_up.build_up import _Builder, _likeliest
+from ves_twin.diagnosis.build_up import in_full as in_full_module
+from ves_twin.diagnosis.build_up.build_up import _counted
+from ves_twin.diagnosis.build_up.builder import Builder
+from ves_twin.diagnosis.build_up.in_full import _likeliest, in_full
 from ves_twin.diagnosis.build_up.plain_selector import PlainSelector
-from ves_twin.diagnosis.build_up.proof import prove
 from ves_twin.diagnosis.build_up.select import Selector
 from ves_twin.diagnosis.build_up.trials import Trial
 from ves_twin.diagnosis.evidence import Evidence
@@ -80,28 +81,27 @@ def seen(forward: MjcfForward, seed: int) -> Dataset:
     return Dataset(runs, rows + 2e-4 * rng.standard_normal(rows.shape).astype(np.float32), ())
 
 
-def builder_of(forward: MjcfForward) -> _Builder:
+def builder_of(forward: MjcfForward) -> Builder:
     """One that offers the whole library, on two drawn recordings."""
     screen = SimpleNamespace(bank=SimpleNamespace(hypotheses=forward.hypotheses))
     desk = SimpleNamespace(first=SimpleNamespace(screen=screen), progress=silent)
-    return _Builder(desk, seen(forward, 1), seen(forward, 2))
+    return Builder(desk, seen(forward, 1), seen(forward, 2))
+
+
+def causes(offer) -> set[str]:
+    """Effects that are proved."""
+    return {offer.halves.regression.trials[n].cause.effect for n in offer.proof.proved}
 
 
 def test_what_a_dead_band_hides_is_found_beside_it(forward):
     builder = builder_of(forward)
     origin = builder.fitted.runs.origin
-    halves = builder.halves(origin, ())
-    labels = [trial.cause.label for trial in halves.regression.trials]
-    pair = [labels.index(f"actuator_{kind}@valve") for kind in ("gain", "deadband")]
-    few = prove(halves.regression, halves.held, pair)
-    assert len(few.proved) == 2
-    there, more, point = builder.onward(halves, few, origin)
-    names = {there.regression.trials[n].cause.effect for n in more.proved}
-    assert names == {"actuator_gain", "actuator_deadband", "actuator_delay"}
+    found = builder.best(builder.halves(origin, ()), origin)
+    assert causes(found) == {"actuator_gain", "actuator_deadband", "actuator_delay"}
     runs = builder.fitted.runs
-    found = {axis.parameter.name: point[i] for i, axis in enumerate(runs.coordinates)}
+    told = {axis.parameter.name: found.fit.shift[i] for i, axis in enumerate(runs.coordinates)}
     for name, size in HIDDEN.items():
-        assert found[name] == pytest.approx(size, rel=0.1)
+        assert told[name] == pytest.approx(size, rel=0.1)
 
 
 def test_a_dead_band_and_what_acts_beyond_it_are_chosen_by_plain_squares(forward):
@@ -119,15 +119,15 @@ def test_a_fit_looks_from_the_sizes_of_bent_columns_too(forward, monkeypatch):
         "actuator_deadband@valve": (0.8,),
         "actuator_delay@valve": (0.1,),
     }
-    causes = {h.label: h for h in forward.hypotheses}
+    library = {h.label: h for h in forward.hypotheses}
     present = tuple(
-        Trial(causes[label], sizes, positive=True, bent=True) for label, sizes in wanted.items()
+        Trial(library[label], sizes, positive=True, bent=True) for label, sizes in wanted.items()
     )
     halves = builder.halves(origin, present)
     chosen = [n for n, trial in enumerate(halves.regression.trials) if trial in present]
     evidence = builder.evidence(halves.regression.fit(chosen).residual)
-    monkeypatch.setattr(build_up, "_likeliest", lambda *_: builder.fitted.runs.high)
-    fit = builder.refined(halves, chosen, origin, evidence)
+    monkeypatch.setattr(in_full_module, "_likeliest", lambda *_: builder.fitted.runs.high)
+    fit = in_full(halves.regression, chosen, origin, evidence)
     names = [halves.regression.trials[n].cause.parameters[0] for n in chosen]
     assert fit.sizes == pytest.approx([HIDDEN[name] for name in names], rel=0.1)
 
@@ -141,38 +141,62 @@ def test_a_fit_begins_where_least_is_left(forward):
     assert _likeliest(evidence, starts) is true
 
 
-def chosen_by(monkeypatch, forward, ahead, plainly):
-    """Effects that stay of what each selection is made to choose."""
+def choosing(kinds):
+    """A selection that chooses effects by how many are at work."""
 
-    def choosing(kinds):
-        def run(selector, begin=()):
-            labels = [trial.cause.label for trial in selector.regression.trials]
-            return [labels.index(f"actuator_{kind}@valve") for kind in kinds(len(begin))]
+    def run(selector, begin=()):
+        labels = [trial.cause.label for trial in selector.regression.trials]
+        return [labels.index(f"actuator_{kind}@valve") for kind in kinds(selector, len(begin))]
 
-        return run
-
-    monkeypatch.setattr(Selector, "run", choosing(ahead))
-    monkeypatch.setattr(PlainSelector, "run", choosing(plainly))
-    builder = builder_of(forward)
-    origin = builder.fitted.runs.origin
-    halves, chosen, _ = builder.chosen(builder.halves(origin, ()), origin)
-    return {halves.regression.trials[n].cause.effect for n in chosen}
+    return run
 
 
 def test_a_round_that_leaves_more_than_the_one_before_is_not_kept(forward, monkeypatch):
     begun: list[int] = []
 
-    def kinds(count):
+    def kinds(_, count):
         begun.append(count)
         return ("asymmetry",) if count else ("gain", "deadband")
 
-    names = chosen_by(monkeypatch, forward, kinds, kinds)
+    monkeypatch.setattr(Selector, "run", choosing(kinds))
+    builder = builder_of(forward)
+    origin = builder.fitted.runs.origin
+    first = builder.halves(origin, ())
+    chosen = Selector(first.regression).run()
+    halves, _, kept = builder.settled(Selector, first, chosen, origin)
+    names = {halves.regression.trials[n].cause.effect for n in kept}
     assert names == {"actuator_gain", "actuator_deadband"}
-    assert begun == [0, 0, 2, 2]
+    assert begun == [0, 2]
 
 
 @pytest.mark.parametrize("first", [True, False])
-def test_of_two_choices_the_one_that_leaves_less_in_full_is_kept(forward, monkeypatch, first):
-    both = (lambda _: ("gain", "deadband"), lambda _: ("asymmetry",))
-    names = chosen_by(monkeypatch, forward, *(both if first else both[::-1]))
-    assert names == {"actuator_gain", "actuator_deadband"}
+def test_of_two_choices_the_one_that_predicts_held_out_rows_better_is_kept(
+    forward, monkeypatch, first
+):
+    both = (lambda *_: ("gain", "deadband"), lambda *_: ("asymmetry",))
+    ahead, plainly = both if first else both[::-1]
+    monkeypatch.setattr(Selector, "run", choosing(ahead))
+    monkeypatch.setattr(PlainSelector, "run", choosing(plainly))
+    builder = builder_of(forward)
+    origin = builder.fitted.runs.origin
+    found = builder.best(builder.halves(origin, ()), origin)
+    assert causes(found) == {"actuator_gain", "actuator_deadband"}
+    assert len(found.known) == 3
+
+
+def test_a_rejected_cause_makes_room_for_the_one_that_it_stood_for(forward, monkeypatch):
+    """The asymmetry that is chosen first is none; barred, what is true comes in its place."""
+
+    def kinds(selector, _):
+        barred = "actuator_asymmetry@valve" in selector.regression.barred
+        return ("gain", "deadband", "delay") if barred else ("gain", "deadband", "asymmetry")
+
+    for way in (Selector, PlainSelector):
+        monkeypatch.setattr(way, "run", choosing(kinds))
+    builder = builder_of(forward)
+    origin = builder.fitted.runs.origin
+    (begun,) = builder.offers(builder.halves(origin, ()), origin)
+    assert begun.rejected == {"actuator_asymmetry@valve"}
+    found = builder.best(builder.halves(origin, ()), origin)
+    assert causes(found) == {"actuator_gain", "actuator_deadband", "actuator_delay"}
+    assert _counted(found).tested == 4

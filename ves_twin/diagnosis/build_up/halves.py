@@ -23,10 +23,17 @@ five of each is the least that a test over stretches can use."""
 
 @dataclass(frozen=True)
 class Halves:
-    """A fitted half as a regression, and the held-out half beside it."""
+    """A fitted half as a regression, and the held-out half beside it.
+
+    Attributes:
+        regression: of the fitted half.
+        held: the held-out half.
+        measured: rows of the held-out half (rows, c).
+    """
 
     regression: Regression
     held: Half
+    measured: SingleArray
 
 
 def halves_at(
@@ -54,7 +61,7 @@ def halves_at(
     known = dict(enumerate(columns))
     mine = _half(fitted, point, trials, known, present, same, progress)
     yours = _half(held, there, trials, known if same else {}, present, same, progress)
-    return Halves(Regression(mine, trials), yours)
+    return Halves(Regression(mine, trials), yours, held.measured)
 
 
 def split(seen: Dataset) -> tuple[Dataset, Dataset]:

@@ -1,4 +1,4 @@
-"""Offer: chosen trials fitted in full; preferred: which of several to keep."""
+"""Offer: what is proved of one choice of causes, fitted in full; preferred: which one to keep."""
 
 from __future__ import annotations
 
@@ -8,62 +8,73 @@ from dataclasses import dataclass
 import numpy as np
 
 from ves_twin.core.types import FloatArray
+from ves_twin.diagnosis.build_up.halves import Halves, carried_point
 from ves_twin.diagnosis.build_up.memory import independent_rows
-from ves_twin.diagnosis.build_up.regression import Regression
-from ves_twin.diagnosis.evidence import Evidence
-from ves_twin.diagnosis.refine import Fit, bare_residual
+from ves_twin.diagnosis.build_up.proof import NULL_FROM, Proof
+from ves_twin.diagnosis.refine import Fit
 
 
 @dataclass(frozen=True)
 class Offer:
-    """Chosen trials, fitted with the full forward.
+    """What is proved of one choice of causes.
 
     Attributes:
-        chosen: numbers of the trials.
-        evidence: that they were fitted to.
-        fit: of their causes.
-        residual: what they leave (rows, c).
-        rms: of each channel of it (c,).
+        halves: linear about a full fit of the choice.
+        point: that fit's departures (coordinates,).
+        proof: of the choice.
+        fit: of all that is proved, with the full forward.
+        known: labels of all causes that were put to proof so far.
+        held_out: what the fit leaves of held-out rows (rows, c).
     """
 
-    chosen: list[int]
-    evidence: Evidence
+    halves: Halves
+    point: FloatArray
+    proof: Proof
     fit: Fit
-    residual: FloatArray
-    rms: FloatArray
+    known: frozenset[str]
+    held_out: FloatArray
 
     @staticmethod
-    def of(regression: Regression, chosen: list[int], evidence: Evidence, fit: Fit) -> Offer:
-        """With what a fit leaves."""
-        residual = np.asarray(bare_residual(evidence, fit), float)
-        rms = np.maximum(regression.half.rms(residual), regression.quietest)
-        return Offer(chosen, evidence, fit, residual, rms)
+    def of(
+        halves: Halves, point: FloatArray, proof: Proof, fit: Fit, known: frozenset[str]
+    ) -> Offer:
+        """With what is left of held-out rows, what is drawn anew for each recording taken off."""
+        held, level = halves.held, halves.regression.level
+        there = held.runs.one(carried_point(halves.regression.half.runs, held.runs, fit.shift))
+        left = np.where(held.kept, halves.measured - there, 0.0)
+        own = np.where(held.kept, held.own, 0.0)
+        columns, rows = (own / level).reshape(len(own), left.size), (left / level).ravel()
+        power = float(rows @ rows) / max(int(np.count_nonzero(held.kept)), 1) + 1e-30
+        shares = np.linalg.solve(
+            columns @ columns.T / power + np.eye(len(own)), columns @ rows / power
+        )
+        left = np.asarray(left - np.tensordot(shares, own, axes=1), float)
+        return Offer(halves, point, proof, fit, known, left)
 
     @property
-    def left(self) -> float:
-        """Mean logarithm of the rms of all channels."""
-        return float(np.mean(np.log(self.rms)))
+    def rejected(self) -> frozenset[str]:
+        """Labels of causes that held-out rows speak against."""
+        trials, dropped = self.halves.regression.trials, self.proof.dropped
+        return frozenset(trials[n].cause.label for n, p in dropped.items() if p > NULL_FROM)
+
+    @property
+    def rms(self) -> FloatArray:
+        """Of what is left of each held-out channel (c,)."""
+        return np.maximum(self.halves.held.rms(self.held_out), self.halves.regression.quietest)
 
 
-def preferred(regression: Regression, offers: Sequence[Offer]) -> Offer:
-    """The offer with the best odds by what it leaves, less its price.
+def preferred(offers: Sequence[Offer]) -> Offer:
+    """The offer that predicts held-out rows best, the first of equals.
 
-        2 log odds = -sum_c n_c log rms_c^2 - price(sum_c n_c)
+        sum_c n_c log rms_c
 
-    n_c are rows over twice their memory, of the offer that leaves least: where what is left is
-    slow, few rows are independent. Judged by one-step prediction errors as well, more causes were
-    taken, and held-out rows were told worse: model error does not repeat there (the damper).
-    Without a price there were false ones (the workshop's arm).
+    n_c are held-out rows over twice their memory, of the offer that leaves least: where what is
+    left is slow, few rows are independent.
 
     Args:
-        regression: that the trials belong to.
         offers: one at least.
     """
-    best = min(offers, key=lambda one: one.left)
-    count = independent_rows(regression.half.runs, best.residual)
-
-    def odds(offer: Offer) -> float:
-        price = regression.price(float(np.sum(count)), regression.width(offer.chosen))
-        return -2.0 * float(count @ np.log(offer.rms)) - price
-
-    return max(offers, key=odds)
+    rms = [np.log(offer.rms) for offer in offers]
+    best = offers[int(np.argmin([np.sum(one) for one in rms]))]
+    count = independent_rows(best.halves.held.runs, best.held_out)
+    return offers[int(np.argmin([count @ one for one in rms]))]

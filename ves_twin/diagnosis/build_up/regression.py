@@ -121,10 +121,12 @@ class Regression:
     Attributes:
         half: the data.
         trials: what may be chosen.
+        barred: labels of causes that may not be chosen any more.
     """
 
     half: Half
     trials: Sequence[Trial]
+    barred: frozenset[str] = frozenset()
 
     @cached_property
     def level(self) -> FloatArray:
@@ -267,7 +269,7 @@ class Regression:
 
     def rest(self, chosen: Sequence[int]) -> list[int]:
         """Trials of causes that are not chosen yet."""
-        used = {self.trials[n].cause.label for n in chosen}
+        used = self.barred | {self.trials[n].cause.label for n in chosen}
         return [n for n, trial in enumerate(self.trials) if trial.cause.label not in used]
 
     def variants(self, trial: int) -> list[int]:

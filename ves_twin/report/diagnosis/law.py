@@ -25,6 +25,9 @@ EQUAL = 3.0
 BEYOND_DOUBT = 1000.0
 """Nats from which more of them tell nobody anything."""
 
+WORTH_A_LOOK = 0.1
+"""Share of the held-out error from which the page sends its reader to a law that is not claimed."""
+
 DRAWN = 400
 """Places at which a law is drawn, from end to end of what was seen."""
 
@@ -60,9 +63,10 @@ def _unit(law: LawFinding) -> str:
 
 
 def _missing(law: LawFinding) -> str:
+    share = None if law.gain is None else law.gain.share
+    advice = ": look there first" if share is None or share >= WORTH_A_LOOK else ""
     return (
-        f"No law is claimed: {law.reason}. What comes nearest is {law.words or law.place}: look"
-        " there first."
+        f"No law is claimed: {law.reason}. What comes nearest is {law.words or law.place}{advice}."
     )
 
 
@@ -121,9 +125,10 @@ def law_parts(law: LawFinding) -> list[Html]:
 
 def law_figure(law: LawFinding) -> Html:
     """The picture of a law in a page."""
+    points = " Points: what the recordings ask for along time, without any law."
     caption = (
-        f"{capital(law.kind)} at {law.place} against {law.of[0]}. Points: what the recordings ask"
-        " for along time, without any law. Line and band: the law."
+        f"{capital(law.kind)} at {law.place} against {law.of[0]}.{points if law.points else ''}"
+        " Line and band: the law."
     )
     return svg(draw_law(law), "law", caption)
 
