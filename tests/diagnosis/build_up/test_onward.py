@@ -95,8 +95,7 @@ def causes(offer) -> set[str]:
 
 def test_what_a_dead_band_hides_is_found_beside_it(forward):
     builder = builder_of(forward)
-    origin = builder.fitted.runs.origin
-    found = builder.best(builder.halves(origin, ()), origin)
+    found = builder.best()
     assert causes(found) == {"actuator_gain", "actuator_deadband", "actuator_delay"}
     runs = builder.fitted.runs
     told = {axis.parameter.name: found.fit.shift[i] for i, axis in enumerate(runs.coordinates)}
@@ -178,8 +177,7 @@ def test_of_two_choices_the_one_that_predicts_held_out_rows_better_is_kept(
     monkeypatch.setattr(Selector, "run", choosing(ahead))
     monkeypatch.setattr(PlainSelector, "run", choosing(plainly))
     builder = builder_of(forward)
-    origin = builder.fitted.runs.origin
-    found = builder.best(builder.halves(origin, ()), origin)
+    found = builder.best()
     assert causes(found) == {"actuator_gain", "actuator_deadband"}
     assert len(found.known) == 3
 
@@ -197,6 +195,6 @@ def test_a_rejected_cause_makes_room_for_the_one_that_it_stood_for(forward, monk
     origin = builder.fitted.runs.origin
     (begun,) = builder.offers(builder.halves(origin, ()), origin)
     assert begun.rejected == {"actuator_asymmetry@valve"}
-    found = builder.best(builder.halves(origin, ()), origin)
+    found = builder.best()
     assert causes(found) == {"actuator_gain", "actuator_deadband", "actuator_delay"}
     assert _counted(found).tested == 4

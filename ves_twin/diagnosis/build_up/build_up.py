@@ -67,8 +67,7 @@ def build_up(desk: FitContext, start: Explanation, fitted: Dataset, held: Datase
     """
     builder = Builder(desk, fitted, held)
     desk.progress(0.0, "building up")
-    origin = fitted.runs.origin
-    found = builder.best(builder.halves(origin, ()), origin)
+    found = builder.best()
     halves, point = found.halves, found.point
     proof = _counted(found)
     if not proof.tested:

@@ -111,7 +111,7 @@ class Builder:
         for last in range(ROUNDS):
             regression = halves.regression
             evidence = self.evidence(regression.fit(chosen).residual)
-            fit = in_full(halves.regression, chosen, point, evidence)
+            fit = in_full(regression, chosen, point, evidence)
             residual = np.asarray(bare_residual(evidence, fit), float)
             rms = np.maximum(regression.half.rms(residual), regression.quietest)
             left = float(np.mean(np.log(rms)))
@@ -154,9 +154,10 @@ class Builder:
         halves = barred.halves(offer.fit.shift, present)
         return barred.offers(halves, offer.fit.shift, present, offer.known)
 
-    def best(self, halves: Halves, point: FloatArray) -> Offer:
-        """The choice of which most is proved, judged by held-out rows."""
-        builder, offers = self, self.offers(halves, point)
+    def best(self) -> Offer:
+        """The choice whose proved causes predict held-out rows best, all that was tried counted."""
+        origin = self.fitted.runs.origin
+        builder, offers = self, self.offers(self.halves(origin, ()), origin)
         found, known = preferred(offers), offers[-1].known
         while True:
             others = builder.again(replace(found, known=known))
