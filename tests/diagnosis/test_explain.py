@@ -11,10 +11,18 @@ from toy import QUICK, SD, Toy, programme
 from ves_twin.diagnosis.assess import STRANGE, assess, pull_limit
 from ves_twin.diagnosis.explain import FAR, _far, explain
 from ves_twin.diagnosis.fit_context import FitContext
-from ves_twin.diagnosis.fits import CLOSE, _starts, job
-from ves_twin.diagnosis.judge import CLEAR, SLACK, _commissioning, _second, suspects_at
+from ves_twin.diagnosis.fits import CLOSE, _starts, job, refined
+from ves_twin.diagnosis.judge import (
+    CLEAR,
+    SLACK,
+    _commissioning,
+    _ranked,
+    _second,
+    judge,
+    suspects_at,
+)
 from ves_twin.diagnosis.null import Thresholds
-from ves_twin.diagnosis.pairs import PAIRS
+from ves_twin.diagnosis.pairs import PAIRS, _alone, _better
 from ves_twin.diagnosis.probability import probabilities
 from ves_twin.diagnosis.refine import refine
 from ves_twin.diagnosis.runs import Runs, silent
@@ -103,6 +111,36 @@ def test_a_fit_begins_at_the_size_of_the_bank_too_where_that_is_another(looked):
     assert np.array_equal(other, own)
 
 
+@pytest.mark.parametrize("true_leads", [False, True])
+def test_a_fit_that_stopped_short_goes_on_from_what_its_rival_found(
+    looked, monkeypatch, true_leads
+):
+    """Each is searched once more from the other's commissioning errors, the leader if it loses."""
+    record = looked(ONE)
+    runs, base = record.evidence.runs, record.screen.bank.base
+    library = {h.effect: h for h in record.screen.bank.hypotheses}
+    true, wrong = (
+        refine(record.evidence, (library[name],), runs.origin, base) for name in ("friction", "lag")
+    )
+    assert wrong.chi2 > true.chi2 + 40.0
+    short = {true.causes: wrong.chi2 + 30.0}
+
+    def stopped(jobs, desk, what):
+        """The search of the true cause stops short wherever it begins at its own errors."""
+        own = [np.array_equal(job.shift, true.shift) for job in jobs]
+        return [
+            replace(fit, chi2=short.get(fit.causes, fit.chi2)) if alone else fit
+            for fit, alone in zip(refined(jobs, desk, what), own, strict=True)
+        ]
+
+    monkeypatch.setattr("ves_twin.diagnosis.judge.refined", stopped)
+    desk = FitContext(record, LEVELS, QUICK, silent)
+    leader = true if true_leads else wrong
+    found = _ranked(desk, record.evidence, leader, [true, wrong], False)
+    assert [fit.causes for fit in found] == [true.causes, wrong.causes]
+    assert found[0].chi2 == pytest.approx(true.chi2, rel=1e-3)
+
+
 def test_two_causes_explain_what_one_does_not(looked):
     record = looked(TWO)
     single = explain(record, LEVELS, QUICK, together=False)
@@ -117,6 +155,45 @@ def test_two_causes_explain_what_one_does_not(looked):
     alone = {frozenset(effects(fit)) for fit in double.alone}
     assert {frozenset({"friction"}), frozenset({"ripple"})} <= alone
     assert all(len(fit.causes) == 1 for fit in double.alone)
+
+
+@pytest.mark.parametrize("known", ["friction", "ripple"])
+@pytest.mark.parametrize(("values", "names"), [(ONE, {"friction"}), (TWO, {"friction", "ripple"})])
+def test_no_pair_is_named_where_either_of_its_causes_does_as_well_alone(
+    looked, values, names, known
+):
+    """The one that was known before stopped short, or is the wrong one."""
+    record = looked(values)
+    evidence, base = record.evidence, record.screen.bank.base
+    causes = [h for h in record.screen.bank.hypotheses if h.effect in ("friction", "ripple")]
+    pair = refine(evidence, tuple(causes), evidence.runs.origin, base)
+    before = next(refine(evidence, (h,), pair.shift, base) for h in causes if h.effect == known)
+    desk = FitContext(record, LEVELS, QUICK, silent)
+    double = judge(desk, [pair])
+    alone = [_alone(double, cause) for cause in causes]
+    found = _better(desk, double, double.best.chi2 + 1e3, alone, (before,))
+    assert found.adequate
+    assert effects(found.best) == names
+    told = [fit.causes for fit in (*found.fits, *found.hopeless, *found.alone)]
+    assert len(told) == len(set(told))
+    assert {(cause,) for cause in causes} <= set(told)
+
+
+def test_a_single_cause_that_strains_a_tolerance_is_no_better_than_a_pair(looked):
+    record = looked(ONE)
+    evidence, base = record.evidence, record.screen.bank.base
+    causes = [h for h in record.screen.bank.hypotheses if h.effect in ("friction", "ripple")]
+    desk = FitContext(record, LEVELS, QUICK, silent)
+    double = judge(desk, [refine(evidence, tuple(causes), evidence.runs.origin, base)])
+    alone = [_alone(double, cause) for cause in causes]
+    limit = pull_limit(record.screen.bank, QUICK.alpha)
+    axis = alone[0].active[-1]
+    strained = [replace(fit, shift=fit.shift + 0.0) for fit in alone]
+    for fit in strained:
+        fit.shift[axis] = 1.1 * limit * fit.local.runs.sd[axis]
+        assert fit.pull > limit
+    found = _better(desk, double, double.best.chi2 + 1e3, strained, ())
+    assert len(found.best.causes) == 2
 
 
 def test_a_second_cause_is_found_beside_the_best_where_the_bank_proposes_no_pair(

@@ -519,6 +519,9 @@ def test_where_more_than_noise_stays_the_gain_is_told_by_the_rms_and_by_units_of
     assert "flow" not in words
     same = replace(gain, errors={"force": (2.0, 1.0), "speed": (6.1823, 6.1825)})
     assert "stays (speed)" in gain_words(replace(proven, verdict=Kind.PARTIAL, gain=same))
+    both = replace(gain, errors={"force": (2.0, 1.0), "speed": (2.0, 1.5)})
+    words = gain_words(replace(proven, verdict=Kind.PARTIAL, gain=both))
+    assert "falls by 50 % (force) and by 25 % (speed);" in words
     left = gain_words(replace(proven, gain=gain))  # noise alone is left: one measure says it all
     assert left == taken_words(gain)
 

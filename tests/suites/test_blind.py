@@ -14,7 +14,9 @@ from ves_twin.cli.main import main
 from ves_twin.core.errors import FileAccessError, InvalidInputError, UnknownNameError
 from ves_twin.core.recording.files import load_recording
 from ves_twin.diagnosis.runs import silent
-from ves_twin.suites.answers import Answer
+from ves_twin.diagnosis.settings import Settings
+from ves_twin.suites.answer import answer_suite
+from ves_twin.suites.answers import Answer, write_answers
 from ves_twin.suites.draw import DETECTABILITY, PAIR_DETECTABILITY
 from ves_twin.suites.machine import BlindRig
 from ves_twin.suites.machines import machine_of
@@ -78,7 +80,14 @@ def test_no_hidden_cause_is_fainter_than_its_sort_may_be(suite):
 
 
 def test_every_stage_of_the_making_is_told(suite, told):
-    assert list(dict.fromkeys(told)) == ["commissioning tolerances", "sizes in sigma", "recordings"]
+    assert list(dict.fromkeys(told)) == [
+        "commissioning tolerances",
+        "sizes in sigma",
+        "how far tolerances bend",
+        "signatures",
+        "what each cause left out could be taken for",
+        "recordings",
+    ]
 
 
 def test_a_suite_that_was_interrupted_goes_on_with_the_same_cases(suite):
@@ -135,6 +144,21 @@ assert not any("sealed" in path or path.endswith("key") for path in opened), "lo
     assert done.returncode == 0, done.stderr[-600:]
     answers = json.loads(suite.with_name("answers.json").read_text())
     assert set(answers) == set(load_suite(suite).cases)
+
+
+def test_what_was_answered_before_counts_for_no_share_of_the_work(suite, tmp_path, monkeypatch):
+    """Time left is told from the share: two of seven cases left are half done after one."""
+
+    def failing(*_):
+        raise UnknownNameError("cause", "none", [])
+
+    monkeypatch.setattr("ves_twin.suites.answer.diagnosed", failing)
+    path, told = tmp_path / "answers.json", []
+    cases = load_suite(suite).cases
+    write_answers({case: Answer("nothing") for case in cases[:-2]}, path)
+    found = answer_suite(suite, path, Settings(), lambda share, what: told.append((share, what)))
+    assert told == [(0.0, "cases without an answer"), (0.5, "cases without an answer")]
+    assert [found[case].verdict for case in cases] == [*["nothing"] * 5, "error", "error"]
 
 
 def test_every_outside_kind_changes_what_is_measured():

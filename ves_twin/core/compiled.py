@@ -62,7 +62,8 @@ def say_that_it_compiles(longest: Callable[..., object]) -> None:
         longest: the compiled function that takes by far the longest; it stands for the others.
     """
     if not _kept(longest):
-        print("compiling the inner loop, once: about a minute", file=sys.stderr, flush=True)
+        sys.stderr.write("compiling the inner loop, once: about a minute\n")  # in one piece
+        sys.stderr.flush()
 
 
 def _kept(function: Callable[..., object]) -> bool:

@@ -132,6 +132,26 @@ def again(evidence: Evidence, fit: Fit, rounds: int) -> Fit:
     return refine(evidence, fit.causes, *at, known=fit.columns)
 
 
+def crossed(evidence: Evidence, fit: Fit, other: Fit, target: float = np.inf) -> FitJob:
+    """A fit's causes at its sizes, from the commissioning errors that another one found.
+
+    Where parts stick and slip chi^2 is rough: from its own errors the search of a payload stopped
+    at 9522, behind the mass of another body (9482), and from that one's errors at 9443 (VES II).
+
+    Args:
+        evidence: what was measured.
+        fit: whose causes are free.
+        other: whose commissioning errors it begins at.
+        target: chi^2 that it must be able to come down to.
+    """
+    runs = evidence.runs
+    at = np.concatenate([runs.indices(cause) for cause in (*other.causes, *fit.causes)])
+    shift = other.shift.copy()
+    shift[at] = fit.shift[at]
+    begin = (shift, other.local, other.step_share)
+    return FitJob(evidence, fit.causes, *begin, target=target, known=fit.columns)
+
+
 def _starts(first: Assessment, suspect: Candidate) -> list[FloatArray]:
     """The screen's scaled size, and the unscaled size of the bank nearest to the record.
 

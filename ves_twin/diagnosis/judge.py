@@ -12,7 +12,7 @@ from ves_twin.diagnosis.evidence import Evidence
 from ves_twin.diagnosis.explanation import Explanation
 from ves_twin.diagnosis.fit_context import FitContext
 from ves_twin.diagnosis.fit_job import FitJob
-from ves_twin.diagnosis.fits import again, is_near, refined, start_of, within_reach
+from ves_twin.diagnosis.fits import again, crossed, is_near, refined, start_of, within_reach
 from ves_twin.diagnosis.forward import Hypothesis
 from ves_twin.diagnosis.linearise import renewed
 from ves_twin.diagnosis.probability import probabilities
@@ -54,8 +54,9 @@ def judge(desk: FitContext, fits: list[Fit], far: bool = False) -> Explanation:
     plain = replace(declared, colour=white, level=unit)
     own = plain.adapted(plain.apply(bare_residual(first.evidence, leader)))
     evidence = Evidence(runs, first.evidence.measured, own)
-    commissioning, rough = _commissioning(desk, evidence, leader, far)
     ranked = _ranked(desk, evidence, leader, [fit for fit in fits if is_near(fit, leader)], far)
+    leads = leader if ranked[0].causes == leader.causes else ranked[0]
+    commissioning, rough = _commissioning(desk, evidence, leads, far)
     limit_of_pull = pull_limit(first.screen.bank, settings.alpha)
     if not far and ranked[0].pull > limit_of_pull:
         ranked = sorted([_relaxed(evidence, ranked[0]), *ranked[1:]], key=lambda fit: fit.chi2)
@@ -92,13 +93,32 @@ def judge(desk: FitContext, fits: list[Fit], far: bool = False) -> Explanation:
 def _ranked(
     desk: FitContext, evidence: Evidence, leader: Fit, fits: list[Fit], rough: bool
 ) -> list[Fit]:
-    """Fits under another noise by rising chi^2, the leader's first: it says what counts."""
+    """Fits under another noise by rising chi^2, the leader's first: it says what counts.
+
+    Rivals are searched from where they ended, and from the leader's commissioning errors: what one
+    of them finds there, another may have missed. The leader, if it loses, from the best rival's.
+    """
     what = "weighing rivals"
     best = refined([replace(FitJob.again(evidence, leader), rough=rough)], desk, what)[0]
     target = within_reach(best, desk)
     rivals = [FitJob.again(evidence, fit, target=target) for fit in fits if fit is not leader]
-    ranked = [best, *refined([replace(job, rough=rough) for job in rivals], desk, what)]
-    return sorted(ranked, key=lambda fit: fit.chi2)
+    found = refined([replace(job, rough=rough) for job in rivals], desk, what)
+    if (
+        rough
+        or not found
+        or evidence.runs.budget.skips("rivals from the commissioning errors of the best")
+    ):
+        return sorted([best, *found], key=_chi2)
+    others = refined([crossed(evidence, fit, best, target) for fit in found], desk, what)
+    found = [min(pair, key=_chi2) for pair in zip(found, others, strict=True)]
+    first = min(found, key=_chi2, default=best)
+    if first.chi2 < best.chi2:
+        best = min(best, *refined([crossed(evidence, best, first)], desk, what), key=_chi2)
+    return sorted([best, *found], key=_chi2)
+
+
+def _chi2(fit: Fit) -> float:
+    return fit.chi2
 
 
 def _relaxed(evidence: Evidence, fit: Fit) -> Fit:

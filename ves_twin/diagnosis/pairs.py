@@ -1,4 +1,4 @@
-"""pairs, strained_pair: two causes together, where no single one leaves noise."""
+"""pairs, strained_pair: two causes together, unless either does as well alone."""
 
 from __future__ import annotations
 
@@ -36,7 +36,8 @@ def pairs(desk: FitContext, single: Explanation) -> Explanation | None:
         single: what single causes make of it.
 
     Returns:
-        Two causes that leave noise and take more off than one; None if there are none.
+        Two causes that leave noise and take more off than one, or the one of them that does as
+        well from the errors beside both; None if there are none.
     """
     proposed: list[Proposal] = []
     for fit in single.fits[:2]:
@@ -49,7 +50,11 @@ def pairs(desk: FitContext, single: Explanation) -> Explanation | None:
     if not fits:
         return None
     double = judge(desk, settled(single.evidence, fits, desk))
-    return _better(desk, double, single.best.chi2, (*single.fits, *single.hopeless))
+    if not double.adequate:
+        return None
+    alone = [_alone(double, cause) for cause in double.best.causes]
+    others = (*single.fits, *single.hopeless)
+    return _better(desk, double, single.best.chi2, alone, others)
 
 
 def strained_pair(desk: FitContext, fits: Sequence[Fit]) -> Explanation | None:
@@ -85,15 +90,20 @@ def strained_pair(desk: FitContext, fits: Sequence[Fit]) -> Explanation | None:
     if leader.chi2 - min(fit.chi2 for fit in tried) < HALF * least:
         return None
     double = judge(desk, settled(evidence, tried, desk, tried[0]))
-    best = double.best
-    shift = np.where(evidence.runs.sd > 0.0, best.shift, 0.0)
-    kept = evidence.runs.indices(leader.causes[0])
-    shift[kept] = best.shift[kept]
-    alone = refine(double.evidence, leader.causes, shift, best.local, 0, best.step_share)
+    alone = _alone(double, leader.causes[0])
     if not (double.adequate and alone.pull > limit):
         return None
-    others = (fit for fit in fits if fit is not leader)
-    return _better(desk, double, alone.chi2, (alone, *others))
+    rest = [_alone(double, cause) for cause in double.best.causes if cause != leader.causes[0]]
+    others = tuple(fit for fit in fits if fit is not leader)
+    return _better(desk, double, alone.chi2, [alone, *rest], others)
+
+
+def _alone(double: Explanation, cause: Hypothesis) -> Fit:
+    """One cause of a pair, from the commissioning errors beside both; the other is one of them."""
+    best, runs = double.best, double.evidence.runs
+    shift, kept = np.where(runs.sd > 0.0, best.shift, 0.0), runs.indices(cause)
+    shift[kept] = best.shift[kept]
+    return refine(double.evidence, (cause,), shift, best.local, 0, best.step_share)
 
 
 def _strained(desk: FitContext, fit: Fit) -> Hypothesis | None:
@@ -130,17 +140,35 @@ def _fitted(
 
 
 def _better(
-    desk: FitContext, double: Explanation, alone: float, fits: tuple[Fit, ...]
+    desk: FitContext,
+    double: Explanation,
+    single: float,
+    alone: Sequence[Fit],
+    others: tuple[Fit, ...],
 ) -> Explanation | None:
-    """A pair that leaves noise, if it takes more off than a second cause must.
+    """A pair, which leaves noise, if it takes more off than a second cause must; else one of it.
+
+    A single cause that stopped short is no worse than a pair with another one beside it: each of a
+    pair's causes is fitted from the errors beside both. One that strains a tolerance is not alone.
 
     Args:
         desk: thresholds.
         double: the pair.
-        alone: chi^2 of the best single cause.
-        fits: of single causes.
+        single: chi^2 of the best single cause before.
+        alone: fits of the pair's causes.
+        others: fits of single causes before.
     """
     least = desk.thresholds.effect + double.allowance
-    if not (double.adequate and alone - double.best.chi2 > least):
+    if single - double.best.chi2 <= least:
         return None
-    return replace(double, alone=fits)
+    limit = pull_limit(desk.first.screen.bank, desk.settings.alpha)
+    new = {fit.causes for fit in alone}
+    others = tuple(fit for fit in others if fit.causes not in new)
+    best = min(alone, key=lambda fit: fit.chi2)
+    if best.chi2 - double.best.chi2 <= least and best.pull <= limit:
+        found = judge(desk, [*alone, *others])
+        known = {fit.causes for fit in found.fits}
+        rest = tuple(fit for fit in others if fit.causes not in known)
+        if found.adequate:
+            return replace(found, hopeless=rest)
+    return replace(double, alone=(*alone, *others))

@@ -9,7 +9,7 @@ import numpy as np
 from ves_twin.core.types import FloatArray
 from ves_twin.diagnosis.evidence import Evidence
 from ves_twin.diagnosis.refine import refine, residual_about
-from ves_twin.diagnosis.runs import Runs
+from ves_twin.diagnosis.runs import Progress, Runs, silent
 from ves_twin.diagnosis.screen import Candidate, Screen
 from ves_twin.diagnosis.signature_library import SignatureLibrary, build_bank
 from ves_twin.diagnosis.whitening import whitening_declared
@@ -26,7 +26,9 @@ ANY_SCALE = (0.0, np.inf)
 """Two causes that nearly cancel need more of each than a diagnosis would begin with."""
 
 
-def aliases(runs: Runs, truths: Sequence[Truth]) -> list[tuple[tuple[str, ...], ...]]:
+def aliases(
+    runs: Runs, truths: Sequence[Truth], progress: Progress = silent
+) -> list[tuple[tuple[str, ...], ...]]:
     """Causes, alone or two together, that a cause could be taken for at its size.
 
     An alias leaves d < DETECTABILITY[0] of the cause's trace at noise and tolerances as declared,
@@ -36,12 +38,16 @@ def aliases(runs: Runs, truths: Sequence[Truth]) -> list[tuple[tuple[str, ...], 
     Args:
         runs: of the programme.
         truths: each with one cause.
+        progress: told how far it is.
     """
     if not truths:
         return []
-    bank = build_bank(runs)
-    screen = Screen(bank, whitening_declared(runs))
-    return [_of(screen, bank, truth) for truth in truths]
+    bank = build_bank(runs, progress=progress)
+    screen, found = Screen(bank, whitening_declared(runs)), []
+    for n, truth in enumerate(truths):
+        progress(n / len(truths), "what each cause left out could be taken for")
+        found.append(_of(screen, bank, truth))
+    return found
 
 
 def _of(screen: Screen, bank: SignatureLibrary, truth: Truth) -> tuple[tuple[str, ...], ...]:

@@ -44,19 +44,21 @@ def answer_suite(
     suite, use = load_suite(folder), use or Use()
     machine = nominal_machine(suite.machine)
     found = read_answers(answers) if answers.exists() else {}
-    for n, case in enumerate(suite.cases):
-        progress(n / len(suite.cases), case)
-        played = not use.after or (folder / case / next_file(use.after)).is_file()
-        if case not in found and played:
-            begun = perf_counter()
-            material = Material.of(folder, suite, case, use)
-            if suite.machine in OF_VES2:  # legs hunt over a count while they stand, not in motion
-                material = replace(material, standstill=None)
-            try:
-                excluded = suite.excluded.get(case, ())
-                said = diagnosed(machine, material, settings, excluded).verdict
-                found[case] = Answer.of(said, perf_counter() - begun)
-            except VesTwinError:
-                found[case] = Answer("error", seconds=round(perf_counter() - begun, 1))
-            write_answers(found, answers)
+    played = [
+        c for c in suite.cases if not use.after or (folder / c / next_file(use.after)).is_file()
+    ]
+    asked = [case for case in played if case not in found]
+    for n, case in enumerate(asked):
+        progress(n / len(asked), "cases without an answer")
+        begun = perf_counter()
+        material = Material.of(folder, suite, case, use)
+        if suite.machine in OF_VES2:  # legs hunt over a count while they stand, not in motion
+            material = replace(material, standstill=None)
+        try:
+            excluded = suite.excluded.get(case, ())
+            said = diagnosed(machine, material, settings, excluded).verdict
+            found[case] = Answer.of(said, perf_counter() - begun)
+        except VesTwinError:
+            found[case] = Answer("error", seconds=round(perf_counter() - begun, 1))
+        write_answers(found, answers)
     return found

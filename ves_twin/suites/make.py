@@ -143,7 +143,9 @@ def _truths(machine: BlindMachine, recipe: Recipe, progress: Progress, workers: 
             detectability = _erring(machine, recipe, detectability, rng)
         truths = draw_truths(machine, recipe.counts, detectability, rng, recipe.spread, progress)
         left_out = [t for t in truths if t.hidden is Hidden.OUTSIDE and t.causes]
-        likes = dict(zip([t.case for t in left_out], aliases(runs, left_out), strict=True))
+        likes = dict(
+            zip([t.case for t in left_out], aliases(runs, left_out, progress), strict=True)
+        )
         if recipe.model_error:
             truths = _with_errors(truths, recipe, detectability)
     return [replace(t, background=recipe.background, aliases=likes.get(t.case, ())) for t in truths]

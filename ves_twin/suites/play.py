@@ -55,11 +55,10 @@ def play_next(
     machine = machine_of(load_suite(folder).machine)
     menu = machine.excitations
     played = {}
-    for n, truth in enumerate(truths):
-        progress(n / len(truths), truth.case)
-        offered = answers[truth.case].programmes if truth.case in answers else None
-        if not offered:
-            continue
+    asked = [t for t in truths if t.case in answers and answers[t.case].programmes]
+    for n, truth in enumerate(asked):
+        progress(n / len(asked), "next experiments")
+        offered = answers[truth.case].programmes or {}
         if not truth.values:
             raise InvalidInputError(str(folder), "a suite without its rigs", "one made anew")
         rng = _rng(key, truth.case, choice)

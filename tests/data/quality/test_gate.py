@@ -55,9 +55,12 @@ def test_a_gap_is_found_with_its_time(healthy):
 def test_rows_that_a_logger_held_are_repeats(healthy):
     at = np.arange(len(healthy)) // 2 * 2
     held = {name: values[at] for name, values in healthy.signals.items()}
-    assert (
-        "repeat the one before" in found(vt.Recording(healthy.time, held, healthy.info))["repeats"]
-    )
+    words = found(vt.Recording(healthy.time, held, healthy.info))["repeats"]
+    count = len(healthy)
+    assert words.startswith(f"{count // 2} of {count} rows repeat the one before, first at 0.013 s")
+    once = {n: np.r_[values[:6], values[5:-1]] for n, values in healthy.signals.items()}
+    words = found(vt.Recording(healthy.time, once, healthy.info))["repeats"]
+    assert words.startswith(f"1 of {count} rows repeats the one before, first at 0.0")
 
 
 def test_another_rate_than_declared_is_found(healthy):

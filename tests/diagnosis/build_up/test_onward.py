@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
@@ -198,3 +199,40 @@ def test_a_rejected_cause_makes_room_for_the_one_that_it_stood_for(forward, monk
     found = builder.best()
     assert causes(found) == {"actuator_gain", "actuator_deadband", "actuator_delay"}
     assert _counted(found).tested == 4
+
+
+def test_many_causes_never_end_worse_than_the_best_pair(forward, monkeypatch):
+    """Both ways are made to choose what is not there; the best of Selector.best stays in play."""
+    for way in (Selector, PlainSelector):
+        monkeypatch.setattr(way, "run", choosing(lambda *_: ("asymmetry",)))
+    builder = builder_of(forward)
+    origin = builder.fitted.runs.origin
+    halves = builder.halves(origin, ())
+    (pair,) = builder.few(halves, origin, frozenset())
+    (alone,) = builder.offers(halves, origin)
+    assert len(causes(pair)) == 2
+    found = builder.best()
+    assert np.all(found.rms <= pair.rms * (1.0 + 1e-6))
+    assert np.all(pair.rms < 0.9 * alone.rms)
+    assert found.known == pair.known | alone.known
+
+
+def test_a_cause_that_bends_at_first_is_not_probed_again(forward):
+    """Its bank sizes are all there; what was linear is probed, and may be linear there, too."""
+    builder = builder_of(forward)
+    origin = builder.fitted.runs.origin
+    first = builder.halves(origin, ()).regression.trials
+    bent = {trial.cause.effect for trial in first if trial.bent}
+    assert "actuator_deadband" in bent
+    assert "actuator_gain" not in bent
+    band = next(trial for trial in first if trial.cause.effect == "actuator_deadband")
+    point = builder.fitted.runs.depart(
+        origin, builder.fitted.runs.indices(band.cause), np.array(band.sizes)
+    )
+    labels = frozenset(trial.cause.label for trial in first if trial.bent)
+    told = replace(builder, bent=labels).halves(point, (band,)).regression.trials
+    plain = builder.halves(point, (band,)).regression.trials
+    every = {trial for trial in plain if trial.cause.effect in bent}
+    assert every <= set(told)
+    assert len(told) == len(set(told))
+    assert not any(trial.bent for trial in told if trial.cause.effect == "actuator_gain")

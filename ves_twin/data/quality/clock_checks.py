@@ -58,12 +58,11 @@ def _repeats(recording: Recording) -> Check:
     for values in recording.signals.values():
         with np.errstate(invalid="ignore"):
             changes |= np.any(np.diff(values, axis=0) != 0.0, axis=1)
-    share = float(np.mean(~changes))
-    if share == 1.0:
+    held = np.flatnonzero(~changes)
+    if len(held) == len(changes):
         return unknown("repeats", "no signal changes at all")
-    if share > 0.0:
-        first = recording.time[np.flatnonzero(~changes)[0] + 1]
-        return failed(
-            "repeats", f"{share:.1%} of the rows repeat the one before, first at {first:.3f} s"
-        )
+    if len(held):
+        first, repeat = recording.time[held[0] + 1], "repeats" if len(held) == 1 else "repeat"
+        said = f"{len(held)} of {len(recording)} rows {repeat} the one before"
+        return failed("repeats", f"{said}, first at {first:.3f} s")
     return passed("repeats", "none")

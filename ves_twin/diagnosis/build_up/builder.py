@@ -11,9 +11,10 @@ from ves_twin.core.types import FloatArray
 from ves_twin.diagnosis.build_up.discrepancy import discrepancy
 from ves_twin.diagnosis.build_up.halves import Halves, halves_at
 from ves_twin.diagnosis.build_up.in_full import in_full
+from ves_twin.diagnosis.build_up.nearest import nearest
 from ves_twin.diagnosis.build_up.offer import Offer, preferred
 from ves_twin.diagnosis.build_up.plain_selector import PlainSelector
-from ves_twin.diagnosis.build_up.proof import prove
+from ves_twin.diagnosis.build_up.proof import Bench, prove
 from ves_twin.diagnosis.build_up.select import Selector
 from ves_twin.diagnosis.build_up.trials import Trial
 from ves_twin.diagnosis.evidence import Evidence
@@ -43,17 +44,20 @@ class Builder:
         desk: the record before any cause.
         fitted, held: its halves.
         barred: labels of causes that held-out rows spoke against.
+        bent: labels of causes that were not linear before any was at work.
     """
 
     desk: FitContext
     fitted: Dataset
     held: Dataset
     barred: frozenset[str] = frozenset()
+    bent: frozenset[str] = frozenset()
 
     def halves(self, point: FloatArray, present: Sequence[Trial]) -> Halves:
         """Both halves, linear about a point where some trials are at work."""
         causes = self.desk.first.screen.bank.hypotheses
-        both = halves_at(self.fitted, self.held, point, causes, present, self.desk.progress)
+        data = (self.fitted, self.held)
+        both = halves_at(*data, point, causes, present, self.bent, self.desk.progress)
         return replace(both, regression=replace(both.regression, barred=self.barred))
 
     def evidence(self, residual: FloatArray, memory: bool = True) -> Evidence:
@@ -154,10 +158,31 @@ class Builder:
         halves = barred.halves(offer.fit.shift, present)
         return barred.offers(halves, offer.fit.shift, present, offer.known)
 
+    def few(self, halves: Halves, point: FloatArray, known: frozenset[str]) -> list[Offer]:
+        """What comes of the best single cause or pair: many should not end worse than these.
+
+        Of the sets of `Selector.best` the one that `nearest` takes; none where it takes none.
+
+        Args:
+            halves: linear about the point, nothing at work there.
+            point: departures (coordinates,).
+            known: labels of the causes that were put to proof before.
+        """
+        regression = halves.regression
+        if not regression.trials or self.fitted.runs.budget.skips("the best single cause or pair"):
+            return []
+        sets = Selector(regression).best()
+        every = list(dict.fromkeys(n for some in sets for n in some))
+        chosen = list(nearest(Bench(regression.fit(every), halves.held, regression), sets))
+        return [self.offer(halves, point, chosen, known)] if chosen else []
+
     def best(self) -> Offer:
         """The choice whose proved causes predict held-out rows best, all that was tried counted."""
         origin = self.fitted.runs.origin
-        builder, offers = self, self.offers(self.halves(origin, ()), origin)
+        halves = self.halves(origin, ())
+        trials = halves.regression.trials
+        builder = replace(self, bent=frozenset(t.cause.label for t in trials if t.bent))
+        offers = builder.offers(halves, origin)
         found, known = preferred(offers), offers[-1].known
         while True:
             others = builder.again(replace(found, known=known))
@@ -169,7 +194,9 @@ class Builder:
                 break
             builder = replace(builder, barred=builder.barred | found.rejected)
             found = other
-        return replace(found, known=known)
+        few = self.few(halves, origin, known)
+        known = few[-1].known if few else known
+        return replace(preferred([found, *few]), known=known)
 
 
 def _places(halves: Halves, present: Sequence[Trial]) -> list[int]:

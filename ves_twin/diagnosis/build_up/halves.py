@@ -42,6 +42,7 @@ def halves_at(
     point: FloatArray,
     causes: Sequence[Hypothesis],
     present: Sequence[Trial] = (),
+    bent: frozenset[str] = frozenset(),
     progress: Progress = silent,
 ) -> Halves:
     """Both halves, linear about a point.
@@ -52,10 +53,11 @@ def halves_at(
         point: departures in the fitted recordings (coordinates,).
         causes: the library.
         present: trials that are at work at the point.
+        bent: labels of causes that are not linear elsewhere.
         progress: told how far it is.
     """
     runs = fitted.runs
-    trials, columns = trials_at(runs, point, causes, present, progress)
+    trials, columns = trials_at(runs, point, causes, present, bent, progress)
     there = carried_point(runs, held.runs, point)
     same = held.runs.programmes is runs.programmes
     known = dict(enumerate(columns))

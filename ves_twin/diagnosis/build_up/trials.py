@@ -101,6 +101,7 @@ def trials_at(
     point: FloatArray,
     causes: Sequence[Hypothesis],
     present: Sequence[Trial] = (),
+    bent: frozenset[str] = frozenset(),
     progress: Progress = silent,
 ) -> tuple[list[Trial], list[SingleArray]]:
     """Every way each cause may act about a point, with its columns.
@@ -113,26 +114,29 @@ def trials_at(
         point: departures (coordinates,).
         causes: the library.
         present: trials that are fitted at the point: kept as they are.
+        bent: labels of causes that are not linear elsewhere, and are not probed here.
         progress: told how far it is.
     """
-    looked = [probe for cause in causes for probe in _probes(runs, cause)]
+    new = [cause for cause in causes if cause.label not in bent]
+    looked = [probe for cause in new for probe in _probes(runs, cause)]
     columns = columns_of(runs, point, looked, progress)
-    here = {trial.cause.label: trial for trial in present}
+    here = {trial.cause.label for trial in present}
     trials: list[Trial] = []
-    bent: list[Trial] = []
     found: list[SingleArray] = []
-    for n, cause in enumerate(causes):
+    curved = [cause for cause in causes if cause.label in bent]
+    for n, cause in enumerate(new):
         probes, shown = looked[3 * n : 3 * n + 3], columns[3 * n : 3 * n + 3]
         linear = not cause.starts and _is_linear(probes, shown)
         if linear and cause.label not in here:
             trials.append(probes[0])
             found.append(shown[0])
         elif not linear:
-            sizes = [_within(runs, cause, row) for row in cause.departures()]
-            bent += [Trial(cause, row, positive=True, bent=True) for row in dict.fromkeys(sizes)]
-        bent += [here[cause.label]] if cause.label in here else []
-    rest = columns_of(runs, point, bent, progress)
-    every, stacks = [*trials, *bent], [*found, *rest]
+            curved.append(cause)
+    sizes = [(cause, _within(runs, cause, row)) for cause in curved for row in cause.departures()]
+    bank = [Trial(cause, row, positive=True, bent=True) for cause, row in sizes]
+    rest = list(dict.fromkeys([*bank, *present]))
+    stacks = [*found, *columns_of(runs, point, rest, progress)]
+    every = [*trials, *rest]
     sound = [n for n, stack in enumerate(stacks) if np.all(np.isfinite(stack)) and np.any(stack)]
     return [every[n] for n in sound], [stacks[n] for n in sound]
 

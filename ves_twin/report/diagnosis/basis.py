@@ -78,7 +78,10 @@ def rms_words(gain: Gain) -> str:
     falls = {name: 1.0 - after / before for name, (before, after) in gain.errors.items() if before}
     ends = sorted(falls, key=lambda name: falls[name])
     told = [_moved(falls[name], name) for name in dict.fromkeys((*ends[-1:], *ends[:1]))]
-    return f"the rms error on held-out recordings {' and '.join(told) or 'stays'}"
+    words = " and ".join(told) or "stays"
+    if len(told) > 1 and all(one.startswith("falls ") for one in told):
+        words = f"{told[0]} and {told[1].removeprefix('falls ')}"
+    return f"the rms error on held-out recordings {words}"
 
 
 def _moved(fall: float, name: str) -> str:
