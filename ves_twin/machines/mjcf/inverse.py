@@ -16,6 +16,8 @@ from ves_twin.core.types import FloatArray
 from ves_twin.effects.effect import Effect
 from ves_twin.effects.law import LawKind
 from ves_twin.effects.shifted import shifted
+from ves_twin.machines.mjcf.inertials import without_inertials
+from ves_twin.machines.mjcf.rigid_efforts import Moved, RigidEfforts, inverted
 from ves_twin.machines.mjcf.work import Work, sensor_rows, variables
 
 ORDER = 4
@@ -26,7 +28,7 @@ PICKED = 20
 """Rounds after which drives that pick up a half of each other's command are known to 1e-6."""
 
 KEPT = 24
-"""Motions whose rigid-body efforts are kept: most causes change none of them."""
+"""Motions whose rigid-body efforts are kept: few causes change more than what bodies weigh."""
 
 
 def efforts_of_motion(work: Work) -> tuple[dict[str, FloatArray], dict[str, FloatArray]]:
@@ -43,10 +45,10 @@ def efforts_of_motion(work: Work) -> tuple[dict[str, FloatArray], dict[str, Floa
     positions = {j: work.position(j, work.programme.drive[s][:, 0]) for j, s in _single(work)}
     digest = hashlib.sha256(f"{work.rig.identity}{work.programme.identity}".encode())
     rigid = _rigid(work.model)
-    digest.update(_content(rigid))
+    digest.update(without_inertials(rigid))
     for part in positions.values():
         digest.update(np.ascontiguousarray(part).tobytes())
-    moved = _moved(_Motion(digest.hexdigest(), work, rigid, positions))
+    moved = _efforts(_Motion(digest.hexdigest(), work, rigid, positions)).of(rigid)
     found, asked = {}, [one.actuator for one in told.compare.values() if one.actuator]
     commands = _commands(work, asked, moved)
     for name, compared in told.compare.items():
@@ -66,7 +68,7 @@ def efforts_along(
     pull: FloatArray,
 ) -> dict[str, FloatArray]:
     """The command (n,) that each actuator needs along qpos (n, nq), qvel and qacc (n, nv)."""
-    moved = _inverted(_rigid(work.model), position, speed, pull)
+    moved = inverted(_rigid(work.model), position, speed, pull)
     return _commands(work, actuators, moved)
 
 
@@ -81,16 +83,9 @@ def _rigid(model: mujoco.MjModel) -> mujoco.MjModel:
     return rigid
 
 
-def _content(model: mujoco.MjModel) -> bytes:
-    """Every number of a model: an effect of another package may have edited any."""
-    content = np.empty(mujoco.mj_sizeModel(model), np.uint8)
-    mujoco.mj_saveModel(model, None, content)
-    return content.tobytes()
-
-
 @dataclass(frozen=True)
 class _Motion:
-    """A motion of a rig; equal to another one if its hash is."""
+    """A motion of a rig, whatever its bodies weigh; equal to another one if its hash is."""
 
     key: str
     work: Work = field(compare=False)
@@ -98,35 +93,10 @@ class _Motion:
     positions: Mapping[str, FloatArray] = field(compare=False)
 
 
-@dataclass(frozen=True)
-class _Moved:
-    """Positions (n, nq), speeds and rigid-body efforts (n, nv), sensors (n, all) of a motion."""
-
-    position: FloatArray
-    speed: FloatArray
-    effort: FloatArray
-    sensed: FloatArray
-
-
 @lru_cache(maxsize=KEPT)
-def _moved(motion: _Motion) -> _Moved:
+def _efforts(motion: _Motion) -> RigidEfforts:
     """Along a motion that is fed in."""
-    return _inverted(motion.model, *_states(motion))
-
-
-def _inverted(model: mujoco.MjModel, q: FloatArray, v: FloatArray, a: FloatArray) -> _Moved:
-    """MuJoCo's inverse dynamics row by row, without damping and dry friction."""
-    data = mujoco.MjData(model)
-    efforts, sensed = np.zeros((len(q), model.nv)), np.zeros((len(q), model.nsensordata))
-    position, speed, pull = data.qpos, data.qvel, data.qacc
-    effort, sensor, sensing = data.qfrc_inverse, data.sensordata, model.nsensordata > 0
-    for k in range(len(q)):
-        position[:], speed[:], pull[:] = q[k], v[k], a[k]
-        mujoco.mj_inverse(model, data)
-        efforts[k] = effort
-        if sensing:
-            sensed[k] = sensor
-    return _Moved(q, v, efforts, sensed)
+    return RigidEfforts(motion.model, *_states(motion))
 
 
 def _single(work: Work) -> list[tuple[str, str]]:
@@ -135,7 +105,7 @@ def _single(work: Work) -> list[tuple[str, str]]:
     return [(j, s) for j, s in joints.items() if work.programme.drive[s].shape[1] == 1]
 
 
-def _commands(work: Work, names: Sequence[str], moved: _Moved) -> dict[str, FloatArray]:
+def _commands(work: Work, names: Sequence[str], moved: Moved) -> dict[str, FloatArray]:
     """The command (n,) of each actuator, less what it picks up of those to others."""
     talking = [e.parts for e, _ in work.effects if type(e).pick_up is not Effect.pick_up]
     every = dict.fromkeys([*names, *(other for _, *others in talking for other in others)])
@@ -149,7 +119,7 @@ def _commands(work: Work, names: Sequence[str], moved: _Moved) -> dict[str, Floa
     return found
 
 
-def _needed(work: Work, name: str, moved: _Moved) -> FloatArray:
+def _needed(work: Work, name: str, moved: Moved) -> FloatArray:
     """What must reach an actuator (n,)."""
     model = work.model
     actuator = model.actuator(name)

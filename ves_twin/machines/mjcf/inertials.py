@@ -1,0 +1,71 @@
+"""inertials: what inverse dynamics is linear in: masses, first moments, inertias of bodies."""
+
+from __future__ import annotations
+
+import copy
+
+import mujoco
+import numpy as np
+
+from ves_twin.core.types import FloatArray
+
+_UPPER = ((0, 1, 2, 0, 0, 1), (0, 1, 2, 1, 2, 2))
+"""Places of xx, yy, zz, xy, xz, yz in a matrix."""
+
+_OF_BODIES = ("body_mass", "body_ipos", "body_iquat", "body_inertia")
+
+_FOLLOWING = (
+    *("body_subtreemass", "body_sameframe", "body_invweight0", "dof_invweight0", "dof_M0"),
+    *("tendon_invweight0", "actuator_acc0", "cam_poscom0", "light_poscom0"),
+    *("dof_length", "bvh_aabb"),
+)
+"""What MuJoCo derives from them: references for solvers, contacts, cameras and sleep, of no effect
+on an effort without constraints."""
+
+
+def inertials(model: mujoco.MjModel) -> FloatArray:
+    """Of each body m, m c (3) and its inertia about its frame (6): (bodies, 10) [kg, m].
+
+    With these the efforts along a motion are linear: tau = Y(q, v, a) phi.
+
+    Source: Atkeson, An, Hollerbach 1986, Estimation of inertial parameters of manipulator loads and
+    links, International Journal of Robotics Research 5(3).
+    """
+    mass, centre = np.asarray(model.body_mass), np.asarray(model.body_ipos)
+    axes = np.empty((model.nbody, 9))
+    for row, turn in zip(axes, model.body_iquat, strict=True):
+        mujoco.mju_quat2Mat(row, turn)
+    turned = axes.reshape(-1, 3, 3)
+    about = np.einsum("bij,bj,bkj->bik", turned, model.body_inertia, turned)
+    about += mass[:, None, None] * _steiner(centre)
+    return np.column_stack([mass, mass[:, None] * centre, about[:, _UPPER[0], _UPPER[1]]])
+
+
+def set_inertials(model: mujoco.MjModel, body: int, numbers: FloatArray) -> None:
+    """Give a body of a model these numbers (10,); no mass leaves its centre in its origin."""
+    mass, about = float(numbers[0]), np.empty((3, 3))
+    about[_UPPER] = about[_UPPER[::-1]] = numbers[4:]
+    centre = numbers[1:4] / mass if mass else np.zeros(3)
+    inertia, axes = np.linalg.eigh(about - mass * _steiner(centre[None])[0])
+    axes[:, 0] *= np.sign(np.linalg.det(axes))
+    mujoco.mju_mat2Quat(model.body_iquat[body], axes.ravel())
+    model.body_mass[body], model.body_ipos[body], model.body_inertia[body] = mass, centre, inertia
+    model.body_sameframe[body] = 0  # else MuJoCo takes the centre for the origin
+
+
+def without_inertials(model: mujoco.MjModel) -> bytes:
+    """All other numbers of a model but springs and rotors of its joints; effects edit any."""
+    bare = copy.copy(model)
+    for name in (*_OF_BODIES, *_FOLLOWING, "dof_armature"):
+        getattr(bare, name)[:] = 0.0
+    bare.jnt_stiffness[bare.jnt_type >= int(mujoco.mjtJoint.mjJNT_SLIDE)] = 0.0  # or a hinge
+    bare.stat.meaninertia = bare.stat.meanmass = 0.0
+    content = np.empty(mujoco.mj_sizeModel(bare), np.uint8)
+    mujoco.mj_saveModel(bare, None, content)
+    return content.tobytes()
+
+
+def _steiner(centre: FloatArray) -> FloatArray:
+    """What a mass of one at each centre (n, 3) adds to the inertia about the origin (n, 3, 3)."""
+    squares = np.einsum("ni,ni->n", centre, centre)[:, None, None] * np.eye(3)
+    return np.asarray(squares - centre[:, :, None] * centre[:, None, :])

@@ -1,0 +1,163 @@
+"""RigidEfforts: inverse dynamics along one motion, for any masses, rotors and springs."""
+
+from __future__ import annotations
+
+import copy
+from dataclasses import dataclass
+from threading import Lock
+
+import mujoco
+import numpy as np
+
+from ves_twin.core.types import FloatArray
+from ves_twin.machines.mjcf.inertials import inertials, set_inertials
+
+STEP = 0.1
+"""Departure of a body's numbers, in its own units, that a direction is computed with: no round-off
+to speak of, as efforts are linear in it."""
+
+ROUND_OFF = 1e-9
+"""Share of a departure that lies in no known direction and counts as none."""
+
+STIFFER = 10.0
+"""Times a joint's inertia that its rotor has more of meanwhile: no body may lack any."""
+
+_LINEAR = {
+    int(getattr(mujoco.mjtSensor, f"mjSENS_{name}"))
+    for name in (
+        *("JOINTPOS", "JOINTVEL", "TENDONPOS", "TENDONVEL", "ACTUATORPOS", "ACTUATORVEL"),
+        *("BALLQUAT", "BALLANGVEL", "FRAMEPOS", "FRAMEQUAT", "FRAMEXAXIS", "FRAMEYAXIS"),
+        *("FRAMEZAXIS", "FRAMELINVEL", "FRAMEANGVEL", "FRAMELINACC", "FRAMEANGACC", "GYRO"),
+        *("VELOCIMETER", "ACCELEROMETER", "MAGNETOMETER", "FORCE", "TORQUE"),
+    )
+}
+"""Sensors whose reading along a given motion is linear in what bodies weigh, or independent."""
+
+
+@dataclass(frozen=True)
+class Moved:
+    """Positions (n, nq), speeds and rigid-body efforts (n, nv), sensors (n, all) of a motion."""
+
+    position: FloatArray
+    speed: FloatArray
+    effort: FloatArray
+    sensed: FloatArray
+
+
+def inverted(model: mujoco.MjModel, q: FloatArray, v: FloatArray, a: FloatArray) -> Moved:
+    """MuJoCo's inverse dynamics row by row, without damping and dry friction."""
+    return _inverted(model, q, v, a)[0]
+
+
+class RigidEfforts:
+    """Efforts and sensors along a motion, linear in the inertial numbers phi of the bodies.
+
+        tau(phi) = tau(phi_0) + sum_k (phi - phi_0)_k dtau / dphi_k
+
+    A direction of phi costs one pass of inverse dynamics, when a model first departs along it. A
+    rotor adds its inertia times the acceleration of its joint, a spring its stiffness times the
+    way. Where contacts, limits or equalities act, or a fluid, nothing of this holds, and each
+    model is computed by itself.
+
+    Attributes:
+        model: the first model that was asked for, phi_0.
+        speed, pull: of the motion (n, nv).
+    """
+
+    def __init__(self, model: mujoco.MjModel, q: FloatArray, v: FloatArray, a: FloatArray) -> None:
+        self.model, self.speed, self.pull = copy.copy(model), v, a
+        self._base, bound = _inverted(model, q, v, a)
+        self._linear = not bound and _is_linear(model)
+        self._phi = inertials(model)
+        self._unit = _units(self._phi)
+        self._known: dict[int, list[tuple[FloatArray, FloatArray, FloatArray]]] = {}
+        self._lock = Lock()
+
+    def of(self, model: mujoco.MjModel) -> Moved:
+        """Efforts of a model that differs from the first in masses, rotors and springs alone."""
+        base, departures = self._base, self._departures(model)
+        effort, sensed = base.effort + self._of_joints(model), base.sensed
+        if not self._linear:
+            same = not departures and np.array_equal(effort, base.effort)
+            return base if same else inverted(model, base.position, self.speed, self.pull)
+        for body, departure in departures:
+            for share, of_effort, of_sensor in self._parts(body, departure):
+                effort = effort + share * of_effort
+                sensed = sensed + share * of_sensor if sensed.size else sensed
+        return Moved(base.position, base.speed, effort, sensed)
+
+    def _of_joints(self, model: mujoco.MjModel) -> FloatArray:
+        """What other rotors and springs take (n, nv)."""
+        effort = (model.dof_armature - self.model.dof_armature) * self.pull
+        for number in np.flatnonzero(model.jnt_stiffness != self.model.jnt_stiffness):
+            more = model.jnt_stiffness[number] - self.model.jnt_stiffness[number]
+            at, dof = model.jnt_qposadr[number], model.jnt_dofadr[number]
+            way = self._base.position[:, at] - model.qpos_spring[at]
+            effort[:, dof] += more * way
+        return np.asarray(effort)
+
+    def _departures(self, model: mujoco.MjModel) -> list[tuple[int, FloatArray]]:
+        """Bodies with other numbers, and by how much, in units of each (10,)."""
+        found = (inertials(model) - self._phi) / self._unit
+        return [(int(n), found[n]) for n in np.flatnonzero(np.any(found != 0.0, axis=1))]
+
+    def _parts(
+        self, body: int, departure: FloatArray
+    ) -> list[tuple[float, FloatArray, FloatArray]]:
+        """Share, effort and sensor of each direction that a departure has."""
+        with self._lock:
+            known = self._known.setdefault(body, [])
+            rest, size = departure.copy(), float(np.linalg.norm(departure))
+            for direction, _, _ in known:
+                rest = rest - (direction @ rest) * direction
+            if np.linalg.norm(rest) > ROUND_OFF * size:
+                known.append(self._direction(body, rest / np.linalg.norm(rest)))
+            return [(float(along @ departure), one, two) for along, one, two in known]
+
+    def _direction(
+        self, body: int, direction: FloatArray
+    ) -> tuple[FloatArray, FloatArray, FloatArray]:
+        """A direction (10,) with its effort and sensor, by one pass at a model that went there."""
+        there, base = copy.copy(self.model), self._base
+        direction = direction * (-1.0 if direction[0] < 0.0 else 1.0)
+        set_inertials(there, body, self._phi[body] + STEP * direction * self._unit[body])
+        more = STIFFER * self.model.dof_M0
+        there.dof_armature[:] += more
+        moved, _ = _inverted(there, base.position, self.speed, self.pull)
+        effort = (moved.effort - more * self.pull - base.effort) / STEP
+        return direction, effort, (moved.sensed - base.sensed) / STEP
+
+
+def _units(phi: FloatArray) -> FloatArray:
+    """Of each body's numbers (bodies, 10): its mass, and the distance at which that turns so."""
+    mass = np.where(phi[:, 0] > 0.0, phi[:, 0], np.max(phi[:, 0], initial=0.0) or 1.0)
+    turning = 0.5 * phi[:, 4:7].sum(axis=1) / mass
+    reach = np.sqrt(np.where(turning > 0.0, turning, 0.01))
+    power = np.repeat([0.0, 1.0, 2.0], [1, 3, 6])
+    return np.asarray(mass[:, None] * reach[:, None] ** power)
+
+
+def _is_linear(model: mujoco.MjModel) -> bool:
+    """Whether nothing but constraints could make efforts and sensors bend."""
+    discrete = model.opt.enableflags & mujoco.mjtEnableBit.mjENBL_INVDISCRETE
+    fluid = model.opt.density or model.opt.viscosity
+    plain = not (discrete or fluid or model.nflex or model.nplugin)
+    return plain and set(model.sensor_type) <= _LINEAR and not np.any(model.sensor_cutoff)
+
+
+def _inverted(
+    model: mujoco.MjModel, q: FloatArray, v: FloatArray, a: FloatArray
+) -> tuple[Moved, bool]:
+    """Efforts row by row, and whether any constraint was at work."""
+    data, bound = mujoco.MjData(model), False
+    efforts, sensed = np.zeros((len(q), model.nv)), np.zeros((len(q), model.nsensordata))
+    position, speed, pull = data.qpos, data.qvel, data.qacc
+    effort, sensor, sensing = data.qfrc_inverse, data.sensordata, model.nsensordata > 0
+    for k in range(len(q)):
+        position[:], speed[:], pull[:] = q[k], v[k], a[k]
+        mujoco.mj_inverse(model, data)
+        efforts[k] = effort
+        bound = bound or data.nefc > 0
+        if sensing:
+            sensed[k] = sensor
+    return Moved(q, v, efforts, sensed), bound
