@@ -111,7 +111,7 @@ def _ranked(
         return sorted([best, *found], key=_chi2)
     others = refined([crossed(evidence, fit, best, target) for fit in found], desk, what)
     found = [min(pair, key=_chi2) for pair in zip(found, others, strict=True)]
-    first = min(found, key=_chi2, default=best)
+    first = min(found, key=_chi2)
     if first.chi2 < best.chi2:
         best = min(best, *refined([crossed(evidence, best, first)], desk, what), key=_chi2)
     return sorted([best, *found], key=_chi2)
