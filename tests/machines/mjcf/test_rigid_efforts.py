@@ -85,6 +85,24 @@ def test_any_inertial_numbers_give_the_efforts_and_readings_of_mujoco(rng):
         assert np.max(np.abs(direct.effort - efforts.of(model).effort)) > 1.0
 
 
+def test_bodies_that_mujoco_simplifies_are_no_exception(rng):
+    """It takes the inertia of such a joint from what it derived once."""
+    model = mujoco.MjModel.from_xml_string(
+        """<mujoco><worldbody><body name="rod"><joint type="slide" axis="1 0 0"/>
+        <inertial pos="0 0 0" mass="20" diaginertia="3 2 1"/></body></worldbody></mujoco>"""
+    )
+    assert model.body_simple[1]
+    path = tuple(rng.normal(size=(ROWS, 1)) for _ in range(3))
+    changed = copy.copy(model)
+    changed.body_mass[1] += 9.0
+    changed.body_inertia[1] *= 29.0 / 20.0
+    changed.dof_armature[0] = 2.0
+    mujoco.mj_setConst(changed, mujoco.MjData(changed))
+    summed = RigidEfforts(model, *path).of(changed).effort
+    assert summed == pytest.approx(31.0 * path[2], rel=ROUND_OFF)
+    assert summed == pytest.approx(inverted(changed, *path).effort, rel=ROUND_OFF)
+
+
 def test_small_departures_are_as_exact_for_their_size(rng):
     """Columns are computed from such ones."""
     model = arm()

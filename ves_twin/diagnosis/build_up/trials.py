@@ -132,24 +132,13 @@ def trials_at(
             found.append(shown[0])
         elif not linear:
             curved.append(cause)
-    sizes = [(cause, _within(runs, cause, row)) for cause in curved for row in _sizes(cause)]
+    sizes = [(cause, _within(runs, cause, row)) for cause in curved for row in cause.departures()]
     bank = [Trial(cause, row, positive=True, bent=True) for cause, row in sizes]
     rest = list(dict.fromkeys([*bank, *present]))
     stacks = [*found, *columns_of(runs, point, rest, progress)]
     every = [*trials, *rest]
     sound = [n for n, stack in enumerate(stacks) if np.all(np.isfinite(stack)) and np.any(stack)]
     return [every[n] for n in sound], [stacks[n] for n in sound]
-
-
-def _sizes(cause: Hypothesis) -> FloatArray:
-    """Its bank sizes, and the ends of its range: of what bends, no other size tells what they do.
-
-    A spring of a tenth of the model's was not reached from a quarter of it (the cylinder's oil).
-    """
-    sizes = cause.departures()
-    if cause.starts or len(cause.parameters) > 1:
-        return sizes
-    return np.concatenate([sizes, np.outer(cause.signs, cause.largest)])
 
 
 def _probes(runs: Runs, cause: Hypothesis) -> tuple[Trial, Trial, Trial]:

@@ -42,15 +42,21 @@ def inertials(model: mujoco.MjModel) -> FloatArray:
 
 
 def set_inertials(model: mujoco.MjModel, body: int, numbers: FloatArray) -> None:
-    """Give a body of a model these numbers (10,); no mass leaves its centre in its origin."""
+    """Give a body of a model these numbers (10,); no mass leaves its centre in its origin.
+
+    What MuJoCo derives from them follows: some joints take their inertia from there.
+    """
     mass, about = float(numbers[0]), np.empty((3, 3))
     about[_UPPER] = about[_UPPER[::-1]] = numbers[4:]
     centre = numbers[1:4] / mass if mass else np.zeros(3)
-    inertia, axes = np.linalg.eigh(about - mass * _steiner(centre[None])[0])
-    axes[:, 0] *= np.sign(np.linalg.det(axes))
+    about -= mass * _steiner(centre[None])[0]
+    inertia, axes = np.diag(about), np.eye(3)
+    if np.any(about != np.diag(inertia)):
+        inertia, axes = np.linalg.eigh(about)
+        axes[:, 0] *= np.sign(np.linalg.det(axes))
     mujoco.mju_mat2Quat(model.body_iquat[body], axes.ravel())
     model.body_mass[body], model.body_ipos[body], model.body_inertia[body] = mass, centre, inertia
-    model.body_sameframe[body] = 0  # else MuJoCo takes the centre for the origin
+    mujoco.mj_setConst(model, mujoco.MjData(model))
 
 
 def without_inertials(model: mujoco.MjModel) -> bytes:

@@ -120,9 +120,9 @@ class RigidEfforts:
         """A direction (10,) with its effort and sensor, by one pass at a model that went there."""
         there, base = copy.copy(self.model), self._base
         direction = direction * (-1.0 if direction[0] < 0.0 else 1.0)
-        set_inertials(there, body, self._phi[body] + STEP * direction * self._unit[body])
         more = STIFFER * self.model.dof_M0
         there.dof_armature[:] += more
+        set_inertials(there, body, self._phi[body] + STEP * direction * self._unit[body])
         moved, _ = _inverted(there, base.position, self.speed, self.pull)
         effort = (moved.effort - more * self.pull - base.effort) / STEP
         return direction, effort, (moved.sensed - base.sensed) / STEP
