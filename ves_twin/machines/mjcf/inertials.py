@@ -59,16 +59,15 @@ def set_inertials(model: mujoco.MjModel, body: int, numbers: FloatArray) -> None
     mujoco.mj_setConst(model, mujoco.MjData(model))
 
 
-def without_inertials(model: mujoco.MjModel) -> bytes:
-    """All other numbers of a model but springs and rotors of its joints; effects edit any."""
-    bare = copy.copy(model)
+def with_inertials_of(model: mujoco.MjModel, other: mujoco.MjModel) -> mujoco.MjModel:
+    """A model with what bodies weigh in another one, and its rotors and springs of joints."""
+    found = copy.copy(model)
     for name in (*_OF_BODIES, *_FOLLOWING, "dof_armature"):
-        getattr(bare, name)[:] = 0.0
-    bare.jnt_stiffness[bare.jnt_type >= int(mujoco.mjtJoint.mjJNT_SLIDE)] = 0.0  # or a hinge
-    bare.stat.meaninertia = bare.stat.meanmass = 0.0
-    content = np.empty(mujoco.mj_sizeModel(bare), np.uint8)
-    mujoco.mj_saveModel(bare, None, content)
-    return content.tobytes()
+        getattr(found, name)[:] = getattr(other, name)
+    single = found.jnt_type >= int(mujoco.mjtJoint.mjJNT_SLIDE)  # or a hinge
+    found.jnt_stiffness[single] = other.jnt_stiffness[single]
+    found.stat.meaninertia, found.stat.meanmass = other.stat.meaninertia, other.stat.meanmass
+    return found
 
 
 def _steiner(centre: FloatArray) -> FloatArray:

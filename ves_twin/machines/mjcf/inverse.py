@@ -16,7 +16,7 @@ from ves_twin.core.types import FloatArray
 from ves_twin.effects.effect import Effect
 from ves_twin.effects.law import LawKind
 from ves_twin.effects.shifted import shifted
-from ves_twin.machines.mjcf.inertials import without_inertials
+from ves_twin.machines.mjcf.inertials import with_inertials_of
 from ves_twin.machines.mjcf.rigid_efforts import Moved, RigidEfforts, inverted
 from ves_twin.machines.mjcf.work import Work, sensor_rows, variables
 
@@ -28,7 +28,7 @@ PICKED = 20
 """Rounds after which drives that pick up a half of each other's command are known to 1e-6."""
 
 KEPT = 24
-"""Motions whose rigid-body efforts are kept: few causes change more than what bodies weigh."""
+"""Motions whose rigid-body efforts are kept: few causes change them."""
 
 
 def efforts_of_motion(work: Work) -> tuple[dict[str, FloatArray], dict[str, FloatArray]]:
@@ -42,13 +42,7 @@ def efforts_of_motion(work: Work) -> tuple[dict[str, FloatArray], dict[str, Floa
         Signals, and the variables that laws depend on (n,).
     """
     told, model = work.rig.description, work.model
-    positions = {j: work.position(j, work.programme.drive[s][:, 0]) for j, s in _single(work)}
-    digest = hashlib.sha256(f"{work.rig.identity}{work.programme.identity}".encode())
-    rigid = _rigid(work.model)
-    digest.update(without_inertials(rigid))
-    for part in positions.values():
-        digest.update(np.ascontiguousarray(part).tobytes())
-    moved = _efforts(_Motion(digest.hexdigest(), work, rigid, positions)).of(rigid)
+    moved = _moved_of(work)
     found, asked = {}, [one.actuator for one in told.compare.values() if one.actuator]
     commands = _commands(work, asked, moved)
     for name, compared in told.compare.items():
@@ -83,9 +77,16 @@ def _rigid(model: mujoco.MjModel) -> mujoco.MjModel:
     return rigid
 
 
+def _content(model: mujoco.MjModel) -> bytes:
+    """Every number of a model: an effect of another package may have edited any."""
+    content = np.empty(mujoco.mj_sizeModel(model), np.uint8)
+    mujoco.mj_saveModel(model, None, content)
+    return content.tobytes()
+
+
 @dataclass(frozen=True)
 class _Motion:
-    """A motion of a rig, whatever its bodies weigh; equal to another one if its hash is."""
+    """A motion of a model; equal to another one if its hash is."""
 
     key: str
     work: Work = field(compare=False)
@@ -93,10 +94,36 @@ class _Motion:
     positions: Mapping[str, FloatArray] = field(compare=False)
 
 
+def _moved_of(work: Work) -> Moved:
+    """Efforts along the motion that is fed in: summed from directions where it is as recorded.
+
+    Where an effect moves a body, or what a joint's sensor shows, each fit has another motion, of
+    which directions would not be used again.
+    """
+    rigid, nominal = _rigid(work.model), _rigid(work.rig.model)
+    recorded = {j: work.programme.drive[s][:, 0] for j, s in _single(work)}
+    positions = {j: work.position(j, column) for j, column in recorded.items()}
+    content = _content(nominal)
+    as_recorded = all(np.array_equal(positions[j], recorded[j]) for j in recorded)
+    usual = as_recorded and _content(with_inertials_of(rigid, nominal)) == content
+    digest = hashlib.sha256(f"{work.rig.identity}{work.programme.identity}".encode())
+    digest.update(content if usual else _content(rigid))
+    for part in positions.values():
+        digest.update(np.ascontiguousarray(part).tobytes())
+    motion = _Motion(digest.hexdigest(), work, nominal if usual else rigid, positions)
+    return _efforts(motion).of(rigid) if usual else _moved(motion)
+
+
 @lru_cache(maxsize=KEPT)
 def _efforts(motion: _Motion) -> RigidEfforts:
-    """Along a motion that is fed in."""
+    """Of a motion as it was recorded."""
     return RigidEfforts(motion.model, *_states(motion))
+
+
+@lru_cache(maxsize=KEPT)
+def _moved(motion: _Motion) -> Moved:
+    """Of any other one."""
+    return inverted(motion.model, *_states(motion))
 
 
 def _single(work: Work) -> list[tuple[str, str]]:

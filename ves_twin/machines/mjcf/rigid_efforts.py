@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import copy
 from dataclasses import dataclass
-from threading import Lock
+from threading import RLock
 
 import mujoco
 import numpy as np
@@ -13,11 +13,11 @@ from ves_twin.core.types import FloatArray
 from ves_twin.machines.mjcf.inertials import inertials, set_inertials
 
 STEP = 0.1
-"""Departure of a body's numbers, in its own units, that a direction is computed with: no round-off
-to speak of, as efforts are linear in it."""
+"""Departure of one of a body's numbers, in its own units, that a direction is computed with: no
+round-off to speak of, as efforts are linear in it."""
 
-ROUND_OFF = 1e-9
-"""Share of a departure that lies in no known direction and counts as none."""
+ROUND_OFF = 1e-12
+"""Departure, in the body's units, that counts as none."""
 
 STIFFER = 10.0
 """Times a joint's inertia that its rotor has more of meanwhile: no body may lack any."""
@@ -54,13 +54,13 @@ class RigidEfforts:
 
         tau(phi) = tau(phi_0) + sum_k (phi - phi_0)_k dtau / dphi_k
 
-    A direction of phi costs one pass of inverse dynamics, when a model first departs along it. A
-    rotor adds its inertia times the acceleration of its joint, a spring its stiffness times the
-    way. Where contacts, limits or equalities act, or a fluid, nothing of this holds, and each
-    model is computed by itself.
+    Each direction of phi costs one pass of inverse dynamics, when a model first departs along it;
+    what was asked before changes no bit. A rotor adds its inertia times the acceleration of its
+    joint, a spring its stiffness times the way. Where contacts, limits or equalities act, or a
+    fluid, nothing of this holds, and each model is computed by itself.
 
     Attributes:
-        model: the first model that was asked for, phi_0.
+        model: phi_0.
         speed, pull: of the motion (n, nv).
     """
 
@@ -70,20 +70,22 @@ class RigidEfforts:
         self._linear = not bound and _is_linear(model)
         self._phi = inertials(model)
         self._unit = _units(self._phi)
-        self._known: dict[int, list[tuple[FloatArray, FloatArray, FloatArray]]] = {}
-        self._lock = Lock()
+        self._known: dict[tuple[int, int], tuple[FloatArray, FloatArray]] = {}
+        self._lock = RLock()
 
     def of(self, model: mujoco.MjModel) -> Moved:
         """Efforts of a model that differs from the first in masses, rotors and springs alone."""
-        base, departures = self._base, self._departures(model)
+        base = self._base
+        departure = (inertials(model) - self._phi) / self._unit
+        places = np.argwhere(np.abs(departure) > ROUND_OFF)
         effort, sensed = base.effort + self._of_joints(model), base.sensed
         if not self._linear:
-            same = not departures and np.array_equal(effort, base.effort)
+            same = not len(places) and np.array_equal(effort, base.effort)
             return base if same else inverted(model, base.position, self.speed, self.pull)
-        for body, departure in departures:
-            for share, of_effort, of_sensor in self._parts(body, departure):
-                effort = effort + share * of_effort
-                sensed = sensed + share * of_sensor if sensed.size else sensed
+        for body, number in places.tolist():
+            of_effort, of_sensor = self._direction(body, number)
+            effort = effort + departure[body, number] * of_effort
+            sensed = sensed + departure[body, number] * of_sensor
         return Moved(base.position, base.speed, effort, sensed)
 
     def _of_joints(self, model: mujoco.MjModel) -> FloatArray:
@@ -96,36 +98,28 @@ class RigidEfforts:
             effort[:, dof] += more * way
         return np.asarray(effort)
 
-    def _departures(self, model: mujoco.MjModel) -> list[tuple[int, FloatArray]]:
-        """Bodies with other numbers, and by how much, in units of each (10,)."""
-        found = (inertials(model) - self._phi) / self._unit
-        return [(int(n), found[n]) for n in np.flatnonzero(np.any(found != 0.0, axis=1))]
-
-    def _parts(
-        self, body: int, departure: FloatArray
-    ) -> list[tuple[float, FloatArray, FloatArray]]:
-        """Share, effort and sensor of each direction that a departure has."""
+    def _direction(self, body: int, number: int) -> tuple[FloatArray, FloatArray]:
+        """Effort and sensor of one of a body's numbers, in its unit."""
         with self._lock:
-            known = self._known.setdefault(body, [])
-            rest, size = departure.copy(), float(np.linalg.norm(departure))
-            for direction, _, _ in known:
-                rest = rest - (direction @ rest) * direction
-            if np.linalg.norm(rest) > ROUND_OFF * size:
-                known.append(self._direction(body, rest / np.linalg.norm(rest)))
-            return [(float(along @ departure), one, two) for along, one, two in known]
+            if (body, number) not in self._known:
+                self._known[body, number] = self._passed(body, number)
+            return self._known[body, number]
 
-    def _direction(
-        self, body: int, direction: FloatArray
-    ) -> tuple[FloatArray, FloatArray, FloatArray]:
-        """A direction (10,) with its effort and sensor, by one pass at a model that went there."""
-        there, base = copy.copy(self.model), self._base
-        direction = direction * (-1.0 if direction[0] < 0.0 else 1.0)
+    def _passed(self, body: int, number: int) -> tuple[FloatArray, FloatArray]:
+        """By one pass at a model that went there; a body without mass is given some first."""
+        begin, effort, sensed = self._phi[body].copy(), self._base.effort, self._base.sensed
+        if begin[0] == 0.0 and number:
+            of_mass = self._direction(body, 0)
+            begin[0] += self._unit[body, 0]
+            effort, sensed = effort + of_mass[0], sensed + of_mass[1]
+        begin[number] += STEP * self._unit[body, number]
+        there = copy.copy(self.model)
         more = STIFFER * self.model.dof_M0
         there.dof_armature[:] += more
-        set_inertials(there, body, self._phi[body] + STEP * direction * self._unit[body])
-        moved, _ = _inverted(there, base.position, self.speed, self.pull)
-        effort = (moved.effort - more * self.pull - base.effort) / STEP
-        return direction, effort, (moved.sensed - base.sensed) / STEP
+        set_inertials(there, body, begin)
+        moved, _ = _inverted(there, self._base.position, self.speed, self.pull)
+        left = moved.effort - more * self.pull - effort
+        return left / STEP, (moved.sensed - sensed) / STEP
 
 
 def _units(phi: FloatArray) -> FloatArray:
