@@ -132,13 +132,36 @@ def test_a_direction_is_computed_once(rng, monkeypatch):
     assert counts == 3 * counts[:1]
 
 
-def test_where_parts_touch_each_model_is_computed_by_itself(rng):
-    model = arm('<geom type="plane" pos="0 0 1.2" size="9 9 1"/>')
-    q, v, a = motion(model, rng)
-    efforts = RigidEfforts(model, q, v, a)
-    changed = other(model, rng, [2])
-    assert np.array_equal(efforts.of(changed).effort, inverted(changed, q, v, a).effort)
-    assert np.array_equal(efforts.of(model).effort, inverted(model, q, v, a).effort)
+BENT = {
+    "contact": '<geom type="plane" pos="0 0 1.2" size="9 9 1"/>',
+    "a frame of a centre of mass": "<sensor><framepos objtype='body' objname='link'/></sensor>",
+    "springs that are off": '<option><flag spring="disable"/></option>',
+    "air": '<option density="1.2"/>',
+}
+
+
+@pytest.mark.parametrize("what", BENT)
+def test_where_efforts_bend_they_are_not_summed(rng, what):
+    floor = BENT[what] if what == "contact" else ""
+    text = ARM.format(floor=floor)
+    if what != "contact":
+        text = text.replace("</mujoco>", BENT[what] + "</mujoco>")
+    model = mujoco.MjModel.from_xml_string(text)
+    assert not RigidEfforts(model, *motion(model, rng)).linear
+    plain = arm()
+    assert RigidEfforts(plain, *motion(plain, rng)).linear
+
+
+def test_a_payload_on_a_light_flange_is_as_exact(rng):
+    model = arm()
+    path = motion(model, rng)
+    model.body_mass[3], model.body_inertia[3] = 1e-3, [1e-8, 1e-8, 1e-8]
+    mujoco.mj_setConst(model, mujoco.MjData(model))
+    heavy = copy.copy(model)
+    heavy.body_mass[3], heavy.body_ipos[3] = 5.0, [0.1, 0.0, 0.2]
+    mujoco.mj_setConst(heavy, mujoco.MjData(heavy))
+    summed, direct = RigidEfforts(model, *path).of(heavy).effort, inverted(heavy, *path).effort
+    assert np.max(np.abs(summed - direct)) < ROUND_OFF * np.max(np.abs(direct))
 
 
 def test_numbers_that_are_set_are_read_again(rng):

@@ -17,10 +17,9 @@ _OF_BODIES = ("body_mass", "body_ipos", "body_iquat", "body_inertia")
 _FOLLOWING = (
     *("body_subtreemass", "body_sameframe", "body_invweight0", "dof_invweight0", "dof_M0"),
     *("tendon_invweight0", "actuator_acc0", "cam_poscom0", "light_poscom0"),
-    *("dof_length", "bvh_aabb"),
+    *("dof_length", "bvh_aabb", "geom_sameframe", "site_sameframe"),
 )
-"""What MuJoCo derives from them: references for solvers, contacts, cameras and sleep, of no effect
-on an effort without constraints."""
+"""What MuJoCo derives from them in `mj_setConst`."""
 
 
 def inertials(model: mujoco.MjModel) -> FloatArray:
@@ -60,7 +59,7 @@ def set_inertials(model: mujoco.MjModel, body: int, numbers: FloatArray) -> None
 
 
 def with_inertials_of(model: mujoco.MjModel, other: mujoco.MjModel) -> mujoco.MjModel:
-    """A model with what bodies weigh in another one, and its rotors and springs of joints."""
+    """A model with another one's masses, inertias, rotors, and springs of hinges and slides."""
     found = copy.copy(model)
     for name in (*_OF_BODIES, *_FOLLOWING, "dof_armature"):
         getattr(found, name)[:] = getattr(other, name)

@@ -28,7 +28,10 @@ PICKED = 20
 """Rounds after which drives that pick up a half of each other's command are known to 1e-6."""
 
 KEPT = 24
-"""Motions whose rigid-body efforts are kept: few causes change them."""
+"""Models along a motion whose efforts are kept: few causes change them."""
+
+RECORDED = 64
+"""Recorded motions that are kept: as many as anybody fits together."""
 
 
 def efforts_of_motion(work: Work) -> tuple[dict[str, FloatArray], dict[str, FloatArray]]:
@@ -97,24 +100,35 @@ class _Motion:
 def _moved_of(work: Work) -> Moved:
     """Efforts along the motion that is fed in: summed from directions where it is as recorded.
 
-    Where an effect moves a body, or what a joint's sensor shows, each fit has another motion, of
-    which directions would not be used again.
+    Where an effect changes anything else of the model, or what a joint's sensor shows, most fits
+    have a motion of their own, of which directions would not be used again.
     """
-    rigid, nominal = _rigid(work.model), _rigid(work.rig.model)
+    rigid, (nominal, content) = _rigid(work.model), _nominal(work.rig.model)
     recorded = {j: work.programme.drive[s][:, 0] for j, s in _single(work)}
     positions = {j: work.position(j, column) for j, column in recorded.items()}
-    content = _content(nominal)
+
+    def motion(model: mujoco.MjModel, numbers: bytes) -> _Motion:
+        digest = hashlib.sha256(f"{work.rig.identity}{work.programme.identity}".encode() + numbers)
+        for part in positions.values():
+            digest.update(np.ascontiguousarray(part).tobytes())
+        return _Motion(digest.hexdigest(), work, model, positions)
+
     as_recorded = all(np.array_equal(positions[j], recorded[j]) for j in recorded)
-    usual = as_recorded and _content(with_inertials_of(rigid, nominal)) == content
-    digest = hashlib.sha256(f"{work.rig.identity}{work.programme.identity}".encode())
-    digest.update(content if usual else _content(rigid))
-    for part in positions.values():
-        digest.update(np.ascontiguousarray(part).tobytes())
-    motion = _Motion(digest.hexdigest(), work, nominal if usual else rigid, positions)
-    return _efforts(motion).of(rigid) if usual else _moved(motion)
+    if as_recorded and _content(with_inertials_of(rigid, nominal)) == content:
+        efforts = _efforts(motion(nominal, content))
+        if efforts.linear:
+            return efforts.of(rigid)
+    return _moved(motion(rigid, _content(rigid)))
 
 
-@lru_cache(maxsize=KEPT)
+@lru_cache(maxsize=4)
+def _nominal(model: mujoco.MjModel) -> tuple[mujoco.MjModel, bytes]:
+    """The rigid model of a rig's own, and its numbers."""
+    rigid = _rigid(model)
+    return rigid, _content(rigid)
+
+
+@lru_cache(maxsize=RECORDED)
 def _efforts(motion: _Motion) -> RigidEfforts:
     """Of a motion as it was recorded."""
     return RigidEfforts(motion.model, *_states(motion))

@@ -20,7 +20,10 @@ ROUND_OFF = 1e-12
 """Departure, in the body's units, that counts as none."""
 
 STIFFER = 10.0
-"""Times a joint's inertia that its rotor has more of meanwhile: no body may lack any."""
+"""Times the joints' inertia that each rotor has more of meanwhile: no joint may lack any."""
+
+LARGEST = 2e8
+"""Bytes that the directions of one motion may take; a longer one is computed model by model."""
 
 _LINEAR = {
     int(getattr(mujoco.mjtSensor, f"mjSENS_{name}"))
@@ -28,10 +31,18 @@ _LINEAR = {
         *("JOINTPOS", "JOINTVEL", "TENDONPOS", "TENDONVEL", "ACTUATORPOS", "ACTUATORVEL"),
         *("BALLQUAT", "BALLANGVEL", "FRAMEPOS", "FRAMEQUAT", "FRAMEXAXIS", "FRAMEYAXIS"),
         *("FRAMEZAXIS", "FRAMELINVEL", "FRAMEANGVEL", "FRAMELINACC", "FRAMEANGACC", "GYRO"),
-        *("VELOCIMETER", "ACCELEROMETER", "MAGNETOMETER", "FORCE", "TORQUE"),
+        *("VELOCIMETER", "ACCELEROMETER", "MAGNETOMETER", "FORCE", "TORQUE", "CLOCK"),
+        *("ACTUATORFRC", "JOINTACTFRC", "TENDONACTFRC"),
     )
 }
 """Sensors whose reading along a given motion is linear in what bodies weigh, or independent."""
+
+_TURNING = {int(mujoco.mjtObj.mjOBJ_BODY), int(mujoco.mjtObj.mjOBJ_CAMERA)}
+"""What has a frame that follows the centre of mass: nothing there is linear."""
+
+LIGHTEST, SHORTEST = 0.01, 0.1
+"""Least unit of a body: share of the heaviest one's mass, and a distance [m]. A flange of a gram
+that carries a payload would count it in millions of units, and their round-off."""
 
 
 @dataclass(frozen=True)
@@ -45,7 +56,7 @@ class Moved:
 
 
 def inverted(model: mujoco.MjModel, q: FloatArray, v: FloatArray, a: FloatArray) -> Moved:
-    """MuJoCo's inverse dynamics row by row, without damping and dry friction."""
+    """MuJoCo's inverse dynamics row by row."""
     return _inverted(model, q, v, a)[0]
 
 
@@ -56,32 +67,32 @@ class RigidEfforts:
 
     Each direction of phi costs one pass of inverse dynamics, when a model first departs along it;
     what was asked before changes no bit. A rotor adds its inertia times the acceleration of its
-    joint, a spring its stiffness times the way. Where contacts, limits or equalities act, or a
-    fluid, nothing of this holds, and each model is computed by itself.
+    joint, a spring of a hinge or slide its stiffness times the way.
 
     Attributes:
         model: phi_0.
         speed, pull: of the motion (n, nv).
+        linear: whether all this holds: no contact, limit or equality acts, there is no fluid, flex,
+            plugin or clipped sensor, no sensor in a frame that follows a centre of mass, and the
+            directions are not too large to be kept.
     """
 
     def __init__(self, model: mujoco.MjModel, q: FloatArray, v: FloatArray, a: FloatArray) -> None:
         self.model, self.speed, self.pull = copy.copy(model), v, a
         self._base, bound = _inverted(model, q, v, a)
-        self._linear = not bound and _is_linear(model)
+        size = 80 * model.nbody * len(q) * (model.nv + model.nsensordata)
+        self.linear = not bound and _is_linear(model) and size <= LARGEST
         self._phi = inertials(model)
         self._unit = _units(self._phi)
         self._known: dict[tuple[int, int], tuple[FloatArray, FloatArray]] = {}
         self._lock = RLock()
 
     def of(self, model: mujoco.MjModel) -> Moved:
-        """Efforts of a model that differs from the first in masses, rotors and springs alone."""
+        """Efforts of a model that differs in masses, rotors and springs alone, where `linear`."""
         base = self._base
         departure = (inertials(model) - self._phi) / self._unit
         places = np.argwhere(np.abs(departure) > ROUND_OFF)
         effort, sensed = base.effort + self._of_joints(model), base.sensed
-        if not self._linear:
-            same = not len(places) and np.array_equal(effort, base.effort)
-            return base if same else inverted(model, base.position, self.speed, self.pull)
         for body, number in places.tolist():
             of_effort, of_sensor = self._direction(body, number)
             effort = effort + departure[body, number] * of_effort
@@ -114,7 +125,7 @@ class RigidEfforts:
             effort, sensed = effort + of_mass[0], sensed + of_mass[1]
         begin[number] += STEP * self._unit[body, number]
         there = copy.copy(self.model)
-        more = STIFFER * self.model.dof_M0
+        more = STIFFER * np.max(self.model.dof_M0)
         there.dof_armature[:] += more
         set_inertials(there, body, begin)
         moved, _ = _inverted(there, self._base.position, self.speed, self.pull)
@@ -124,9 +135,9 @@ class RigidEfforts:
 
 def _units(phi: FloatArray) -> FloatArray:
     """Of each body's numbers (bodies, 10): its mass, and the distance at which that turns so."""
-    mass = np.where(phi[:, 0] > 0.0, phi[:, 0], np.max(phi[:, 0], initial=0.0) or 1.0)
-    turning = 0.5 * phi[:, 4:7].sum(axis=1) / mass
-    reach = np.sqrt(np.where(turning > 0.0, turning, 0.01))
+    heaviest = float(np.max(phi[:, 0], initial=0.0)) or 1.0
+    mass = np.maximum(phi[:, 0], LIGHTEST * heaviest)
+    reach = np.maximum(np.sqrt(0.5 * phi[:, 4:7].sum(axis=1) / mass), SHORTEST)
     power = np.repeat([0.0, 1.0, 2.0], [1, 3, 6])
     return np.asarray(mass[:, None] * reach[:, None] ** power)
 
@@ -134,9 +145,11 @@ def _units(phi: FloatArray) -> FloatArray:
 def _is_linear(model: mujoco.MjModel) -> bool:
     """Whether nothing but constraints could make efforts and sensors bend."""
     discrete = model.opt.enableflags & mujoco.mjtEnableBit.mjENBL_INVDISCRETE
+    loose = model.opt.disableflags & mujoco.mjtDisableBit.mjDSBL_SPRING
     fluid = model.opt.density or model.opt.viscosity
-    plain = not (discrete or fluid or model.nflex or model.nplugin)
-    return plain and set(model.sensor_type) <= _LINEAR and not np.any(model.sensor_cutoff)
+    turning = _TURNING & {*model.sensor_objtype, *model.sensor_reftype}
+    told = set(model.sensor_type) <= _LINEAR and not np.any(model.sensor_cutoff) and not turning
+    return told and not (discrete or loose or fluid or model.nflex or model.nplugin)
 
 
 def _inverted(
