@@ -104,6 +104,16 @@ def test_means_are_chi2_with_the_carried_covariance(fitted, held_out):
     assert gain.share == pytest.approx((gain.before - gain.after) / (gain.before - 1.0), rel=SINGLE)
 
 
+def test_a_cause_without_numbers_is_carried_over_as_it_is(fitted, held_out):
+    """As a sensor that holds its rows: nothing of it can be taken out again."""
+    _, runs, measured, whitening, gain = held_out
+    nominal, extended = fitted
+    (friction,) = extended.causes
+    hold = replace(friction, effect="hold", parameters=())
+    with_hold = replace(extended, causes=(friction, hold))
+    assert held_out_gain(runs, measured, whitening, nominal, with_hold) == gain
+
+
 def test_errors_are_rms_of_what_the_carried_means_leave(fitted, held_out):
     fed, runs, measured, _, gain = held_out
     means = [Dense(fit, fed, runs).mean for fit in fitted]

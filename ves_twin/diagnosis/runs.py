@@ -124,7 +124,7 @@ class Runs:
     def indices(self, hypothesis: Hypothesis) -> IntArray:
         """Coordinates that a hypothesis moves."""
         names = [axis.parameter.name for axis in self.coordinates]
-        return np.array([names.index(name) for name in hypothesis.parameters])
+        return np.array([names.index(name) for name in hypothesis.parameters], int)
 
     def depart(self, base: FloatArray, where: IntArray, sizes: FloatArray) -> FloatArray:
         """Departures with some coordinates set, held within bounds."""
