@@ -30,6 +30,7 @@ from ves_twin.report.diagnosis.basis import gain_words, taken_words
 from ves_twin.report.diagnosis.credibility import Pedigree, credibility
 from ves_twin.report.diagnosis.page import diagnosis_page
 from ves_twin.report.diagnosis.pictures import answer_figure
+from ves_twin.report.diagnosis.proved import near_sentence
 from ves_twin.report.diagnosis.words import spoken
 from ves_twin.report.rerun.diagnosis import (
     diagnosis_blueprint,
@@ -428,6 +429,7 @@ def proof_of(verdict, firm):
         proved=(one,),
         put_to_proof=3,
         false_discovery_rate=0.05,
+        p_limit=0.02,
         left={"out.0": Left(0.02, 0.08, "1", 0.01, 0.3, {"out.1": 0.7}, {"drive.u": 0.2})},
         inseparable=(Inseparable(("friction@plant", "lag@plant"), 14.0),),
     )
@@ -524,6 +526,18 @@ def test_where_more_than_noise_stays_the_gain_is_told_by_the_rms_and_by_units_of
     assert "falls by 50 % (force) and by 25 % (speed);" in words
     left = gain_words(replace(proven, gain=gain))  # noise alone is left: one measure says it all
     assert left == taken_words(gain)
+
+
+def test_causes_whose_p_one_stretch_of_time_may_turn_are_told_on_both_sides_of_the_limit(proven):
+    sure = proof_of(proven, firm=True)
+    assert not near_sentence(sure)  # p is 1e-5, of 0.02 that are allowed
+    assert "Accepted is a p" not in diagnosis_page(sure)
+    missed = replace(sure, unproved={"lag@plant": 0.05, "drift@plant": 0.07})
+    assert "Near it: lag at plant (p 0.05, not accepted)." in near_sentence(missed)
+    assert near_sentence(missed) in diagnosis_page(missed)
+    close = replace(sure, proved=(replace(sure.proved[0], p=0.009),))
+    assert "Near it: friction at plant (p 0.009, accepted)." in near_sentence(close)
+    assert not near_sentence(proven)
 
 
 def test_what_is_proved_stands_in_the_verdict_file(proven):

@@ -185,6 +185,7 @@ def _text(found: Diagnosis, folder: Path) -> str:
     from ves_twin.report.diagnosis.law import law_sentences
     from ves_twin.report.diagnosis.proved import (
         inseparable_sentences,
+        near_sentence,
         proof_sentence,
         proved_line,
     )
@@ -209,6 +210,7 @@ def _text(found: Diagnosis, folder: Path) -> str:
         lines += [f"law       {first}", *(f"          {text}" for text in rest)]
     if verdict.put_to_proof is not None:
         lines += ["", f"  {proof_sentence(verdict)}", *map(proved_line, verdict.proved)]
+        lines += [f"  {near_sentence(verdict)}"] if near_sentence(verdict) else []
         lines += [f"  not separated: {text}" for text in inseparable_sentences(verdict)]
     lines += ["", "  channel             before     after   (rms, in the channel's unit)"]
     for name, error in verdict.residuals.items():

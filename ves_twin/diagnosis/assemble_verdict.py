@@ -148,6 +148,8 @@ def assemble_verdict(
         proved=proved,
         put_to_proof=built.tested if built else None,
         false_discovery_rate=built.false_discovery_rate if built else None,
+        p_limit=built.p_limit if built else None,
+        unproved=built.unproved if built else {},
         left=built.left if built else {},
         inseparable=built.inseparable if built else (),
         nearest=nearest,

@@ -196,12 +196,13 @@ class Verdict:
     cause could be taken for, and up to which size; `twins` are cosines of all pairs. `quality`
     has the checks that a recording failed; `alone` what each recording says
     by itself, where all together have no explanation. `proved` are the causes that held-out data
-    prove one by one, out of `put_to_proof`, with the false-discovery rate that this keeps; `left`
-    is what then stays of each channel, `inseparable` what is known only in combination. `nearest`
-    are the causes that come nearest where none is named, unless they predict a held-out channel
-    worse than the model as it was given. `law` is what was found where no cause
-    explains the record and a law was looked for; if it is claimed, `tuned`, `residuals`,
-    `leftover` and `gain` are with it. A law that is a `part` stands beside the causes, and `tuned`
+    prove one by one, out of `put_to_proof`, with the false-discovery rate that this keeps and the
+    largest p that it allows; `unproved` has those of the same choice that were not, with their p;
+    `left` is what then stays of each channel, `inseparable` what is known only in combination.
+    `nearest` are the causes that come nearest where none is named, unless they predict a held-out
+    channel worse than the model as it was given. `law` is what was found where no cause explains
+    the record and a law was looked for; if it is claimed, `tuned`, `residuals`, `leftover` and
+    `gain` are with it. A law that is a `part` stands beside the causes, and `tuned`
     has their sizes as they were fitted together with it. `exhibit` has the traces of the report,
     and stays out of verdict.json.
     """
@@ -230,6 +231,8 @@ class Verdict:
     proved: tuple[Proved, ...] = ()
     put_to_proof: int | None = None
     false_discovery_rate: float | None = None
+    p_limit: float | None = None
+    unproved: Mapping[str, float] = field(default_factory=dict)
     left: Mapping[str, Left] = field(default_factory=dict)
     inseparable: tuple[Inseparable, ...] = ()
     nearest: tuple[Cause, ...] = ()

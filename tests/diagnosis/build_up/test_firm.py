@@ -16,7 +16,7 @@ def test_a_size_whose_interval_reaches_the_end_of_its_range_is_not_firm(high, fi
     size = Estimate(1.7, 1.5, high, "N", 0.0)
     cause = Cause("coulomb_friction", "joint", {"level": size}, 1.0, True, None)
     one = Proved("coulomb_friction", "joint", {}, 1e-3, 20, {"torque": (2.0, 1.0)}, True)
-    (told,) = sized(BuildUp((one,), 1, 0.05, {}, {}), (cause,), ENDS)
+    (told,) = sized(BuildUp((one,), 1, 0.05, 0.05, {}, {}), (cause,), ENDS)
     assert told.firm is firm
     assert told.ended is not firm
 
@@ -28,7 +28,7 @@ def test_a_delay_of_less_than_a_row_is_not_firm(value, firm):
     cause = Cause("actuator_delay", "motor", {"actuator_delay@motor:delay": size}, 1.0, True, None)
     one = Proved("actuator_delay", "motor", {}, 1e-9, 20, {"torque": (2.0, 1.0)}, True)
     ends = {"actuator_delay@motor:delay": (0.0, 0.05)}
-    (told,) = sized(BuildUp((one,), 1, 0.05, {}, {}), (cause,), ends, row=0.001)
+    (told,) = sized(BuildUp((one,), 1, 0.05, 0.05, {}, {}), (cause,), ends, row=0.001)
     assert told.firm is firm
     assert told.below_row is not firm
 
@@ -38,7 +38,7 @@ def test_a_size_whose_interval_holds_the_models_own_value_is_not_firm(low, firm)
     size = Estimate(1.0, low, 1.8, "N", 0.0)
     cause = Cause("coulomb_friction", "joint", {"level": size}, 1.0, True, None)
     one = Proved("coulomb_friction", "joint", {}, 1e-3, 20, {"torque": (2.0, 1.0)}, True)
-    (told,) = sized(BuildUp((one,), 1, 0.05, {}, {}), (cause,), ENDS)
+    (told,) = sized(BuildUp((one,), 1, 0.05, 0.05, {}, {}), (cause,), ENDS)
     assert told.parameters["level"].value == 1.0
     assert told.firm is firm
 
@@ -54,7 +54,7 @@ def test_of_a_vector_one_size_away_from_the_models_own_value_is_enough(cosine, s
     cause = Cause("ripple", "joint.12", sizes, 1.0, True, None)
     one = Proved("ripple", "joint.12", {}, 1e-3, 20, {"torque": (2.0, 1.0)}, True)
     ends = dict.fromkeys(sizes, (-2.0, 2.0))
-    built = BuildUp((one,), 1, 0.05, {}, {})
+    built = BuildUp((one,), 1, 0.05, 0.05, {}, {})
     assert sized(built, (cause,), ends, components=set(sizes))[0].firm is firm
 
 
@@ -63,7 +63,7 @@ def test_a_name_that_only_many_sure_ones_beside_it_let_pass_is_not_firm(p, firm)
     size = Estimate(1.0, 0.5, 1.5, "N", 0.0)
     cause = Cause("coulomb_friction", "joint", {"level": size}, 1.0, True, None)
     one = Proved("coulomb_friction", "joint", {}, p, 20, {"torque": (2.0, 1.0)}, True)
-    (told,) = sized(BuildUp((one,), 7, 0.05, {}, {}), (cause,), ENDS)
+    (told,) = sized(BuildUp((one,), 7, 0.05, 0.05, {}, {}), (cause,), ENDS)
     assert told.firm is firm
 
 
@@ -71,4 +71,4 @@ def test_what_full_simulation_fits_to_nothing_is_not_proved():
     size = Estimate(0.0, 0.0, 3e-4, "m", 0.0)
     cause = Cause("backlash", "joint", {"level": size}, 1.0, True, None)
     one = Proved("backlash", "joint", {}, 1e-3, 20, {"torque": (2.0, 1.9)}, True)
-    assert not sized(BuildUp((one,), 1, 0.05, {}, {}), (cause,), ENDS)
+    assert not sized(BuildUp((one,), 1, 0.05, 0.05, {}, {}), (cause,), ENDS)

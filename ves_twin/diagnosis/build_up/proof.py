@@ -198,6 +198,7 @@ class Proof:
         differences: paired test of each of them, all others beside.
         dropped: trials that were put to proof and not proved, with p when they went.
         tested: trials that were put to proof in all.
+        limit: largest p that the rate allows them.
         bench: with everything that was put to proof.
     """
 
@@ -205,6 +206,7 @@ class Proof:
     differences: dict[int, Difference]
     dropped: dict[int, float]
     tested: int
+    limit: float
     bench: Bench
 
 
@@ -232,7 +234,7 @@ def prove(regression: Regression, held: Half, chosen: Sequence[int], more: int =
     back: list[int] | None = None
     whole = Bench(regression.fit(chosen), held, regression)
     if not whole.whole.any():
-        return Proof((), {}, dict.fromkeys(kept, 1.0), tested, whole)
+        return Proof((), {}, dict.fromkeys(kept, 1.0), tested, FALSE_SHARE / max(tested, 1), whole)
     bench, found = whole, _each(whole, kept)
     null = more + _null([found[n].p for n in kept])
     while True:
@@ -244,7 +246,8 @@ def prove(regression: Regression, held: Half, chosen: Sequence[int], more: int =
             back = list(dropped) if back is None else back
             again = _again(bench, kept, back, null)
             if again is None:
-                return Proof(tuple(kept), found, dropped, tested, whole)
+                limit = FALSE_SHARE * max(len(kept), 1) / null
+                return Proof(tuple(kept), found, dropped, tested, limit, whole)
             back.remove(again)
             kept.append(again)
             del dropped[again]

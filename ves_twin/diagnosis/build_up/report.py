@@ -49,7 +49,8 @@ def report_of(halves: Halves, proof: Proof, ends: tuple[FloatArray, FloatArray])
         proved=tuple(replace(p, firm=p.firm and p.label not in shared) for p in proved),
         tested=proof.tested,
         false_discovery_rate=FALSE_SHARE,
-        dropped={trials[n].cause.label: p for n, p in proof.dropped.items()},
+        p_limit=proof.limit,
+        unproved={trials[n].cause.label: p for n, p in proof.dropped.items()},
         left=_left(bench, left, laws),
         inseparable=together,
     )

@@ -103,7 +103,8 @@ class BuildUp:
         proved: extensions, the surest first.
         tested: how many were put to proof.
         false_discovery_rate: that the proof keeps over those.
-        dropped: those that were put to proof in vain, with their p.
+        p_limit: largest p that this rate allows those that are proved.
+        unproved: those that were put to proof in vain beside them, with their p.
         left: what stays, by channel.
         inseparable: combinations of which only one is known.
     """
@@ -111,6 +112,7 @@ class BuildUp:
     proved: tuple[Proved, ...]
     tested: int
     false_discovery_rate: float
-    dropped: Mapping[str, float]
+    p_limit: float
+    unproved: Mapping[str, float]
     left: Mapping[str, Left]
     inseparable: tuple[Inseparable, ...] = ()

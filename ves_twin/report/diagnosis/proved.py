@@ -13,6 +13,10 @@ from ves_twin.report.html import Html, bullets, paragraph, section, table
 SHOWN = 3
 """Channels of one cause that are told: those where it takes most."""
 
+NEAR = 3.0
+"""Factor between a p and its limit up to which one stretch of time may turn it: the median of the
+largest change where one of 11 to 40 blocks is left out (drawn, p of 0.001 to 0.02)."""
+
 UNKNOWN = 100.0
 """Times that shares are known worse than their combination, from which on nothing is known."""
 
@@ -45,6 +49,26 @@ def proof_sentence(verdict: Verdict) -> str:
     return (
         f"{said} A better prediction does not prove a name: only firm ones are the mechanism,"
         " the others act like it."
+    )
+
+
+def near_sentence(verdict: Verdict) -> str:
+    """Which causes stand near the limit, on either side; empty where none does."""
+    limit = verdict.p_limit
+    if limit is None:
+        return ""
+    accepted = {one.label: one.p for one in verdict.proved if NEAR * one.p > limit}
+    missed = {name: p for name, p in verdict.unproved.items() if p <= NEAR * limit}
+    said = [
+        f"{spoken(name)} (p {p:.1g}, {told})"
+        for some, told in ((accepted, "accepted"), (missed, "not accepted"))
+        for name, p in some.items()
+    ]
+    if not said:
+        return ""
+    return (
+        f"Accepted is a p of {limit:.1g} at most. Near it: {', '.join(said)}. Other recordings of"
+        " the same machine may turn that; longer ones settle it."
     )
 
 
@@ -88,7 +112,8 @@ def _shares(ratio: float) -> str:
 
 
 def _proved(verdict: Verdict) -> list[Html]:
-    parts = [paragraph(proof_sentence(verdict))]
+    near = near_sentence(verdict)
+    parts = [paragraph(proof_sentence(verdict)), *([paragraph(near)] if near else [])]
     if not verdict.proved:
         return parts
     head = ("cause", "size", "90 % interval", "error without and with it", "p", "name")
