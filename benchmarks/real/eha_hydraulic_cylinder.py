@@ -83,9 +83,8 @@ span = "12.5 mm/s"
 [typical.signal."shown.speed"]
 span = "12.5 mm/s"
 [[effects]]
-kind = "joint_spring"
+kind = "joint_compliance"
 on = ["squeeze"]
-largest = "19 MN/m"
 [[effects]]
 kind = "cubic_spring"
 on = ["squeeze"]

@@ -44,6 +44,7 @@ TARGETS = {
     "coulomb_asymmetry": ["rail"],
     "force_offset": ["rail", "swing"],
     "joint_spring": ["rail"],
+    "joint_compliance": ["rail"],
     "cubic_spring": ["rail"],
     "load_friction": ["rail"],
     "body_place": ["hook.z"],

@@ -17,7 +17,7 @@ SI_UNITS = frozenset(
     (
         *("1", "m", "rad", "s", "Hz", "kg", "N", "Pa", "m/s", "rad/s", "m/s^2", "1/s", "N/m"),
         *("N*m", "N*s/m", "N*m/rad", "N*m/rad/s", "N*m*s/rad", "kg*m^2", "N/s", "N*m/s"),
-        *("N*s^2/m^2", "N*m*s^2/rad^2", "N/m^3", "N*m/rad^3"),
+        *("N*s^2/m^2", "N*m*s^2/rad^2", "N/m^3", "N*m/rad^3", "m/N", "rad/(N*m)"),
         *("m^3", "m^3/s", "m^3/Pa", "m^3/s/Pa", "Pa*s/m^3", "dimensionless"),
     )
 )

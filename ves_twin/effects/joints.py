@@ -3,18 +3,32 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import final
+from typing import TYPE_CHECKING, final
 
 import numpy as np
 
+from ves_twin.core.errors import InvalidInputError
 from ves_twin.core.types import FloatArray
 from ves_twin.effects import change
 from ves_twin.effects.change import Table
 from ves_twin.effects.effect import Effect
 from ves_twin.effects.element import Element
-from ves_twin.effects.magnitude import Sign
+from ves_twin.effects.magnitude import Magnitude, Sign
+from ves_twin.effects.place import Place
 from ves_twin.effects.row import JOINTS, LEGS, Anywhere, Part, Row
-from ves_twin.effects.size import CUBIC, DAMPING, EFFORT, INERTIA, LENGTH, STIFFNESS, Size
+from ves_twin.effects.size import (
+    COMPLIANCE,
+    CUBIC,
+    DAMPING,
+    EFFORT,
+    INERTIA,
+    LENGTH,
+    STIFFNESS,
+    Size,
+)
+
+if TYPE_CHECKING:
+    import mujoco
 
 TORQUE = ("arm.torque",)
 
@@ -164,6 +178,36 @@ class JointSpring(Effect):
     source = "assumed; dressing of the wrist and the force sensor's cable"
     rows = (Row(JOINTS, (0.3, 0.5, 40.0), TORQUE, change.STIFFNESS, Part.ARM),)
     anywhere = Anywhere(Element.JOINT, lambda p: p.effort / p.travel, attribute=change.STIFFNESS)
+
+
+@final
+@dataclass(frozen=True)
+class JointCompliance(Effect):
+    """What carries a load gives way by more than its spring: air in oil, a belt, teeth of a gear.
+
+    A compliance c in series with the joint's stiffness k0, in the model k0 / (1 + c k0). Deflection
+    under a load is linear in c, and not in a stiffness that is far too large.
+    """
+
+    compliance: float = 0.0
+
+    kind = "joint_compliance"
+    sizes = (Size("compliance", COMPLIANCE, Sign.POSITIVE),)
+    # up to a spring of a twentieth of the stiffness
+    anywhere = Anywhere(Element.JOINT, lambda p: 19.0 / p.stiffness)
+
+    @classmethod
+    def magnitudes_at(cls, place: Place) -> tuple[Magnitude, ...]:
+        """Compliance with its range; raises InvalidInputError where the joint has no spring."""
+        if not place.stiffness:
+            expected = "a joint that has a stiffness in the model"
+            raise InvalidInputError(f"target of {cls.kind}", place.name, expected)
+        return super().magnitudes_at(place)
+
+    def edit_model(self, model: mujoco.MjModel) -> None:
+        """The softer spring."""
+        at = change.STIFFNESS.entry(model, self.target)
+        model.jnt_stiffness[at] /= 1.0 + self.compliance * model.jnt_stiffness[at]
 
 
 @final

@@ -9,6 +9,7 @@ from ves_twin.effects.magnitude import Sign
 EFFORT = ("N", "N*m")
 DAMPING = ("N*s/m", "N*m*s/rad")
 STIFFNESS = ("N/m", "N*m/rad")
+COMPLIANCE = ("m/N", "rad/(N*m)")
 CUBIC = ("N/m^3", "N*m/rad^3")
 INERTIA = ("kg", "kg*m^2")
 LENGTH = ("m", "rad")

@@ -31,6 +31,7 @@ def forget():
 
 
 SUMMED = {"payload", "mass_centre", "body_mass", "body_inertia", "rotor_inertia", "joint_spring"}
+SUMMED |= {"joint_compliance"}
 """Kinds whose efforts are sums of directions."""
 
 

@@ -7,7 +7,11 @@ import numpy as np
 import pytest
 from two_link import TIME, programme, rig
 
+from ves_twin.core.errors import InvalidInputError
 from ves_twin.diagnosis.forward import Excitation
+from ves_twin.effects import JointCompliance
+from ves_twin.effects.element import Element
+from ves_twin.effects.place import Place
 from ves_twin.machines.mjcf.description import Mode
 from ves_twin.machines.mjcf.forward import MjcfForward
 
@@ -59,6 +63,21 @@ def test_forward_and_inverse_agree_about_a_cubic_spring(machine):
     assert (
         round_trip(machine, {"cubic_spring@rail:stiffness": 2e3}) < 0.3
     )  # soft friction: 2 % of 15 N
+
+
+def test_a_compliance_adds_to_that_of_the_spring(machine):
+    fed = programme()
+    found = change(machine, fed, **{"joint_compliance@rail:compliance": 1.0})["drive.force"]
+    place = fed.drive["cart.position"][:, 0]
+    stiffness = 1.0 / (1.0 / 3.0 + 1.0)  # the model's is 3 N/m
+    expected = (stiffness - 3.0) * place
+    assert found[INNER] == pytest.approx(expected[INNER], abs=1e-4 * np.max(expected))
+
+
+def test_a_joint_without_a_spring_has_no_compliance():
+    place = Place(Element.JOINT, "swing", effort=1.0, speed=1.0, travel=1.0)
+    with pytest.raises(InvalidInputError, match=r"joint_compliance.*swing.*has a stiffness"):
+        JointCompliance.magnitudes_at(place)
 
 
 def test_friction_by_load_is_a_share_of_what_the_joint_carries(machine):

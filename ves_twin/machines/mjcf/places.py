@@ -103,6 +103,7 @@ def _joint(target: str, told: RigDescription, model: mujoco.MjModel) -> Place:
         effort=_positive(span.effort, "N*m" if hinge else "N", f"{what}.effort"),
         speed=typical_speed(target, told, model),
         travel=_positive(span.travel, "rad" if hinge else "m", f"{what}.travel"),
+        stiffness=float(model.jnt_stiffness[model.joint(target).id]),
     )
 
 

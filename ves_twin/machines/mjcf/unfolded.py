@@ -20,6 +20,7 @@ from ves_twin.effects.bodies import BodyInertia, BodyPlace, MassCentre, Payload
 from ves_twin.effects.effect import Effect
 from ves_twin.effects.element import Element
 from ves_twin.effects.friction import RegularizedFriction
+from ves_twin.effects.joints import JointCompliance
 from ves_twin.effects.presliding import DahlFriction, OneWayLoad
 from ves_twin.effects.registry import EFFECTS, attributes, build_anywhere, kind_anywhere
 from ves_twin.effects.ripple import Ripple
@@ -37,11 +38,11 @@ FEW = 2
 BY_NAME = (
     *(ActuatorAsymmetry.kind, ActuatorOffset.kind, ActuatorSaturation.kind),
     *(OneWayLoad.kind, RegularizedFriction.kind, DahlFriction.kind),
-    *(Ripple.kind, DriveCrossTalk.kind),
+    *(Ripple.kind, DriveCrossTalk.kind, JointCompliance.kind),
 )
 """Kinds that a "*" does not mean: on most machines a force offset and dry or viscous friction do
-much the same, each of them costs runs, and nobody knows how many waves a ripple has. A file asks
-for these by their names."""
+much the same, as a spring and its compliance do, each of them costs runs, and nobody knows how many
+waves a ripple has. A file asks for these by their names."""
 
 SLIDE = int(mujoco.mjtJoint.mjJNT_SLIDE)
 
