@@ -16,9 +16,9 @@ from ves_twin.machines.mjcf.machine import Rig
 NEUTRAL = 7.474
 """Duty at rest [%], on the data's page."""
 
-PERIOD, WINDOW = 0.025, 120
+PERIOD, WINDOW, LEAD = 0.025, 120, 12
 """Of the rows [s]; rows of a window, which is fitted, and told, from where the boom was measured: a
-diagnosis asks for a hundred, and 3 s of the log have sixty."""
+diagnosis asks for a hundred, and 3 s of the log have sixty; rows before it, which tell commands."""
 
 MODEL = """<mujoco model="boom">
   <option timestep="0.01" gravity="0 0 0" integrator="implicitfast"/>
@@ -49,6 +49,7 @@ unit = "m"
 noise = "0.2 mm"             # the potentiometer's counts
 [drive]
 mode = "control"
+lead = "0.3 s"               # the longest delay that is offered
 actuators = { valve = "duty" }
 joints = { boom = "length" }
 smoothing = "4 Hz"
@@ -97,10 +98,10 @@ def pieces(log: Path, folder: Path) -> list[Path]:
     duty = np.interp(time, table[:, 0], table[:, 1]) - NEUTRAL
     length = 0.01 * np.interp(time, table[:, 0], table[:, 5])
     found = []
-    for first in range(0, len(time) - WINDOW, WINDOW):
-        rows = slice(first, first + WINDOW)
+    for first in range(WINDOW, len(time) - WINDOW, WINDOW):
+        rows = slice(first - LEAD, first + WINDOW)
         path = folder / f"{log.stem}_{first:04d}.csv"
-        columns = np.column_stack([PERIOD * np.arange(WINDOW), duty[rows], length[rows]])
+        columns = np.column_stack([PERIOD * np.arange(LEAD + WINDOW), duty[rows], length[rows]])
         np.savetxt(path, columns, "%.9g", ",", header="t,u,x", comments="")
         found.append(path)
     return found
@@ -112,5 +113,5 @@ def over_windows(rig: Rig, recordings: Sequence[Recording]) -> str:
     for recording in recordings:
         fed = Excitation.of(recording, forward.drive, rate=rig.description.rate)
         off = recording["length"][:, 0] - forward.simulate(fed, {})[:, 0]
-        errors.append(off - off[0])
+        errors.append(off[LEAD:] - off[LEAD])
     return f"{100.0 * np.sqrt(np.mean(np.square(errors))):.3f} cm"

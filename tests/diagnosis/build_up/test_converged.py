@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass, replace
+
 import numpy as np
 import pytest
 
-from ves_twin.diagnosis.build_up.converged import converged
+from ves_twin.diagnosis.build_up.converged import _descended, converged
 from ves_twin.diagnosis.evidence import Evidence
 from ves_twin.diagnosis.forward import Excitation
+from ves_twin.diagnosis.forward_wrapper import ForwardWrapper
 from ves_twin.diagnosis.linearise import linearise
 from ves_twin.diagnosis.refine import refine
 from ves_twin.diagnosis.runs import Runs
@@ -107,3 +110,103 @@ def test_a_fit_goes_on_where_a_search_stopped_short(evidence):
     assert found.chi2 < 1.05 * float(true @ true)
     sizes = dict(zip((n for h in causes for n in h.parameters), found.sizes, strict=True))
     assert sizes["cubic_spring@y:stiffness"] == pytest.approx(40.0, rel=0.05)
+
+
+VALVE = """<mujoco><option timestep="0.01" gravity="0 0 0" integrator="implicitfast"/>
+  <worldbody><body name="rod"><joint name="y" type="slide" damping="100"/>
+    <inertial pos="0 0 0" mass="1" diaginertia="1 1 1"/></body></worldbody>
+  <actuator><motor name="drive" joint="y"/></actuator></mujoco>"""
+
+CHAIN = """[[effects]]
+kind = "actuator_gain"
+on = ["drive"]
+largest = 7
+[[effects]]
+kind = "actuator_offset"
+on = ["drive"]
+[[effects]]
+kind = "actuator_deadband"
+on = ["drive"]
+largest = 1.8
+[[effects]]
+kind = "actuator_saturation"
+on = ["drive"]
+"""
+
+HIDDEN_CHAIN = {
+    "actuator_gain@drive:gain": 3.5,
+    "actuator_offset@drive:offset": -0.2,
+    "actuator_deadband@drive:band": 1.2,
+    "actuator_saturation@drive:share": 0.9,
+    "actuator_saturation@drive:limit": 0.55,
+}
+"""A dead band that most commands do not leave, and a valve that is soon open beyond it."""
+
+STARTS = {
+    "at the end of a share's range": (0.616, -0.174, 0.611, 1.0, 1.664),
+    "a band of nothing": (5.6, 0.5, 0.072, 1.0, 2.5),
+}
+"""Gain, offset, band, share and limit: where fits of an excavator's valve ended, and began."""
+
+
+@pytest.fixture(scope="module")
+def valve(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("valve")
+    (folder / "oscillator.xml").write_text(VALVE)
+    told = DESCRIPTION[: DESCRIPTION.index("[[parameters]]")].replace("effort = 10", "effort = 2.5")
+    (folder / "oscillator.toml").write_text(told + CHAIN)
+    forward = MjcfForward.of(Rig.load(str(folder / "oscillator.toml")))
+    rng = np.random.default_rng(2)
+    time, levels = 0.02 * np.arange(2000), rng.uniform(-3.0, 3.0, 80)
+    pushes = np.interp(time, 0.5 * np.arange(80), levels)[:, None]
+    runs = Runs(forward, (Excitation("pushes", time, {"u": pushes}, rate=50.0),), (0,))
+    hidden = np.array([HIDDEN_CHAIN.get(axis.parameter.name, 0.0) for axis in runs.coordinates])
+    measured = runs.one(hidden)
+    measured = measured + 1e-3 * rng.standard_normal(measured.shape).astype(np.float32)
+    return Evidence(runs, measured, whitening_declared(runs)), hidden
+
+
+@pytest.mark.parametrize("start", STARTS)
+def test_a_valve_is_found_from_where_a_step_cut_off_at_a_bound_ends(valve, start):
+    evidence, hidden = valve
+    runs = evidence.runs
+    named = {h.effect: h for h in runs.forward.hypotheses}
+    kinds = ("actuator_gain", "actuator_offset", "actuator_deadband", "actuator_saturation")
+    causes = tuple(named[kind] for kind in kinds)
+    where = np.concatenate([runs.indices(cause) for cause in causes])
+    found = converged(evidence, causes, runs.origin, runs.depart(runs.origin, where, STARTS[start]))
+    noise = evidence.whitening.apply(evidence.measured - runs.one(hidden))
+    assert found.chi2 < 1.05 * float(noise @ noise)
+    assert found.sizes == pytest.approx(hidden[where], rel=0.1)
+
+
+@dataclass(frozen=True)
+class Failing(ForwardWrapper):
+    """A plant whose simulation breaks off at gains beyond 4.6; keeps which gains were asked."""
+
+    asked: list[float]
+    identity = "failing"
+
+    def simulate(self, programme, values, refined=False):
+        rows = self.forward.simulate(programme, values, refined)
+        self.asked.append(values["actuator_gain@drive:gain"])
+        return rows * np.nan if self.asked[-1] > 4.6 else rows
+
+
+def test_steps_to_where_a_plant_fails_are_shortened(valve):
+    evidence, hidden = valve
+    asked = list[float]()
+    broken = replace(evidence.runs, forward=Failing(evidence.runs.forward, asked))
+    evidence = Evidence(broken, evidence.measured, whitening_declared(broken))
+    gain, band = (
+        next(h for h in broken.forward.hypotheses if h.effect == f"actuator_{kind}")
+        for kind in ("gain", "deadband")
+    )
+    where = np.concatenate([broken.indices(gain), broken.indices(band)])
+    there = broken.depart(hidden, where, (0.3, 0.4))
+    fit = refine(evidence, (gain, band), there, linearise(broken, there), 0)
+    left = evidence.whitening.apply(evidence.measured - broken.one(there))
+    start = replace(fit, sizes=there[where], shift=there, chi2=float(left @ left))
+    found = _descended(evidence, start)
+    assert max(asked) > 4.6
+    assert found[where] == pytest.approx(hidden[where], rel=0.05)

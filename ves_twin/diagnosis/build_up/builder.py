@@ -13,6 +13,7 @@ from ves_twin.diagnosis.build_up.halves import Halves, halves_at
 from ves_twin.diagnosis.build_up.in_full import in_full
 from ves_twin.diagnosis.build_up.nearest import nearest
 from ves_twin.diagnosis.build_up.offer import Offer, preferred
+from ves_twin.diagnosis.build_up.on_the_way import on_the_way
 from ves_twin.diagnosis.build_up.plain_selector import PlainSelector
 from ves_twin.diagnosis.build_up.proof import Bench, prove
 from ves_twin.diagnosis.build_up.select import Selector
@@ -80,7 +81,8 @@ class Builder:
         """What comes of choosing by one-step prediction errors, and by plain squares.
 
         Neither serves all: whitening in time hides what acts slowly (a double pendulum's
-        frictions, an excavator's valve), and plain squares have few independent rows (TX40).
+        frictions, an excavator's valve), and plain squares have few independent rows (TX40). Of
+        each the last choice, and what is proved of the best on the way to it.
 
         Args:
             halves: linear about the point.
@@ -90,26 +92,33 @@ class Builder:
         """
         found, first = list[Offer](), set[frozenset[int]]()
         for way in (Selector, PlainSelector):
-            chosen = way(halves.regression).run(_places(halves, present))
-            if frozenset(chosen) in first:
+            path = way(halves.regression).path(_places(halves, present))
+            if frozenset(path[-1]) in first:
                 continue
             if found and self.fitted.runs.budget.skips("causes chosen by plain squares"):
                 break
-            first.add(frozenset(chosen))
-            found.append(self.offer(*self.settled(way, halves, chosen, point), known))
+            first.add(frozenset(path[-1]))
+            found.append(self.offer(*self.settled(way, halves, path[-1], point), known))
+            known = found[-1].known
+            shorter = on_the_way(halves, path, known)
+            if not shorter or frozenset(shorter) in first:
+                continue
+            first.add(frozenset(shorter))
+            found.append(self.offer(*self.settled(None, halves, list(shorter), point), known))
             known = found[-1].known
         return found
 
     def settled(
         self,
-        way: type[Selector] | type[PlainSelector],
+        way: type[Selector] | type[PlainSelector] | None,
         halves: Halves,
         chosen: list[int],
         point: FloatArray,
     ) -> tuple[Halves, FloatArray, list[int]]:
         """A choice about the point where all of it is fitted in full, that point, and the choice.
 
-        Columns are of finite sizes: a choice is made anew where its full fit has moved them.
+        Columns are of finite sizes: a choice is made anew where its full fit has moved them, if
+        there is a way to make it.
         """
         present, least = tuple[Trial, ...](), np.inf
         for last in range(ROUNDS):
@@ -130,7 +139,8 @@ class Builder:
                 break
             if self.fitted.runs.budget.skips("causes chosen anew about their own fit"):
                 break
-            chosen = way(halves.regression).run(_places(halves, present))
+            chosen = _places(halves, present)
+            chosen = way(halves.regression).run(chosen) if way else chosen
         return halves, point, _places(halves, present)
 
     def offer(
@@ -177,23 +187,30 @@ class Builder:
         return [self.offer(halves, point, chosen, known)] if chosen else []
 
     def best(self) -> Offer:
-        """The choice whose proved causes predict held-out rows best, all that was tried counted."""
+        """The choice whose proved causes predict held-out rows best, all that was tried counted.
+
+        Where the best of the first ones proves nothing, another that does is gone on from: what
+        takes the place of its rejected causes may predict better than nothing at all (the place of
+        a double pendulum's lower link).
+        """
         origin = self.fitted.runs.origin
         halves = self.halves(origin, ())
         trials = halves.regression.trials
         builder = replace(self, bent=frozenset(t.cause.label for t in trials if t.bent))
         offers = builder.offers(halves, origin)
         found, known = preferred(offers), offers[-1].known
+        named = [offer for offer in offers if offer.proof.proved]
+        base = preferred(named) if named and not found.proof.proved else found
         while True:
-            others = builder.again(replace(found, known=known))
+            others = builder.again(replace(base, known=known))
             if not others:
                 break
             known = others[-1].known
             other = preferred([found, *others])
             if other is found:
                 break
-            builder = replace(builder, barred=builder.barred | found.rejected)
-            found = other
+            builder = replace(builder, barred=builder.barred | base.rejected)
+            base = found = other
         few = self.few(halves, origin, known)
         known = few[-1].known if few else known
         return replace(preferred([found, *few]), known=known)

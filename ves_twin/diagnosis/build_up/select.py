@@ -55,11 +55,16 @@ class Selector:
         Args:
             begin: trials to begin with.
         """
-        now = self._grown(list(begin))
+        return self.path(begin)[-1]
+
+    def path(self, begin: Sequence[int] = ()) -> list[list[int]]:
+        """The choices on the way, the last one last."""
+        found = list[list[int]]()
+        now = self._grown(list(begin), found)
         while True:
-            other = self._exchanged(now) or self._grown(now.chosen)
+            other = self._exchanged(now) or self._grown(now.chosen, found)
             if other.evidence <= now.evidence + CLEAR:
-                return now.chosen
+                return [*found, now.chosen]
             now = other
 
     def best(self) -> list[list[int]]:
@@ -84,14 +89,20 @@ class Selector:
                 found.setdefault(frozenset(sound), sound)
         return [few for few in found.values() if few]
 
-    def _grown(self, chosen: list[int]) -> _Choice:
-        """With all that is worth its price beside a choice, and without what is not any more."""
+    def _grown(self, chosen: list[int], way: list[list[int]]) -> _Choice:
+        """With all that is worth its price beside a choice, and without what is not any more.
+
+        Args:
+            chosen: to begin with.
+            way: gets each choice on the way.
+        """
         fit = self.regression.fit(chosen)
         while len(chosen) < MOST:
             more, there = self._next(chosen, fit)
             if there is None:
                 break
             chosen = self.swapped([*chosen, *more])
+            way.append(chosen)
             fit = self.regression.fit(chosen, there.whitening, 2)
         return self._pruned(chosen)
 

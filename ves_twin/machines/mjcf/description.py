@@ -111,6 +111,9 @@ class Drive(Part):
     Joints that are `imposed` move as their signal in `joints` says while all others are integrated,
     in mode CONTROL or REFERENCE; what their actuators must give is then predicted. Joints that are
     `locked` stand where the model has them.
+
+    In mode CONTROL simulation begins `lead` after the first row: rows before it tell commands that
+    a delay, or a filter, still lets through then. A measured start is read there.
     """
 
     mode: Mode
@@ -120,6 +123,7 @@ class Drive(Part):
     held: bool = False
     imposed: tuple[str, ...] = ()
     locked: tuple[str, ...] = ()
+    lead: Annotated[Seconds, Field(ge=0)] = 0.0
 
     @property
     def imposed_signals(self) -> dict[str, str]:
@@ -132,6 +136,8 @@ class Drive(Part):
             raise ValueError("drive: mode 'motion' needs drive.joints")
         if self.mode is Mode.CONTROL and not (self.actuators or self.imposed):
             raise ValueError("drive: mode 'control' needs drive.actuators or drive.imposed")
+        if self.mode is not Mode.CONTROL and self.lead:
+            raise ValueError(f"drive.lead: {self.lead:g} s in mode {self.mode}; mode 'control'")
         return self
 
 

@@ -8,10 +8,13 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.polynomial.polynomial import polyfit
 
+from ves_twin.core.errors import InvalidInputError
+from ves_twin.core.quantity import percent
 from ves_twin.core.recording.recording import Recording
 from ves_twin.core.signals import Role, Signal
 from ves_twin.core.types import FloatArray
 from ves_twin.core.units import to_si
+from ves_twin.diagnosis.preprocess import MOST_SETTLING
 from ves_twin.machines.mjcf.description import Number, Start
 from ves_twin.machines.mjcf.joint_units import joint_units
 from ves_twin.machines.mjcf.machine import Rig
@@ -44,8 +47,12 @@ def started(rig: Rig, *groups: Sequence[Recording]) -> tuple[Rig, Groups]:
     Args:
         rig: the two files.
         *groups: recordings: measured, held out, and so on.
+
+    Raises:
+        InvalidInputError: a lead that leaves too little of a recording.
     """
     found = tuple(tuple(group) for group in groups)
+    _check_lead(rig, found)
     for joint, start in rig.description.start.items():
         if start.elsewhere is None:
             continue
@@ -59,6 +66,12 @@ def started(rig: Rig, *groups: Sequence[Recording]) -> tuple[Rig, Groups]:
             for group, those in zip(found, begins, strict=True)
         )
     return rig, found
+
+
+def lead_rows(rig: Rig, time: FloatArray) -> int:
+    """Rows (n,) before the first one that is simulated under recorded commands."""
+    period = (time[-1] - time[0]) / (len(time) - 1)
+    return round(rig.description.drive.lead / float(period))
 
 
 def first_state(column: FloatArray, period: float, corner: float) -> tuple[float, float]:
@@ -82,6 +95,14 @@ def first_state(column: FloatArray, period: float, corner: float) -> tuple[float
     time = period * np.arange(count)
     position, speed = polyfit(time, column[:count], min(3, count - 1))[:2]
     return float(position), float(speed)
+
+
+def _check_lead(rig: Rig, groups: Groups) -> None:
+    lead = rig.description.drive.lead
+    lengths = [float(np.ptp(one.time)) for group in groups for one in group]
+    if lead and lengths and lead > MOST_SETTLING * min(lengths):
+        expected = f"{percent(MOST_SETTLING)} of each recording at most"
+        raise InvalidInputError("drive.lead", f"{lead:g} s of {min(lengths):.4g} s", expected)
 
 
 @dataclass(frozen=True)
@@ -126,7 +147,7 @@ def _si(rig: Rig, joint: str, position: Number, speed: Number) -> FloatArray:
 
 
 def _first_state(rig: Rig, joint: str, recording: Recording, within: float) -> FloatArray | None:
-    """Position and speed at the first row, of a parabola through the first ones; None if few."""
+    """Position and speed behind the lead, of a parabola through the first rows; None if few."""
     measured = {
         name: compared
         for name, compared in rig.description.compare.items()
@@ -134,7 +155,8 @@ def _first_state(rig: Rig, joint: str, recording: Recording, within: float) -> F
     }
     if all(compared.of != "position" for compared in measured.values()):
         return None
-    time = recording.time - recording.time[0]
+    first = lead_rows(rig, recording.time)
+    time = recording.time[first:] - recording.time[first]
     time = time[: max(FEWEST, int(np.searchsorted(time, within)))]
     one, none = np.ones(len(time)), np.zeros(len(time))
     shapes = {"position": (one, time, time**2 / 2.0), "speed": (none, one, time)}
@@ -144,7 +166,7 @@ def _first_state(rig: Rig, joint: str, recording: Recording, within: float) -> F
         noise = signal.noise[0] if isinstance(signal.noise, tuple) else signal.noise
         sd = to_si(noise, signal.unit, f"noise of {name}") or 1.0
         rows.append(np.stack(shapes[compared.of], axis=1) / sd)
-        read.append(compared.sign * recording[name][: len(time), 0] / sd)
+        read.append(compared.sign * recording[name][first : first + len(time), 0] / sd)
     values = np.concatenate(read)
     kept = np.isfinite(values)
     if np.count_nonzero(kept) < FEWEST:

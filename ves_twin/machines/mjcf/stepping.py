@@ -20,7 +20,7 @@ from ves_twin.machines.mjcf.description import Controller, Mode
 from ves_twin.machines.mjcf.imposed import Imposed
 from ves_twin.machines.mjcf.joint_units import joint_units
 from ves_twin.machines.mjcf.law_loop import compiled_laws, lawful_rows, push
-from ves_twin.machines.mjcf.started import first_state, start_signal
+from ves_twin.machines.mjcf.started import first_state, lead_rows, start_signal
 from ves_twin.machines.mjcf.work import Work, sensor_rows, variables
 
 CHECKED = 50
@@ -85,7 +85,8 @@ def motion_of_drive(
     """What the rig's description compares, by forward simulation.
 
     Row k holds the state at t_k; its command acts from then on. The model's step is the whole part
-    of a row's period nearest to the model's own, half of it if refined.
+    of a row's period nearest to the model's own, half of it if refined. Under recorded commands
+    rows of the lead have the state of the first row after it.
 
     Args:
         work: what is simulated.
@@ -100,16 +101,17 @@ def motion_of_drive(
     model, period = work.model, work.programme.period
     steps = max(1, round(period / model.opt.timestep)) * (2 if refined else 1)
     model.opt.timestep = period / steps
-    state = _start(work)
     drive = work.rig.description.drive
     closed = mode is Mode.REFERENCE or bool(programs)
+    first = 0 if closed else lead_rows(work.rig, work.programme.time)
+    state = _start(work, first)
     if not (closed or drive.imposed or drive.locked or _resisted(work)):
-        path, sensed, commands = _open(work, state, steps)
+        path, sensed, commands = _open(work, state, steps, first)
     else:
         told = work.rig.description.controllers
         own = [_Pd(work, name, c) for name, c in told.items()] if mode is Mode.REFERENCE else []
         loops = (programs or own) if closed else None
-        path, sensed, commands = _stepped(work, state, steps, loops)
+        path, sensed, commands = _stepped(work, state, steps, first, loops)
     if _failed(state):
         path, sensed = np.full_like(path, np.nan), np.full_like(sensed, np.nan)
         commands = np.full_like(commands, np.nan)
@@ -120,19 +122,19 @@ def _failed(data: mujoco.MjData) -> bool:
     return any(data.warning[kind].number for kind in FAILED)
 
 
-def _start(work: Work) -> mujoco.MjData:
-    """State of the first row."""
+def _start(work: Work, first: int) -> mujoco.MjData:
+    """State of the first row that is simulated."""
     data = work.data
     for joint in work.rig.description.start:
         at = work.model.joint(joint)
-        position, speed = _measured_start(work, joint)
+        position, speed = _measured_start(work, joint, first)
         data.qpos[at.qposadr[0]] = position + work.values.get(f"start@{joint}:position", 0.0)
         data.qvel[at.dofadr[0]] = speed + work.values.get(f"start@{joint}:speed", 0.0)
     return data
 
 
-def _measured_start(work: Work, joint: str) -> tuple[float, float]:
-    """Given by the file, or by the first rows of the joint's signal."""
+def _measured_start(work: Work, joint: str, first: int) -> tuple[float, float]:
+    """Given by the file, or by the first rows of the joint's signal that are simulated."""
     told = work.rig.description
     start = told.start[joint]
     if (recorded := work.programme.drive.get(start_signal(joint))) is not None:
@@ -142,7 +144,7 @@ def _measured_start(work: Work, joint: str) -> tuple[float, float]:
         at = to_si(start.position, units[0], f"{what}.position")
         return at, to_si(start.speed, units[1], f"{what}.speed")
     signal, sign = position_signal(work, joint)
-    column = sign * work.programme.drive[signal][:, 0]
+    column = sign * work.programme.drive[signal][first:, 0]
     return first_state(column, work.programme.period, told.drive.smoothing)
 
 
@@ -179,25 +181,34 @@ def _steady(work: Work) -> FloatArray:
     return effort
 
 
-def _open(work: Work, data: mujoco.MjData, steps: int) -> tuple[FloatArray, FloatArray, FloatArray]:
+def _open(
+    work: Work, data: mujoco.MjData, steps: int, first: int
+) -> tuple[FloatArray, FloatArray, FloatArray]:
     """Recorded commands, stepped by MuJoCo's own loop."""
     model = work.model
-    commands = _commands(work)
+    every = _commands(work)
+    commands = every[first:]
     laws = compiled_laws(work.laws, model)
     if len(laws.codes):
-        return *lawful_rows(model, data, commands, _steady(work), steps, laws), commands
+        path, sensed = lawful_rows(model, data, commands, _steady(work), steps, laws)
+        return _led(path, first), _led(sensed, first), every
     size = mujoco.mj_stateSize(model, mujoco.mjtState.mjSTATE_FULLPHYSICS)
     state = np.zeros(size)
     mujoco.mj_getState(model, data, state, mujoco.mjtState.mjSTATE_FULLPHYSICS)
     steady = np.tile(_steady(work), (len(commands), 1))
     control = np.repeat(np.hstack([commands, steady]), steps, axis=0)[None]
     fed = mujoco.mjtState.mjSTATE_CTRL | mujoco.mjtState.mjSTATE_QFRC_APPLIED
-    path, sensed = rollout.rollout(
+    states, sensors = rollout.rollout(
         model, data, initial_state=state[None], control=control, control_spec=int(fed)
     )
-    rows = np.concatenate([state[None], path[0][steps - 1 :: steps][:-1]])
-    width = model.nq + model.nv
-    return rows[:, 1 : 1 + width], np.asarray(sensed[0][::steps]), commands
+    rows = np.concatenate([state[None], states[0][steps - 1 :: steps][:-1]])
+    path = rows[:, 1 : 1 + model.nq + model.nv]
+    return _led(path, first), _led(np.asarray(sensors[0][::steps]), first), every
+
+
+def _led(rows: FloatArray, first: int) -> FloatArray:
+    """Rows (n, w) behind those of the lead, which have what the first of them has."""
+    return np.concatenate([np.repeat(rows[:1], first, axis=0), rows])
 
 
 def _commands(work: Work) -> FloatArray:
@@ -234,7 +245,7 @@ class _Pd:
 
 
 def _stepped(
-    work: Work, data: mujoco.MjData, steps: int, loops: Sequence[Loop] | None
+    work: Work, data: mujoco.MjData, steps: int, first: int, loops: Sequence[Loop] | None
 ) -> tuple[FloatArray, FloatArray, FloatArray]:
     """Row by row, with controllers, or commands for None, and efforts that follow the speed."""
     model, rows = work.model, len(work.programme.time)
@@ -255,7 +266,7 @@ def _stepped(
     speed, given, reach = np.zeros(1), np.zeros(1), _Reach(work)
     loaded = {e.parts[0] for e, _ in work.effects if type(e).carry is not Effect.carry}
     laws, own = compiled_laws(work.laws, model), np.zeros(model.nv)
-    for k in range(rows):
+    for k in range(first, rows):
         imposed.move(data, k * steps)
         path[k, : model.nq], path[k, model.nq :] = data.qpos, data.qvel
         for loop in loops or ():
@@ -278,6 +289,7 @@ def _stepped(
                 sensed[k], pull[k] = data.sensordata, data.qacc
         if k % CHECKED == 0 and _failed(data):
             break
+    path, sensed, pull = (_led(one[first:], first) for one in (path, sensed, pull))
     for name, command in imposed.commands(path, pull).items():
         asked[:, model.actuator(name).id] = command
     return path, sensed, asked
