@@ -81,8 +81,10 @@ def _descended(evidence: Evidence, fit: Fit) -> FloatArray | None:
     low, high = runs.low[free], runs.high[free]
 
     def left(sizes: FloatArray) -> FloatArray:
-        """Whitened, the pull of commissioning errors behind (samples + errors,); nan where the
-        plant fails, which shortens the step."""
+        """Whitened, the pull of commissioning errors behind (samples + errors,); nan if it failed.
+
+        The trust region shrinks then.
+        """
         rows = runs.one(runs.depart(fit.shift, free, sizes))
         share = np.float32(fit.step_share) * fit.local.columns[-1]
         z = evidence.whitening.apply(evidence.measured - rows - share)
