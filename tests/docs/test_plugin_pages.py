@@ -12,7 +12,7 @@ import ves_twin as vt
 from ves_twin.cli.main import main
 from ves_twin.control.controller import PlatformController
 from ves_twin.core.code_file import load_class
-from ves_twin.effects.registry import parse_effects
+from ves_twin.effects.registry import EFFECTS, parse_effects
 from ves_twin.envs.evaluation import Trial, evaluate
 from ves_twin.machines.mjcf.forward import MjcfForward
 from ves_twin.plant.assembly import assemble
@@ -155,3 +155,9 @@ def test_the_policy_of_the_page_follows_better_than_none(tmp_path):
         for name in (f"{path}:Ahead", "still")
     ]
     assert scores[0] > 0.5 * scores[1] > scores[1]  # less than half of the loss is left
+
+
+def test_every_kind_of_any_machine_stands_in_the_table_of_its_page():
+    page = (PAGES.parent / "bring-your-own-rig.md").read_text("utf-8")
+    told = set(re.findall(r"`(\w+)`", page.partition("| kind of effect |")[2]))
+    assert {name for name in EFFECTS.built_in if EFFECTS[name].anywhere} <= told
