@@ -9,13 +9,10 @@ import numpy as np
 import pytest
 
 from ves_twin.diagnosis.build_up import in_full as in_full_module
-from ves_twin.diagnosis.build_up import on_the_way as on_the_way_module
 from ves_twin.diagnosis.build_up.build_up import _counted
 from ves_twin.diagnosis.build_up.builder import Builder
 from ves_twin.diagnosis.build_up.in_full import _likeliest, in_full
-from ves_twin.diagnosis.build_up.on_the_way import on_the_way
 from ves_twin.diagnosis.build_up.plain_selector import PlainSelector
-from ves_twin.diagnosis.build_up.proof import prove
 from ves_twin.diagnosis.build_up.select import Selector
 from ves_twin.diagnosis.build_up.trials import Trial
 from ves_twin.diagnosis.evidence import Evidence
@@ -145,13 +142,13 @@ def test_a_fit_begins_where_least_is_left(forward):
 
 
 def choosing(kinds):
-    """A selection that chooses effects, at once, by how many are at work."""
+    """A selection that chooses effects by how many are at work."""
 
-    def path(selector, begin=()):
+    def run(selector, begin=()):
         labels = [trial.cause.label for trial in selector.regression.trials]
-        return [[labels.index(f"actuator_{kind}@valve") for kind in kinds(selector, len(begin))]]
+        return [labels.index(f"actuator_{kind}@valve") for kind in kinds(selector, len(begin))]
 
-    return path
+    return run
 
 
 def test_a_round_that_leaves_more_than_the_one_before_is_not_kept(forward, monkeypatch):
@@ -161,7 +158,7 @@ def test_a_round_that_leaves_more_than_the_one_before_is_not_kept(forward, monke
         begun.append(count)
         return ("asymmetry",) if count else ("gain", "deadband")
 
-    monkeypatch.setattr(Selector, "path", choosing(kinds))
+    monkeypatch.setattr(Selector, "run", choosing(kinds))
     builder = builder_of(forward)
     origin = builder.fitted.runs.origin
     first = builder.halves(origin, ())
@@ -178,8 +175,8 @@ def test_of_two_choices_the_one_that_predicts_held_out_rows_better_is_kept(
 ):
     both = (lambda *_: ("gain", "deadband"), lambda *_: ("asymmetry",))
     ahead, plainly = both if first else both[::-1]
-    monkeypatch.setattr(Selector, "path", choosing(ahead))
-    monkeypatch.setattr(PlainSelector, "path", choosing(plainly))
+    monkeypatch.setattr(Selector, "run", choosing(ahead))
+    monkeypatch.setattr(PlainSelector, "run", choosing(plainly))
     builder = builder_of(forward)
     found = builder.best()
     assert causes(found) == {"actuator_gain", "actuator_deadband"}
@@ -194,7 +191,7 @@ def test_a_rejected_cause_makes_room_for_the_one_that_it_stood_for(forward, monk
         return ("gain", "deadband", "delay") if barred else ("gain", "deadband", "asymmetry")
 
     for way in (Selector, PlainSelector):
-        monkeypatch.setattr(way, "path", choosing(kinds))
+        monkeypatch.setattr(way, "run", choosing(kinds))
     builder = builder_of(forward)
     origin = builder.fitted.runs.origin
     (begun,) = builder.offers(builder.halves(origin, ()), origin)
@@ -207,7 +204,7 @@ def test_a_rejected_cause_makes_room_for_the_one_that_it_stood_for(forward, monk
 def test_many_causes_never_end_worse_than_the_best_pair(forward, monkeypatch):
     """Both ways are made to choose what is not there; the best of Selector.best stays in play."""
     for way in (Selector, PlainSelector):
-        monkeypatch.setattr(way, "path", choosing(lambda *_: ("asymmetry",)))
+        monkeypatch.setattr(way, "run", choosing(lambda *_: ("asymmetry",)))
     builder = builder_of(forward)
     origin = builder.fitted.runs.origin
     halves = builder.halves(origin, ())
@@ -215,37 +212,9 @@ def test_many_causes_never_end_worse_than_the_best_pair(forward, monkeypatch):
     (alone,) = builder.offers(halves, origin)
     assert len(causes(pair)) == 2
     found = builder.best()
-    left, by_pair = (halves.held.rms(offer.held_out) for offer in (found, pair))
-    assert np.all(left <= by_pair * (1.0 + 1e-6))
-    assert np.all(by_pair < 0.9 * halves.held.rms(alone.held_out))
+    assert np.all(found.rms <= pair.rms * (1.0 + 1e-6))
+    assert np.all(pair.rms < 0.9 * alone.rms)
     assert found.known == pair.known | alone.known
-
-
-def test_as_much_proved_of_the_last_choice_is_no_other_one(forward):
-    builder = builder_of(forward)
-    halves = builder.halves(builder.fitted.runs.origin, ())
-    chosen = PlainSelector(halves.regression).run()
-    assert on_the_way(halves, [chosen[:1], chosen], ()) == ()
-    assert on_the_way(halves, [[]], ()) == ()
-
-
-def test_what_a_longer_choice_loses_is_taken_from_the_way(forward, monkeypatch):
-    """A proof that fails wherever the asymmetry is in, as where causes mimic each other."""
-    builder = builder_of(forward)
-    halves = builder.halves(builder.fitted.runs.origin, ())
-    labels = [trial.cause.label for trial in halves.regression.trials]
-    short, odd = PlainSelector(halves.regression).run(), labels.index("actuator_asymmetry@valve")
-    counts = []
-
-    def failing(regression, held, chosen, more=0):
-        counts.append(len(chosen) + more)
-        found = prove(regression, held, chosen, more=more)
-        return replace(found, proved=()) if odd in chosen else found
-
-    monkeypatch.setattr(on_the_way_module, "prove", failing)
-    found = on_the_way(halves, [short[:1], short, [*short, odd]], {"another"})
-    assert set(found) == set(prove(halves.regression, halves.held, short).proved)
-    assert set(counts) == {len(short) + 2}  # every cause that is ever put to proof counts
 
 
 def test_a_cause_that_bends_at_first_is_not_probed_again(forward):

@@ -13,7 +13,6 @@ from ves_twin.diagnosis.build_up.halves import Halves, halves_at
 from ves_twin.diagnosis.build_up.in_full import in_full
 from ves_twin.diagnosis.build_up.nearest import nearest
 from ves_twin.diagnosis.build_up.offer import Offer, preferred
-from ves_twin.diagnosis.build_up.on_the_way import on_the_way
 from ves_twin.diagnosis.build_up.plain_selector import PlainSelector
 from ves_twin.diagnosis.build_up.proof import Bench, prove
 from ves_twin.diagnosis.build_up.select import Selector
@@ -81,8 +80,7 @@ class Builder:
         """What comes of choosing by one-step prediction errors, and by plain squares.
 
         Neither serves all: whitening in time hides what acts slowly (a double pendulum's
-        frictions, an excavator's valve), and plain squares have few independent rows (TX40). Of
-        each the last choice, and what is proved of the best on the way to it.
+        frictions, an excavator's valve), and plain squares have few independent rows (TX40).
 
         Args:
             halves: linear about the point.
@@ -92,33 +90,26 @@ class Builder:
         """
         found, first = list[Offer](), set[frozenset[int]]()
         for way in (Selector, PlainSelector):
-            path = way(halves.regression).path(_places(halves, present))
-            if frozenset(path[-1]) in first:
+            chosen = way(halves.regression).run(_places(halves, present))
+            if frozenset(chosen) in first:
                 continue
             if found and self.fitted.runs.budget.skips("causes chosen by plain squares"):
                 break
-            first.add(frozenset(path[-1]))
-            found.append(self.offer(*self.settled(way, halves, path[-1], point), known))
-            known = found[-1].known
-            shorter = on_the_way(halves, path, known)
-            if not shorter or frozenset(shorter) in first:
-                continue
-            first.add(frozenset(shorter))
-            found.append(self.offer(*self.settled(None, halves, list(shorter), point), known))
+            first.add(frozenset(chosen))
+            found.append(self.offer(*self.settled(way, halves, chosen, point), known))
             known = found[-1].known
         return found
 
     def settled(
         self,
-        way: type[Selector] | type[PlainSelector] | None,
+        way: type[Selector] | type[PlainSelector],
         halves: Halves,
         chosen: list[int],
         point: FloatArray,
     ) -> tuple[Halves, FloatArray, list[int]]:
         """A choice about the point where all of it is fitted in full, that point, and the choice.
 
-        Columns are of finite sizes: a choice is made anew where its full fit has moved them, if
-        there is a way to make it.
+        Columns are of finite sizes: a choice is made anew where its full fit has moved them.
         """
         present, least = tuple[Trial, ...](), np.inf
         for last in range(ROUNDS):
@@ -139,8 +130,7 @@ class Builder:
                 break
             if self.fitted.runs.budget.skips("causes chosen anew about their own fit"):
                 break
-            chosen = _places(halves, present)
-            chosen = way(halves.regression).run(chosen) if way else chosen
+            chosen = way(halves.regression).run(_places(halves, present))
         return halves, point, _places(halves, present)
 
     def offer(

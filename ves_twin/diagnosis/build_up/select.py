@@ -55,16 +55,11 @@ class Selector:
         Args:
             begin: trials to begin with.
         """
-        return self.path(begin)[-1]
-
-    def path(self, begin: Sequence[int] = ()) -> list[list[int]]:
-        """The choices on the way, the last one last."""
-        found = list[list[int]]()
-        now = self._grown(list(begin), found)
+        now = self._grown(list(begin))
         while True:
-            other = self._exchanged(now) or self._grown(now.chosen, found)
+            other = self._exchanged(now) or self._grown(now.chosen)
             if other.evidence <= now.evidence + CLEAR:
-                return [*found, now.chosen]
+                return now.chosen
             now = other
 
     def best(self) -> list[list[int]]:
@@ -89,20 +84,14 @@ class Selector:
                 found.setdefault(frozenset(sound), sound)
         return [few for few in found.values() if few]
 
-    def _grown(self, chosen: list[int], way: list[list[int]]) -> _Choice:
-        """With all that is worth its price beside a choice, and without what is not any more.
-
-        Args:
-            chosen: to begin with.
-            way: gets each choice on the way.
-        """
+    def _grown(self, chosen: list[int]) -> _Choice:
+        """With all that is worth its price beside a choice, and without what is not any more."""
         fit = self.regression.fit(chosen)
         while len(chosen) < MOST:
             more, there = self._next(chosen, fit)
             if there is None:
                 break
             chosen = self.swapped([*chosen, *more])
-            way.append(chosen)
             fit = self.regression.fit(chosen, there.whitening, 2)
         return self._pruned(chosen)
 
