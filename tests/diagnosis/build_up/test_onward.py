@@ -8,11 +8,14 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
+from ves_twin.diagnosis.build_up import best_proved as best_proved_module
 from ves_twin.diagnosis.build_up import in_full as in_full_module
+from ves_twin.diagnosis.build_up.best_proved import best_proved
 from ves_twin.diagnosis.build_up.build_up import _counted
 from ves_twin.diagnosis.build_up.builder import Builder
 from ves_twin.diagnosis.build_up.in_full import _likeliest, in_full
 from ves_twin.diagnosis.build_up.plain_selector import PlainSelector
+from ves_twin.diagnosis.build_up.proof import prove
 from ves_twin.diagnosis.build_up.select import Selector
 from ves_twin.diagnosis.build_up.trials import Trial
 from ves_twin.diagnosis.evidence import Evidence
@@ -151,6 +154,13 @@ def choosing(kinds):
     return run
 
 
+def choose(monkeypatch, ahead, plainly):
+    """Let both ways choose so."""
+    run = choosing(plainly)
+    monkeypatch.setattr(Selector, "run", choosing(ahead))
+    monkeypatch.setattr(PlainSelector, "path", lambda *given: [run(*given)])
+
+
 def test_a_round_that_leaves_more_than_the_one_before_is_not_kept(forward, monkeypatch):
     begun: list[int] = []
 
@@ -175,8 +185,7 @@ def test_of_two_choices_the_one_that_predicts_held_out_rows_better_is_kept(
 ):
     both = (lambda *_: ("gain", "deadband"), lambda *_: ("asymmetry",))
     ahead, plainly = both if first else both[::-1]
-    monkeypatch.setattr(Selector, "run", choosing(ahead))
-    monkeypatch.setattr(PlainSelector, "run", choosing(plainly))
+    choose(monkeypatch, ahead, plainly)
     builder = builder_of(forward)
     found = builder.best()
     assert causes(found) == {"actuator_gain", "actuator_deadband"}
@@ -190,8 +199,7 @@ def test_a_rejected_cause_makes_room_for_the_one_that_it_stood_for(forward, monk
         barred = "actuator_asymmetry@valve" in selector.regression.barred
         return ("gain", "deadband", "delay") if barred else ("gain", "deadband", "asymmetry")
 
-    for way in (Selector, PlainSelector):
-        monkeypatch.setattr(way, "run", choosing(kinds))
+    choose(monkeypatch, kinds, kinds)
     builder = builder_of(forward)
     origin = builder.fitted.runs.origin
     (begun,) = builder.offers(builder.halves(origin, ()), origin)
@@ -203,8 +211,7 @@ def test_a_rejected_cause_makes_room_for_the_one_that_it_stood_for(forward, monk
 
 def test_many_causes_never_end_worse_than_the_best_pair(forward, monkeypatch):
     """Both ways are made to choose what is not there; the best of Selector.best stays in play."""
-    for way in (Selector, PlainSelector):
-        monkeypatch.setattr(way, "run", choosing(lambda *_: ("asymmetry",)))
+    choose(monkeypatch, *2 * (lambda *_: ("asymmetry",),))
     builder = builder_of(forward)
     origin = builder.fitted.runs.origin
     halves = builder.halves(origin, ())
@@ -212,9 +219,30 @@ def test_many_causes_never_end_worse_than_the_best_pair(forward, monkeypatch):
     (alone,) = builder.offers(halves, origin)
     assert len(causes(pair)) == 2
     found = builder.best()
-    assert np.all(found.rms <= pair.rms * (1.0 + 1e-6))
-    assert np.all(pair.rms < 0.9 * alone.rms)
+    left, by_pair = (halves.held.rms(offer.held_out) for offer in (found, pair))
+    assert np.all(left <= by_pair * (1.0 + 1e-6))
+    assert np.all(by_pair < 0.9 * halves.held.rms(alone.held_out))
     assert found.known == pair.known | alone.known
+
+
+def test_what_a_longer_choice_loses_is_taken_from_the_way(forward, monkeypatch):
+    """A proof that fails wherever the asymmetry is in, as where causes mimic each other."""
+    builder = builder_of(forward)
+    halves = builder.halves(builder.fitted.runs.origin, ())
+    labels = [trial.cause.label for trial in halves.regression.trials]
+    path = PlainSelector(halves.regression).path()
+    short, odd = path[-1], labels.index("actuator_asymmetry@valve")
+
+    def failing(regression, held, chosen, more=0):
+        found = prove(regression, held, chosen, more)
+        return replace(found, proved=()) if odd in chosen else found
+
+    monkeypatch.setattr(best_proved_module, "prove", failing)
+    sets = [[], short[:1], short, [*short, odd]]
+    found, known = best_proved(halves, sets, frozenset({"another"}))
+    assert found == list(prove(halves.regression, halves.held, short).proved)
+    assert known == {"another", *(labels[n] for n in short)}
+    assert best_proved(halves, [[odd]], frozenset()) == ([], frozenset())
 
 
 def test_a_cause_that_bends_at_first_is_not_probed_again(forward):

@@ -8,19 +8,21 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ves_twin.core.types import FloatArray
+from ves_twin.diagnosis.build_up.best_proved import best_proved
 from ves_twin.diagnosis.build_up.discrepancy import discrepancy
 from ves_twin.diagnosis.build_up.halves import Halves, halves_at
 from ves_twin.diagnosis.build_up.in_full import in_full
-from ves_twin.diagnosis.build_up.nearest import nearest
 from ves_twin.diagnosis.build_up.offer import Offer, preferred
 from ves_twin.diagnosis.build_up.plain_selector import PlainSelector
-from ves_twin.diagnosis.build_up.proof import Bench, prove
+from ves_twin.diagnosis.build_up.proof import prove
 from ves_twin.diagnosis.build_up.select import Selector
 from ves_twin.diagnosis.build_up.trials import Trial
 from ves_twin.diagnosis.evidence import Evidence
 from ves_twin.diagnosis.fit_context import FitContext
 from ves_twin.diagnosis.preprocess import Dataset
 from ves_twin.diagnosis.refine import Fit, bare_residual
+
+Way = type[Selector] | type[PlainSelector]
 
 ROUNDS = 3
 """Times that columns are computed anew where a choice of causes, fitted in full, has moved them."""
@@ -80,7 +82,8 @@ class Builder:
         """What comes of choosing by one-step prediction errors, and by plain squares.
 
         Neither serves all: whitening in time hides what acts slowly (a double pendulum's
-        frictions, an excavator's valve), and plain squares have few independent rows (TX40).
+        frictions, an excavator's valve), and plain squares have few independent rows (TX40). Of
+        the choices that plain squares make on their way the best is offered, too.
 
         Args:
             halves: linear about the point.
@@ -89,20 +92,27 @@ class Builder:
             known: labels of the causes that were put to proof before.
         """
         found, first = list[Offer](), set[frozenset[int]]()
-        for way in (Selector, PlainSelector):
-            chosen = way(halves.regression).run(_places(halves, present))
+        begin = _places(halves, present)
+        path = PlainSelector(halves.regression).path(begin)
+        ahead = Selector(halves.regression).run(begin)
+        ways: tuple[tuple[Way, list[int]], ...] = ((Selector, ahead), (PlainSelector, path[-1]))
+        for way, chosen in ways:
             if frozenset(chosen) in first:
                 continue
             if found and self.fitted.runs.budget.skips("causes chosen by plain squares"):
-                break
+                return found
             first.add(frozenset(chosen))
             found.append(self.offer(*self.settled(way, halves, chosen, point), known))
             known = found[-1].known
+        few, known = best_proved(halves, path, known)
+        labels = frozenset(halves.regression.trials[n].cause.label for n in few)
+        if few and labels not in [offer.proved for offer in found]:
+            found.append(self.offer(halves, point, few, known))
         return found
 
     def settled(
         self,
-        way: type[Selector] | type[PlainSelector],
+        way: Way,
         halves: Halves,
         chosen: list[int],
         point: FloatArray,
@@ -161,7 +171,8 @@ class Builder:
     def few(self, halves: Halves, point: FloatArray, known: frozenset[str]) -> list[Offer]:
         """What comes of the best single cause or pair: many should not end worse than these.
 
-        Of the sets of `Selector.best` the one that `nearest` takes; none where it takes none.
+        Of the sets of `Selector.best` the one of which what is proved predicts best; none where
+        nothing is.
 
         Args:
             halves: linear about the point, nothing at work there.
@@ -171,9 +182,7 @@ class Builder:
         regression = halves.regression
         if not regression.trials or self.fitted.runs.budget.skips("the best single cause or pair"):
             return []
-        sets = Selector(regression).best()
-        every = list(dict.fromkeys(n for some in sets for n in some))
-        chosen = list(nearest(Bench(regression.fit(every), halves.held, regression), sets))
+        chosen, known = best_proved(halves, Selector(regression).best(), known)
         return [self.offer(halves, point, chosen, known)] if chosen else []
 
     def best(self) -> Offer:
@@ -201,9 +210,8 @@ class Builder:
                 break
             builder = replace(builder, barred=builder.barred | base.rejected)
             base = found = other
-        few = self.few(halves, origin, known)
-        known = few[-1].known if few else known
-        return replace(preferred([found, *few]), known=known)
+        found = replace(found, known=known)
+        return preferred([found, *self.few(halves, origin, known)])
 
 
 def _places(halves: Halves, present: Sequence[Trial]) -> list[int]:

@@ -11,6 +11,7 @@ from ves_twin.core.types import FloatArray
 from ves_twin.diagnosis.build_up.halves import Halves, carried_point
 from ves_twin.diagnosis.build_up.memory import independent_rows
 from ves_twin.diagnosis.build_up.proof import NULL_FROM, Proof
+from ves_twin.diagnosis.build_up.regression import Half
 from ves_twin.diagnosis.refine import Fit
 
 
@@ -52,29 +53,42 @@ class Offer:
         return Offer(halves, point, proof, fit, known, left)
 
     @property
+    def proved(self) -> frozenset[str]:
+        """Labels of causes that are proved."""
+        trials = self.halves.regression.trials
+        return frozenset(trials[n].cause.label for n in self.proof.proved)
+
+    @property
     def rejected(self) -> frozenset[str]:
         """Labels of causes that held-out rows speak against."""
         trials, dropped = self.halves.regression.trials, self.proof.dropped
         return frozenset(trials[n].cause.label for n, p in dropped.items() if p > NULL_FROM)
 
-    @property
-    def rms(self) -> FloatArray:
-        """Of what is left of each held-out channel (c,)."""
-        return np.maximum(self.halves.held.rms(self.held_out), self.halves.regression.quietest)
-
 
 def preferred(offers: Sequence[Offer]) -> Offer:
     """The offer that predicts held-out rows best, the first of equals.
 
-        sum_c n_c log rms_c
-
-    n_c are held-out rows over twice their memory, of the offer that leaves least: where what is
-    left is slow, few rows are independent.
-
     Args:
         offers: one at least.
     """
-    rms = [np.log(offer.rms) for offer in offers]
-    best = offers[int(np.argmin([np.sum(one) for one in rms]))]
-    count = independent_rows(best.halves.held.runs, best.held_out)
-    return offers[int(np.argmin([count @ one for one in rms]))]
+    halves = offers[0].halves
+    return offers[least_left(halves.held, halves.regression.quietest, [o.held_out for o in offers])]
+
+
+def least_left(held: Half, quietest: FloatArray, left: Sequence[FloatArray]) -> int:
+    """Which of several residuals leaves least of held-out rows, the first of equals.
+
+        sum_c n_c log rms_c
+
+    n_c are held-out rows over twice their memory, of the residual that leaves least: where what is
+    left is slow, few rows are independent.
+
+    Args:
+        held: the held-out half.
+        quietest: rms of each channel below which nothing is told (c,).
+        left: (rows, c) each, one at least.
+    """
+    rms = [np.log(np.maximum(held.rms(one), quietest)) for one in left]
+    best = left[int(np.argmin([np.sum(one) for one in rms]))]
+    count = independent_rows(held.runs, best)
+    return int(np.argmin([count @ one for one in rms]))

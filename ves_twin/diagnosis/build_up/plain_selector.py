@@ -55,7 +55,12 @@ class PlainSelector:
         Args:
             begin: trials to begin with.
         """
+        return self.path(begin)[-1]
+
+    def path(self, begin: Sequence[int] = ()) -> list[list[int]]:
+        """The choices on the way, the last one last."""
         chosen = self._pruned(self._swapped(list(begin), self._scale(begin)))
+        found = [chosen]
         for _ in range(MOST):
             scale = self._scale(chosen)
             more = self._more(chosen, scale)
@@ -66,7 +71,8 @@ class PlainSelector:
             if self._odds(other, seen) <= self._odds(chosen, seen) + CLEAR:
                 break
             chosen = other
-        return chosen
+            found.append(chosen)
+        return found
 
     def _scale(self, chosen: Sequence[int]) -> _Scale:
         """Weights and independent rows by what a choice leaves."""
