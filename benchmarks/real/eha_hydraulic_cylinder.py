@@ -18,7 +18,8 @@ CAP, ROD_SIDE = 1.9635e-3, 1.3477e-3
 on the data's page."""
 
 PERIOD, SMOOTH = 0.005, 21
-"""Of the rows [s]; rows of the parabola that tells speed: a count of 0.025 mm is 0.1 mm/s then."""
+"""Of the rows [s]; rows of the parabola that tells speed: a count of 0.025 mm is 0.1 mm/s then. The
+force that is fed in goes through it, too: soft oil would turn counts of the pressures into speed."""
 
 DRIVE = """<mujoco model="cylinder">
   <option timestep="1.25e-3" gravity="0 0 0" integrator="implicitfast"/>
@@ -53,7 +54,7 @@ column = "t"
 columns = ["pump"]
 unit = "rad/s"
 [signals.force]
-columns = ["force"]
+columns = ["fed"]
 unit = "N"
 [signals."rod.speed"]
 columns = ["speed"]
@@ -209,6 +210,7 @@ def even(here: Path, load: int, step: int, folder: Path) -> Path:
             PERIOD * np.arange(len(table)),
             table["motor_speed_rpm"] * 2.0 * np.pi / 60.0,
             force,
+            savgol_filter(force, SMOOTH, 2),
             1e-3 * table["pos_mm"],
             1e-3 * speed,
             1e-3 * table["cyl_speed_mm_s"],
@@ -216,6 +218,6 @@ def even(here: Path, load: int, step: int, folder: Path) -> Path:
     )
     path = folder / f"load{load}_step{step}.csv"
     folder.mkdir(parents=True, exist_ok=True)
-    head = "t,pump,force,x,speed,shown"
+    head = "t,pump,force,fed,x,speed,shown"
     np.savetxt(path, columns[rows], "%.9g", ",", header=head, comments="")
     return path
