@@ -18,8 +18,8 @@ CAP, ROD_SIDE = 1.9635e-3, 1.3477e-3
 on the data's page."""
 
 PERIOD, SMOOTH = 0.005, 21
-"""Of the rows [s]; rows of the parabola that tells speed: a count of 0.025 mm is 0.1 mm/s then. The
-force that is fed in goes through it, too: soft oil would turn counts of the pressures into speed."""
+"""Of the rows [s]; rows of the parabola that tells speed: a count of 0.025 mm is 0.1 mm/s then.
+Force that is fed in goes through it, too: soft oil would turn counts of pressures into speed."""
 
 DRIVE = """<mujoco model="cylinder">
   <option timestep="1.25e-3" gravity="0 0 0" integrator="implicitfast"/>
