@@ -10,7 +10,7 @@ from toy import Toy, programme, record
 
 from ves_twin.core.errors import InvalidInputError
 from ves_twin.core.quantity import shares
-from ves_twin.data.quality.check import Check, Grade
+from ves_twin.data.quality.check import Check, Grade, failed
 from ves_twin.diagnosis.build_up.result import Inseparable, Left, Proved, Size
 from ves_twin.diagnosis.diagnose import diagnose
 from ves_twin.diagnosis.envelope import ENVELOPE_SD
@@ -594,3 +594,15 @@ def test_what_is_declared_is_called_assumed_and_what_is_flawed_is_not_called_mea
     assert factor(flawed, "input pedigree").standing is Pedigree.OPEN
     assert "gaps" in factor(flawed, "input pedigree").said
     assert len(credibility(proven)) == 8
+
+
+def test_flaws_that_repeat_unfold_behind_the_first_of_each_sort(friction):
+    repeats = [failed("repeats", f"recording {n}: 5 rows repeat") for n in range(1, 61)]
+    stays = [failed("saturation", "recording 3: duty stays at its end")]
+    page = diagnosis_page(replace(friction, quality=(*repeats, *stays)))
+    told, _, rest = page.partition("58 more like these")
+    assert told.count("rows repeat") == 2
+    assert "duty stays" in told
+    assert "<details>" in told.rpartition("recording 2: 5 rows repeat")[2]
+    assert rest.partition("</details>")[0].count("rows repeat") == 58
+    assert "failed: repeats, saturation." in page

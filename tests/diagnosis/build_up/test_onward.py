@@ -14,6 +14,7 @@ from ves_twin.diagnosis.build_up.best_proved import best_proved
 from ves_twin.diagnosis.build_up.build_up import _counted
 from ves_twin.diagnosis.build_up.builder import Builder
 from ves_twin.diagnosis.build_up.in_full import _likeliest, in_full
+from ves_twin.diagnosis.build_up.offer import least_left
 from ves_twin.diagnosis.build_up.plain_selector import PlainSelector
 from ves_twin.diagnosis.build_up.proof import prove
 from ves_twin.diagnosis.build_up.select import Selector
@@ -223,6 +224,14 @@ def test_many_causes_never_end_worse_than_the_best_pair(forward, monkeypatch):
     assert np.all(left <= by_pair * (1.0 + 1e-6))
     assert np.all(by_pair < 0.9 * halves.held.rms(alone.held_out))
     assert found.known == pair.known | alone.known
+
+
+def test_what_a_simulation_that_broke_off_leaves_is_never_least(forward):
+    held = builder_of(forward).halves(builder_of(forward).fitted.runs.origin, ()).held
+    good, broken = 0.1 * held.target, held.target * np.nan
+    left = [held.target, broken, good]
+    assert least_left(held, np.array([1e-9]), left) == 2
+    assert least_left(held, np.array([1e-9]), [broken, good]) == 1
 
 
 def test_what_a_longer_choice_loses_is_taken_from_the_way(forward, monkeypatch):

@@ -106,6 +106,7 @@ def _descended(evidence: Evidence, fit: Fit) -> FloatArray | None:
     unit = np.maximum(np.abs(begin), 0.1 * (high - low))
     least = 0.5 * (1.0 - WORTH) * fit.chi2
     found = least_squares(
-        left, begin, slopes, (low, high), ftol=WORTH, gtol=None, x_scale=unit, max_nfev=STEPS
-    )
+        left, begin, slopes, (low, high), ftol=WORTH, xtol=None, gtol=None, x_scale=unit,
+        max_nfev=STEPS,
+    )  # fmt: skip
     return runs.depart(fit.shift, free, found.x) if found.cost < least else None

@@ -14,6 +14,9 @@ from ves_twin.diagnosis.build_up.proof import NULL_FROM, Proof
 from ves_twin.diagnosis.build_up.regression import Half
 from ves_twin.diagnosis.refine import Fit
 
+FAILED = 1e30
+"""Rms that stands for a simulation that broke off: worse than any that did not."""
+
 
 @dataclass(frozen=True)
 class Offer:
@@ -88,7 +91,8 @@ def least_left(held: Half, quietest: FloatArray, left: Sequence[FloatArray]) -> 
         quietest: rms of each channel below which nothing is told (c,).
         left: (rows, c) each, one at least.
     """
-    rms = [np.log(np.maximum(held.rms(one), quietest)) for one in left]
+    told = np.array([held.rms(one) for one in left])
+    rms = np.log(np.maximum(np.where(np.isfinite(told), told, FAILED), quietest))
     best = left[int(np.argmin([np.sum(one) for one in rms]))]
     count = independent_rows(held.runs, best)
     return int(np.argmin([count @ one for one in rms]))

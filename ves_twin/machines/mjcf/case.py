@@ -124,7 +124,7 @@ def mjcf_cases(
             wanted = forward.channels[0].signal
             raise UnknownNameError("signal in the recording", wanted, ready.signals)
         forget = 0.0 if mode is Mode.MOTION or ready.info.log == POSES else FORGET
-        forget = max(forget, own.description.drive.lead if mode is Mode.CONTROL else 0.0)
+        forget += own.description.drive.lead if mode is Mode.CONTROL else 0.0
         time = ready.time - ready.time[0]
         first = int(np.searchsorted(time, max(start, forget) - 1e-9))
         found.append(

@@ -129,7 +129,7 @@ class MjcfForward:
         moving = () if self.mode is Mode.MOTION else self.rig.description.start.values()
         settling = max((start.settling for start in moving), default=0.0)
         if self.mode is Mode.CONTROL:
-            settling = max(settling, self.rig.description.drive.lead)
+            settling += self.rig.description.drive.lead
         for name in self.compared:
             signal = self.rig.description.signals[name]
             noises = signal.noise if isinstance(signal.noise, tuple) else (signal.noise,)

@@ -15,7 +15,7 @@ from ves_twin.core.signals import Role, Signal
 from ves_twin.core.types import FloatArray
 from ves_twin.core.units import to_si
 from ves_twin.diagnosis.preprocess import MOST_SETTLING
-from ves_twin.machines.mjcf.description import Number, Start
+from ves_twin.machines.mjcf.description import Mode, Number, Start
 from ves_twin.machines.mjcf.joint_units import joint_units
 from ves_twin.machines.mjcf.machine import Rig
 
@@ -69,7 +69,9 @@ def started(rig: Rig, *groups: Sequence[Recording]) -> tuple[Rig, Groups]:
 
 
 def lead_rows(rig: Rig, time: FloatArray) -> int:
-    """Rows (n,) before the first one that is simulated under recorded commands."""
+    """Rows before the first one that is simulated under recorded commands at times (n,)."""
+    if not rig.description.drive.lead or rig.description.drive.mode is not Mode.CONTROL:
+        return 0
     period = (time[-1] - time[0]) / (len(time) - 1)
     return round(rig.description.drive.lead / float(period))
 

@@ -86,7 +86,7 @@ def _validation(verdict: Verdict) -> Factor:
 
 
 def _input(verdict: Verdict) -> Factor:
-    failed = [check.name for check in verdict.quality]
+    failed = list(dict.fromkeys(check.name for check in verdict.quality))
     if failed:
         said = f"Checks of the recordings that failed: {', '.join(failed)}."
         return Factor("input pedigree", Pedigree.OPEN, said)

@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 from ves_twin.core.quantity import UNSURE, digits, quantity
+from ves_twin.data.quality.check import Check
 from ves_twin.diagnosis.report_traces import ReportTraces
 from ves_twin.diagnosis.rivals import Rival
 from ves_twin.diagnosis.verdict import MANY, Cause, Kind, Verdict
@@ -59,6 +62,9 @@ CHI2 = (
 )
 """How the table of rivals is read; 2 ln 100, at which a rival is dropped, is 9.2."""
 
+FLAWS = 2
+"""Flaws of one sort that are told at once: a log in sixty pieces has each of them sixty times."""
+
 DRAWN = 2
 """Recordings whose traces are drawn; the numbers are of all."""
 
@@ -106,13 +112,28 @@ def _answer(verdict: Verdict, plant: str) -> Html:
     if verdict.exhibit:
         parts.append(answer_figure(verdict.exhibit, fitted_word(verdict)))
     parts += [_said("Rests on", capital(rests_on(verdict.basis)))]
-    failed = [check.message for check in verdict.quality]
-    if failed:
-        parts.append(paragraph("The recordings have flaws that the verdict may rest on:", "bad"))
-        parts.append(bullets(failed))
+    parts += _flaws(verdict.quality)
     if plant:
         parts.append(paragraph(plant, "note"))
     return joined(parts)
+
+
+def _flaws(checks: Sequence[Check]) -> list[Html]:
+    """Checks that failed, the first of each sort; the others unfold."""
+    sorts: dict[str, list[str]] = {}
+    for check in checks:
+        sorts.setdefault(check.name, []).append(check.message)
+    first, more = (
+        [line for lines in sorts.values() for line in lines[part]]
+        for part in (slice(FLAWS), slice(FLAWS, None))
+    )
+    parts = []
+    if first:
+        parts.append(paragraph("The recordings have flaws that the verdict may rest on:", "bad"))
+        parts.append(bullets(first))
+    if more:
+        parts.append(folded(f"{len(more)} more like these", bullets(more)))
+    return parts
 
 
 def _said(what: str, text: str) -> Html:

@@ -60,14 +60,14 @@ def near_sentence(verdict: Verdict) -> str:
     accepted = {one.label: one.p for one in verdict.proved if NEAR * one.p > limit}
     missed = {name: p for name, p in verdict.unproved.items() if p <= NEAR * limit}
     said = [
-        f"{spoken(name)} (p {p:.1g}, {told})"
+        f"{spoken(name)} (p {p:.2g}, {told})"
         for some, told in ((accepted, "accepted"), (missed, "not accepted"))
         for name, p in some.items()
     ]
     if not said:
         return ""
     return (
-        f"Accepted is a p of {limit:.1g} at most. Near it: {', '.join(said)}. Other recordings of"
+        f"Accepted is a p of {limit:.2g} at most. Near it: {', '.join(said)}. Other recordings of"
         " the same machine may turn that; longer ones settle it."
     )
 
