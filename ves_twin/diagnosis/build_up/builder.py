@@ -186,7 +186,10 @@ class Builder:
         return [self.offer(halves, point, chosen, known)] if chosen else []
 
     def best(self) -> Offer:
-        """The choice whose proved causes predict held-out rows best, all that was tried counted.
+        """The choice whose proved causes predict held-out rows best.
+
+        Causes of every offer count for the rate; those that `best_proved` tried count where its
+        choice was the best.
 
         Where the best of the first ones proves nothing, another that does is gone on from: what
         takes the place of its rejected causes may predict better than nothing at all (the place of
