@@ -65,15 +65,13 @@ def judge(desk: FitContext, fits: list[Fit], far: bool = False) -> Explanation:
     sure = min(taken, best.power) if rough else taken
     doubt = settings.model_error * np.sqrt(sure / max(taken, 1e-30))
     allowance = doubt**2 * taken
-    if not far and best.pull > limit_of_pull:
-        ranked = sorted([_held(evidence, best, limit_of_pull, allowance), *ranked[1:]], key=_chi2)
+    clear = desk.thresholds.effect + allowance + first.allowance
+    ranked = ranked if far else _held(evidence, ranked, limit_of_pull, clear)
     chosen, weights = probabilities(ranked, allowance, settings.odds)
     before = cells(own, commissioning.residual)
     after = cells(own, chosen[0].residual)
     score = misfit(after, before, float(doubt))
-    beside = allowance + first.allowance
-    second = None if far else _second(desk, evidence, chosen[0], beside)
-    limit = desk.thresholds.effect + beside
+    second = None if far else _second(desk, evidence, chosen[0], clear)
     fall = commissioning.chi2 - chosen[0].chi2 - (taken - sure)
     strained = chosen[0].pull > limit_of_pull
     enough = fall > LEAST * desk.thresholds.effect and not strained and second is not None
@@ -83,7 +81,7 @@ def judge(desk: FitContext, fits: list[Fit], far: bool = False) -> Explanation:
         fits=tuple(ranked),
         chosen=tuple(chosen),
         weights=tuple(weights),
-        adequate=enough and score < desk.thresholds.misfit and (second or 0.0) < limit,
+        adequate=enough and score < desk.thresholds.misfit and (second or 0.0) < clear,
         score=score,
         second=second,
         allowance=float(allowance),
@@ -134,22 +132,31 @@ def _relaxed(evidence: Evidence, fit: Fit) -> Fit:
     return min(fit, probed, key=lambda one: one.chi2)
 
 
-def _held(evidence: Evidence, fit: Fit, limit: float, allowance: float) -> Fit:
-    """A strained fit with commissioning errors that a rig in order may have, if it is as good.
+def _held(evidence: Evidence, ranked: list[Fit], limit: float, clear: float) -> list[Fit]:
+    """Fits by rising chi^2, the first with commissioning errors that a rig in order may have.
 
-    Of a cause of a thousand sigma the integrator alone is off by some sigma, which commissioning
-    errors make up for: 4.1 sd of them for a joint spring of 3800 sigma, where 3.5 are allowed.
+    An error beyond the limit is one more thing that is wrong, and is taken for that where it takes
+    as much off chi^2 as a further cause must. Less than that the simulation of a loud cause may be
+    wrong by: 4.1 sd of errors make up for the integrator beside a joint spring of 3800 sigma, where
+    3.5 are allowed. Rivals that would then come first are held likewise.
 
     Args:
         evidence: whose chi^2 counts.
-        fit: with an error beyond the limit.
+        ranked: by rising chi^2.
         limit: of commissioning errors [sd].
-        allowance: chi^2 that the simulation of the cause may be wrong by.
+        clear: chi^2 that a further cause must take off.
     """
     within = limit * (1.0 - 1e-9)  # errors that are held stand at the limit, to rounding
-    at = (fit.shift, fit.local, 0, fit.step_share)
-    held = refine(evidence, fit.causes, *at, farthest=within)
-    return held if held.chi2 <= fit.chi2 + allowance else fit
+    for _ in ranked:
+        fit = ranked[0]
+        if fit.pull <= limit:
+            break
+        at = (fit.shift, fit.local, 0, fit.step_share)
+        held = refine(evidence, fit.causes, *at, farthest=within)
+        if held.chi2 > fit.chi2 + clear:
+            break
+        ranked = sorted([held, *ranked[1:]], key=_chi2)
+    return ranked
 
 
 def _commissioning(
@@ -179,12 +186,12 @@ def _commissioning(
     return (best if best.chi2 > clear else again(evidence, best, desk.settings.rounds)), False
 
 
-def _second(desk: FitContext, evidence: Evidence, fit: Fit, allowance: float) -> float:
+def _second(desk: FitContext, evidence: Evidence, fit: Fit, clear: float) -> float:
     """Best score of a further cause beside a fit: by the nominal bank, then by one at the fit."""
     bank = desk.first.screen.bank
     z = residual_about(evidence, fit, bank.base)
     score = Screen(bank, evidence.whitening, fit.free).suspects(z)[0].score
-    if score < desk.thresholds.effect + allowance or evidence.runs.budget.over:
+    if score < clear or evidence.runs.budget.over:
         return score
     return max((s.score for s in suspects_at(desk, evidence, fit)[1]), default=0.0)
 
