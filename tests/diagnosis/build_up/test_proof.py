@@ -6,13 +6,14 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from linear import KINDS, Linear, drawn, halves, recorded, seen
+from linear import KINDS, Linear, drawn, halves, motion, recorded, seen, shape
 
+from ves_twin.diagnosis.build_up import proof as proof_module
 from ves_twin.diagnosis.build_up.discrepancy import discrepancy
 from ves_twin.diagnosis.build_up.halves import halves_at, split
 from ves_twin.diagnosis.build_up.inseparable import inseparable
 from ves_twin.diagnosis.build_up.nearest import nearest
-from ves_twin.diagnosis.build_up.paired import paired
+from ves_twin.diagnosis.build_up.paired import Difference, paired
 from ves_twin.diagnosis.build_up.proof import FALSE_SHARE, STRAINED, prove
 from ves_twin.diagnosis.build_up.report import report_of
 from ves_twin.diagnosis.build_up.select import Selector
@@ -323,3 +324,33 @@ def test_held_out_rows_without_a_sample_prove_nothing():
     proof = prove(two.regression, held, chosen)
     assert proof.proved == ()
     assert proof.dropped == dict.fromkeys(chosen, 1.0)
+
+
+@pytest.mark.parametrize(
+    ("kind", "size", "memory"), [("coulomb", 0.1, True), ("viscous", 0.2, False)]
+)
+def test_each_choice_is_proved_by_the_errors_that_show_it_better(kind, size, memory):
+    """One-step errors where it has edges, plain ones where it is as slow as the model error."""
+    rms = np.sqrt(np.mean(np.square(shape(kind, motion(1).drive["q"][:, 0]))))
+    two = halves(Linear((kind,)), {f"{kind}@a:size": size / rms}, 12, error=0.2)
+    proof = prove(two.regression, two.held, [0])
+    assert proof.proved == (0,)
+    whitening = proof.bench.fit.whitening
+    assert bool(np.any(whitening.filters[..., 1:])) is memory
+
+
+@pytest.mark.parametrize(("without", "stays"), [(0.2, True), (0.9, False)])
+def test_what_passes_beside_more_is_not_lost_as_they_go(monkeypatch, without, stays):
+    """Six causes more leave the first out, beside which the second is plainly there."""
+    two = halves(Linear(), {"viscous@a:size": 0.6, "coulomb@a:size": 0.6}, 12)
+    labels = [trial.cause.label for trial in two.regression.trials]
+    first, second = labels.index("viscous@a"), labels.index("coulomb@a")
+
+    def each(_, kept):
+        p = {first: 0.06, second: 0.001 if first in kept else without}
+        return {n: Difference(p[n], 1.0, 20) for n in kept}
+
+    monkeypatch.setattr(proof_module, "_each", each)
+    found = prove(two.regression, two.held, [first, second], more=6)
+    assert (second in found.proved) is stays
+    assert first in found.dropped

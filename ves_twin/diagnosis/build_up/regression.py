@@ -191,7 +191,11 @@ class Regression:
         return whitening.apply(columns).T
 
     def fit(
-        self, chosen: Sequence[int], start: Whitening | None = None, rounds: int = ROUNDS
+        self,
+        chosen: Sequence[int],
+        start: Whitening | None = None,
+        rounds: int = ROUNDS,
+        memory: bool = True,
     ) -> LinearFit:
         """Amplitudes and the discrepancy that they leave, in turn.
 
@@ -199,6 +203,7 @@ class Regression:
             chosen: numbers of trials.
             start: discrepancy to begin with; plain squares if None.
             rounds: how often it is learnt anew.
+            memory: whether it has a memory; only the size of each channel if not.
         """
         columns, scale = self.design(chosen)
         target = self.half.target
@@ -206,7 +211,7 @@ class Regression:
         if whitening is None:
             residual = self._plainly(columns, scale)
         for _ in range(rounds):
-            whitening = discrepancy(self.half.runs, residual)
+            whitening = discrepancy(self.half.runs, residual, memory=memory)
             found = self.solve(chosen, whitening)
             residual = found.residual
         return self.solve(chosen, whitening) if rounds == 0 and whitening else found
