@@ -142,12 +142,11 @@ def _sound(runs: Runs, marked: Sequence[BoolArray]) -> BoolArray:
 
 
 def _settling(runs: Runs, recording: int, channels: Sequence[Channel]) -> BoolArray:
-    """Rows of the grid (m, c) too early to tell anything."""
-    programme, time = runs.programmes[recording], runs.times[recording]
-    since = np.full(len(time), np.inf) if programme.poses else time - programme.time[0]
-    longest = MOST_SETTLING * (programme.time[-1] - programme.time[0])
-    first = np.minimum([c.settling for c in channels], longest)
-    return np.asarray(since[:, None] < first)
+    """Rows of the grid (m, c) that anything too early to tell goes into."""
+    programme, time = runs.programmes[recording], runs.programmes[recording].time
+    since = np.full(len(time), np.inf) if programme.poses else time - time[0]
+    first = np.minimum([c.settling for c in channels], MOST_SETTLING * (time[-1] - time[0]))
+    return runs.grids[recording].touched(since[:, None] < first)
 
 
 def _holds(recording: Recording, channel: Channel) -> bool:

@@ -204,6 +204,10 @@ class JointCompliance(Effect):
             raise InvalidInputError(f"target of {cls.kind}", place.name, expected)
         return super().magnitudes_at(place)
 
+    def least(self, nominal: float) -> float:
+        """None: nothing carries a load by less than its spring."""
+        return 0.0
+
     def edit_model(self, model: mujoco.MjModel) -> None:
         """The softer spring."""
         at = change.STIFFNESS.entry(model, self.target)

@@ -10,6 +10,9 @@ import pytest
 from ves_twin.core.errors import InvalidInputError
 from ves_twin.core.recording.recording import Recording
 from ves_twin.diagnosis.forward import Excitation
+from ves_twin.diagnosis.preprocess import preprocess
+from ves_twin.effects.law import Law, LawKind, LawShape
+from ves_twin.machines.compare import compare
 from ves_twin.machines.mjcf.forward import MjcfForward
 from ves_twin.machines.mjcf.machine import Rig
 from ves_twin.machines.mjcf.read import read_recording
@@ -73,13 +76,13 @@ def rig(folder, lead=""):
     return Rig.load(str(path))
 
 
-def cut(folder, values):
+def cut(folder, values, laws=()):
     """Pushes and places of a long run from rest, cut out of its middle."""
     time = STEP * np.arange(600)
     push = np.sin(9.0 * time) + 0.5 * np.sign(np.sin(2.1 * time + 1.0))
     still = {"push": push[:, None], "place": np.zeros((600, 1))}
     plain = rig(folder)
-    place = MjcfForward.of(plain).simulate(Excitation("long", time, still), values)
+    place = MjcfForward.of(plain).simulate(Excitation("long", time, still), values, False, laws)
     rows = slice(BEGIN - LEAD, None)
     table = np.column_stack([STEP * np.arange(600 - BEGIN + LEAD), push[rows], place[rows, 0]])
     path = folder / "cut.csv"
@@ -87,10 +90,16 @@ def cut(folder, values):
     return read_recording(path, plain, None)
 
 
-def off(one, recording: Recording, values):
+def off(one, recording: Recording, values, laws=()):
     forward = MjcfForward.of(one)
     fed = Excitation.of(recording, forward.drive, rate=100.0)
-    return forward.simulate(fed, values)[:, 0] - recording["place"][:, 0]
+    return forward.simulate(fed, values, False, laws)[:, 0] - recording["place"][:, 0]
+
+
+def pushes_from(time: float) -> Law:
+    """Half a newton from a time on [s]."""
+    knots, values = ((0.0, time, time + 0.01, 10.0),), (0.0, 0.0, 0.5, 0.5)
+    return Law("slide", LawKind.EFFORT, LawShape.TABLE, ("time",), knots, values)
 
 
 @pytest.mark.parametrize("values", [DELAY, DELAY | RUBS], ids=["delay", "friction, too"])
@@ -116,11 +125,35 @@ def test_rows_of_the_lead_are_neither_simulated_nor_compared(tmp_path):
     assert np.array_equal(forward.simulate(shifted, DELAY)[:, 0], rows)
 
 
+@pytest.mark.parametrize("values", [{}, RUBS], ids=["compiled", "row by row"])
+def test_a_law_of_time_goes_by_the_recordings_clock(tmp_path, values):
+    recording = cut(tmp_path, values, (pushes_from(STEP * (BEGIN - LEAD) + 2.0),))
+    one, law = rig(tmp_path, 'lead = "0.4 s"'), pushes_from(2.0)
+    assert np.max(np.abs(off(one, recording, values, (law,))[LEAD:])) < 1e-3
+    late = off(one, recording, values, (pushes_from(2.4),))
+    assert np.max(np.abs(late[LEAD:])) > 0.05
+
+
+def test_what_goes_into_a_denser_logs_low_pass_is_not_compared_either(tmp_path):
+    """Half the rate of the log: five rows beyond the lead have some of its rows in them."""
+    recording = cut(tmp_path, DELAY)
+    forward = MjcfForward.of(rig(tmp_path, 'lead = "0.4 s"'))
+    data = preprocess(forward, [recording], rate=50.0)
+    shifted = np.where(recording.time < LEAD * STEP - 1e-9, 1.0, 0.0)[:, None]
+    moved = {**recording.signals, "place": recording["place"] + shifted}
+    other = preprocess(forward, [replace(recording, signals=moved)], rate=50.0)
+    kept = data.runs.kept
+    assert np.array_equal(data.measured[kept], other.measured[kept])
+    assert np.count_nonzero(~kept) == LEAD // 2 + 1
+
+
 def test_a_lead_that_leaves_too_little_is_refused(tmp_path):
     recording = cut(tmp_path, DELAY)
     one = rig(tmp_path, 'lead = "1 s"')
     with pytest.raises(InvalidInputError, match=r"drive\.lead.*1 s of 4\.39 s.*20 % of each"):
         started(one, [recording])
+    with pytest.raises(InvalidInputError, match=r"drive\.lead.*1 s of 4\.39 s.*20 % of each"):
+        compare([recording], str(tmp_path / "slide12.toml"))
     assert started(rig(tmp_path, 'lead = "0.4 s"'), [recording], [])[1] == ((recording,), ())
 
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import mujoco
 import numpy as np
 import pytest
@@ -12,7 +14,7 @@ from ves_twin.diagnosis.forward import Excitation
 from ves_twin.effects import JointCompliance
 from ves_twin.effects.element import Element
 from ves_twin.effects.place import Place
-from ves_twin.machines.mjcf.description import Mode
+from ves_twin.machines.mjcf.description import Mode, Setting
 from ves_twin.machines.mjcf.forward import MjcfForward
 
 INNER = slice(200, -200)
@@ -78,6 +80,27 @@ def test_a_joint_without_a_spring_has_no_compliance():
     place = Place(Element.JOINT, "swing", effort=1.0, speed=1.0, travel=1.0)
     with pytest.raises(InvalidInputError, match=r"joint_compliance.*swing.*has a stiffness"):
         JointCompliance.magnitudes_at(place)
+
+
+def with_rail(machine, **changes):
+    """The machine's description with a stiffness of the rail, or anything else."""
+    return replace(machine, description=machine.description.model_copy(update=changes))
+
+
+def test_a_spring_that_was_fitted_away_still_has_a_compliance_in_the_library(machine):
+    gone = Setting(joint="rail", attribute="stiffness", value=0.0, sd=1.0)
+    kept = [p for p in machine.description.parameters if p.joint != "rail"]
+    one = with_rail(machine, parameters=(*kept, gone))
+    fed = programme()
+    assert "joint_compliance@rail" in {h.label for h in MjcfForward.of(one).hypotheses}
+    softer = change(one, fed, **{"joint_compliance@rail:compliance": 1.0})["drive.force"]
+    assert not np.any(softer[INNER])
+
+
+def test_a_compliance_below_zero_is_refused(machine):
+    one = with_rail(machine, present={"joint_compliance": {"rail": {"compliance": -0.3}}})
+    with pytest.raises(InvalidInputError, match=r"joint_compliance\.rail\.compliance.*at least 0"):
+        one.check()
 
 
 def test_friction_by_load_is_a_share_of_what_the_joint_carries(machine):

@@ -91,18 +91,16 @@ class Builder:
             present: trials that are at work there.
             known: labels of the causes that were put to proof before.
         """
-        found, first = list[Offer](), set[frozenset[int]]()
         begin = _places(halves, present)
-        path = PlainSelector(halves.regression).path(begin)
         ahead = Selector(halves.regression).run(begin)
-        ways: tuple[tuple[Way, list[int]], ...] = ((Selector, ahead), (PlainSelector, path[-1]))
-        for way, chosen in ways:
-            if frozenset(chosen) in first:
-                continue
-            if found and self.fitted.runs.budget.skips("causes chosen by plain squares"):
-                return found
-            first.add(frozenset(chosen))
-            found.append(self.offer(*self.settled(way, halves, chosen, point), known))
+        found = [self.offer(*self.settled(Selector, halves, ahead, point), known)]
+        if self.fitted.runs.budget.skips("causes chosen by plain squares"):
+            return found
+        path = PlainSelector(halves.regression).path(begin)
+        known = found[-1].known
+        if set(path[-1]) != set(ahead):
+            plainly = self.settled(PlainSelector, halves, path[-1], point)
+            found.append(self.offer(*plainly, known))
             known = found[-1].known
         few, known = best_proved(halves, path, known)
         labels = frozenset(halves.regression.trials[n].cause.label for n in few)

@@ -23,6 +23,9 @@ predictions are in single precision."""
 STEPS = 100
 """Trust-region steps at most: the numbers of a valve took 3 to 47 from eight starts."""
 
+BETTER = "better fits of causes together"
+"""What is left out where the runs are spent."""
+
 
 def converged(
     evidence: Evidence, causes: tuple[Hypothesis, ...], point: FloatArray, shift: FloatArray
@@ -47,13 +50,15 @@ def converged(
     local = linearise(runs, np.where(runs.sd > 0.0, point, 0.0))
     fit = refine(evidence, causes, shift, local, 1)
     for _ in range(AGAIN):
-        if runs.budget.skips("better fits of causes together"):
+        if runs.budget.skips(BETTER):
             return fit
         before, local = fit.chi2, linearise(runs, fit.shift)
         fit = refine(evidence, causes, fit.shift, local, 0, fit.step_share)
         if before - fit.chi2 < WORTH * before:
             break
-    there = _descended(evidence, fit) if causes and np.isfinite(fit.chi2) else None
+    if not causes or not np.isfinite(fit.chi2) or runs.budget.skips(BETTER):
+        return fit
+    there = _descended(evidence, fit)
     if there is None:
         return fit
     other = refine(evidence, causes, there, linearise(runs, there), 0, fit.step_share)
@@ -79,13 +84,18 @@ def _descended(evidence: Evidence, fit: Fit) -> FloatArray | None:
     columns = evidence.whitening.apply(fit.local.columns[[*mine, len(runs.nuisances)]]).T
     factor = cho_factor(columns.T @ columns + np.eye(len(sd)))
     low, high = runs.low[free], runs.high[free]
+    begin = np.clip(fit.sizes, low, high)
+    unit = np.maximum(np.abs(begin), 0.1 * (high - low))
 
     def left(sizes: FloatArray) -> FloatArray:
         """Whitened, the pull of commissioning errors behind (samples + errors,); nan if it failed.
 
         The trust region shrinks then.
+
+        Args:
+            sizes: in their units.
         """
-        rows = runs.one(runs.depart(fit.shift, free, sizes))
+        rows = runs.one(runs.depart(fit.shift, free, sizes * unit))
         share = np.float32(fit.step_share) * fit.local.columns[-1]
         z = evidence.whitening.apply(evidence.measured - rows - share)
         if not np.all(np.isfinite(z)):
@@ -96,17 +106,15 @@ def _descended(evidence: Evidence, fit: Fit) -> FloatArray | None:
     def slopes(sizes: FloatArray) -> FloatArray:
         """Of that by each size, to the side where there is room; none where the plant fails."""
         base, found = left(sizes), list[FloatArray]()
-        for n, reach in enumerate(STEP * np.maximum(np.abs(sizes), 0.1 * (high - low))):
+        for n, reach in enumerate(STEP * np.maximum(np.abs(sizes), 0.1 * (high - low) / unit)):
             end = sizes.copy()
-            end[n] += reach if sizes[n] + reach <= high[n] else -reach
+            end[n] += reach if sizes[n] + reach <= high[n] / unit[n] else -reach
             found.append((left(end) - base) / (end[n] - sizes[n]))
         return np.nan_to_num(np.stack(found, axis=1))
 
-    begin = np.clip(fit.sizes, low, high)
-    unit = np.maximum(np.abs(begin), 0.1 * (high - low))
     least = 0.5 * (1.0 - WORTH) * fit.chi2
+    bounds = (low / unit, high / unit)
     found = least_squares(
-        left, begin, slopes, (low, high), ftol=WORTH, xtol=None, gtol=None, x_scale=unit,
-        max_nfev=STEPS,
-    )  # fmt: skip
-    return runs.depart(fit.shift, free, found.x) if found.cost < least else None
+        left, begin / unit, slopes, bounds, ftol=WORTH, xtol=None, gtol=None, max_nfev=STEPS
+    )
+    return runs.depart(fit.shift, free, found.x * unit) if found.cost < least else None

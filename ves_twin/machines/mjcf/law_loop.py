@@ -48,7 +48,7 @@ def lawful_rows(
 
     Args:
         model: whose physics.
-        data: in its first state.
+        data: in its first state, at its time.
         commands: held over a row.
         steady: further efforts (nv,), the same all along.
         steps: of the model in a row.
@@ -57,7 +57,8 @@ def lawful_rows(
     path = np.zeros((len(commands), model.nq + model.nv))
     sensed = np.zeros((len(commands), model.nsensordata))
     _rows(
-        address_of("mj_step"), *handles(model, data), steps, float(model.opt.timestep),
+        address_of("mj_step"), *handles(model, data), steps, float(data.time),
+        float(model.opt.timestep),
         np.ascontiguousarray(commands), steady, data.qpos, data.qvel, data.ctrl,
         data.qfrc_applied, data.qfrc_smooth, data.sensordata, laws,
         np.zeros(model.nv), path, sensed,
@@ -67,7 +68,7 @@ def lawful_rows(
 
 @compiled
 def _rows(
-    mj_step: int, model: int, data: int, steps: int, period: float,
+    mj_step: int, model: int, data: int, steps: int, begin: float, period: float,
     commands: FloatArray, steady: FloatArray, qpos: FloatArray, qvel: FloatArray,
     ctrl: FloatArray, applied: FloatArray, smooth: FloatArray, sensordata: FloatArray,
     laws: CompiledLaws, own: FloatArray, path: FloatArray, sensed: FloatArray,
@@ -78,7 +79,7 @@ def _rows(
         path[k, width:] = qvel
         ctrl[:] = commands[k]
         for n in range(steps):
-            law_efforts((k * steps + n) * period, qpos, qvel, ctrl, smooth - own, laws, own)
+            law_efforts(begin + (k * steps + n) * period, qpos, qvel, ctrl, smooth - own, laws, own)
             applied[:] = steady + own
             call_engine(mj_step, model, data)
             if n == 0:

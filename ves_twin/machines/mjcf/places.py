@@ -96,14 +96,20 @@ def _joint(target: str, told: RigDescription, model: mujoco.MjModel) -> Place:
     hinge = found == SINGLE[0]
     span = told.typical.joint.get(target, Span())
     what = f"typical.joint.{target}"
+    effort = _positive(span.effort, "N*m" if hinge else "N", f"{what}.effort")
+    travel = _positive(span.travel, "rad" if hinge else "m", f"{what}.travel")
+    stiffness = float(model.jnt_stiffness[model.joint(target).id])
+    springs = {p.joint for p in told.parameters if p.attribute == "stiffness"}
+    if not stiffness and target in springs:
+        stiffness = effort / travel  # a spring that was fitted away is still one
     return Place(
         Element.JOINT,
         target,
         hinge=hinge,
-        effort=_positive(span.effort, "N*m" if hinge else "N", f"{what}.effort"),
+        effort=effort,
         speed=typical_speed(target, told, model),
-        travel=_positive(span.travel, "rad" if hinge else "m", f"{what}.travel"),
-        stiffness=float(model.jnt_stiffness[model.joint(target).id]),
+        travel=travel,
+        stiffness=stiffness,
     )
 
 

@@ -52,7 +52,8 @@ def started(rig: Rig, *groups: Sequence[Recording]) -> tuple[Rig, Groups]:
         InvalidInputError: a lead that leaves too little of a recording.
     """
     found = tuple(tuple(group) for group in groups)
-    _check_lead(rig, found)
+    for one in (one for group in found for one in group):
+        lead_rows(rig, one.time)
     for joint, start in rig.description.start.items():
         if start.elsewhere is None:
             continue
@@ -69,11 +70,18 @@ def started(rig: Rig, *groups: Sequence[Recording]) -> tuple[Rig, Groups]:
 
 
 def lead_rows(rig: Rig, time: FloatArray) -> int:
-    """Rows before the first one that is simulated under recorded commands at times (n,)."""
-    if not rig.description.drive.lead or rig.description.drive.mode is not Mode.CONTROL:
+    """Rows before the first one that is simulated under recorded commands at times (n,).
+
+    Raises:
+        InvalidInputError: a lead that leaves too little of them.
+    """
+    lead, length = rig.description.drive.lead, float(np.ptp(time))
+    if not lead or rig.description.drive.mode is not Mode.CONTROL:
         return 0
-    period = (time[-1] - time[0]) / (len(time) - 1)
-    return round(rig.description.drive.lead / float(period))
+    if lead > MOST_SETTLING * length:
+        expected = f"{percent(MOST_SETTLING)} of each recording at most"
+        raise InvalidInputError("drive.lead", f"{lead:g} s of {length:.4g} s", expected)
+    return round(lead * (len(time) - 1) / length)
 
 
 def first_state(column: FloatArray, period: float, corner: float) -> tuple[float, float]:
@@ -97,14 +105,6 @@ def first_state(column: FloatArray, period: float, corner: float) -> tuple[float
     time = period * np.arange(count)
     position, speed = polyfit(time, column[:count], min(3, count - 1))[:2]
     return float(position), float(speed)
-
-
-def _check_lead(rig: Rig, groups: Groups) -> None:
-    lead = rig.description.drive.lead
-    lengths = [float(np.ptp(one.time)) for group in groups for one in group]
-    if lead and lengths and lead > MOST_SETTLING * min(lengths):
-        expected = f"{percent(MOST_SETTLING)} of each recording at most"
-        raise InvalidInputError("drive.lead", f"{lead:g} s of {min(lengths):.4g} s", expected)
 
 
 @dataclass(frozen=True)

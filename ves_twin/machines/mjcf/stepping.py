@@ -125,6 +125,7 @@ def _failed(data: mujoco.MjData) -> bool:
 def _start(work: Work, first: int) -> mujoco.MjData:
     """State of the first row that is simulated."""
     data = work.data
+    data.time = first * work.programme.period
     for joint in work.rig.description.start:
         at = work.model.joint(joint)
         position, speed = _measured_start(work, joint, first)
