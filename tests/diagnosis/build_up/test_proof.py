@@ -14,7 +14,7 @@ from ves_twin.diagnosis.build_up.halves import halves_at, split
 from ves_twin.diagnosis.build_up.inseparable import inseparable
 from ves_twin.diagnosis.build_up.nearest import nearest
 from ves_twin.diagnosis.build_up.paired import Difference, paired
-from ves_twin.diagnosis.build_up.proof import FALSE_SHARE, STRAINED, prove
+from ves_twin.diagnosis.build_up.proof import FALSE_SHARE, STRAINED, Bench, prove
 from ves_twin.diagnosis.build_up.report import report_of
 from ves_twin.diagnosis.build_up.select import Selector
 from ves_twin.diagnosis.build_up.spanned import spanned_by
@@ -354,3 +354,16 @@ def test_what_passes_beside_more_is_not_lost_as_they_go(monkeypatch, without, st
     found = prove(two.regression, two.held, [first, second], more=6)
     assert (second in found.proved) is stays
     assert first in found.dropped
+
+
+def test_large_errors_widen_the_scale_where_they_count_by_their_squares():
+    """A tenth of the rows with ten times the error: the rms grows by three, the middle hardly."""
+    two = halves(Linear(("viscous",)), {"viscous@a:size": 0.2}, 12)
+    target = two.held.target.copy()
+    target[::10] *= 10.0
+    held = replace(two.held, target=target)
+    fit = two.regression.fit([0], memory=False)
+    robust, even = (Bench(fit, held, two.regression, even).scale([0]) for even in (False, True))
+    plain = Bench(fit, two.held, two.regression, even=True).scale([0])
+    assert np.all(even > 2.5 * plain)
+    assert np.all(robust < 1.4 * plain)
