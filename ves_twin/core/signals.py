@@ -5,6 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from enum import StrEnum
 
+from ves_twin.core.errors import InvalidInputError
+
 
 class Role(StrEnum):
     """What a signal is to a controller or a diagnosis; `truth` is for analysis only."""
@@ -15,9 +17,17 @@ class Role(StrEnum):
     TRUTH = "truth"
 
 
+TIME = "t"
+"""Column of the times in every file."""
+
+
 @dataclass(frozen=True)
 class Signal:
-    """One named signal: `axes` give its columns, `units` the unit of each column."""
+    """One named signal: `axes` give its columns, `units` the unit of each column.
+
+    Raises:
+        InvalidInputError: a column by the name of that of the times, `t`.
+    """
 
     name: str
     axes: tuple[str, ...]
@@ -25,6 +35,10 @@ class Signal:
     role: Role
     frame: str
     meaning: str
+
+    def __post_init__(self) -> None:
+        if TIME in self.columns:
+            raise InvalidInputError("name of a signal", TIME, f"another one: {TIME} is the time")
 
     @property
     def width(self) -> int:

@@ -1,14 +1,16 @@
 """Any recording comes back from every kind of file as it was."""
 
 import numpy as np
+import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
+from ves_twin.core.errors import InvalidInputError
 from ves_twin.core.recording.files import load_recording, save_recording
 from ves_twin.core.recording.recording import Event, Recording, RecordingInfo
 from ves_twin.core.recording.stream import STREAM_NAME, RecordingStream
-from ves_twin.core.signals import SIGNALS, Role, Signal
+from ves_twin.core.signals import SIGNALS, TIME, Role, Signal
 from ves_twin.data.export import FORMATS, export_recording
 from ves_twin.data.open_log import open_log
 
@@ -25,7 +27,8 @@ UNITS = st.sampled_from(["m", "rad", "N*m", "A", "1", "degC"])
 
 @st.composite
 def own_signals(draw):
-    name, width = draw(NAMES), draw(st.integers(1, 4))
+    width = draw(st.integers(1, 4))
+    name = draw(NAMES.filter(lambda name: width > 1 or name != TIME))
     axes = tuple(f"{k + 1}" for k in range(width))
     units = tuple(draw(UNITS) for _ in range(width))
     role = draw(st.sampled_from(list(Role)))
@@ -67,6 +70,12 @@ def assert_same(found, meant):
     assert same_bits(found.time, meant.time)
     for name, values in meant.signals.items():
         assert same_bits(found[name], values), name
+
+
+def test_no_signal_has_the_column_of_the_times():
+    with pytest.raises(InvalidInputError, match=r"name of a signal.*'t'.*is the time"):
+        Signal(TIME, ("x",), ("m",), Role.MEASUREMENT, "", "")
+    assert Signal(TIME, ("x", "y"), ("m", "m"), Role.MEASUREMENT, "", "").columns == ("t.1", "t.2")
 
 
 @MANY
