@@ -367,3 +367,18 @@ def test_large_errors_widen_the_scale_where_they_count_by_their_squares():
     plain = Bench(fit, two.held, two.regression, even=True).scale([0])
     assert np.all(even > 2.5 * plain)
     assert np.all(robust < 1.4 * plain)
+
+
+@pytest.mark.parametrize("errors", proof_module.ERRORS)
+def test_what_spans_a_cause_is_told_by_independent_rows_whatever_proves_it(monkeypatch, errors):
+    """Friction that is less than the model error: dry friction does as well beside slow error."""
+    rms = np.sqrt(np.mean(np.square(shape("viscous", motion(1).drive["q"][:, 0]))))
+    plant = Linear(("coulomb", "viscous"))
+    two = halves(plant, {"viscous@a:size": 0.1}, 12, error=0.2)
+    assert 0.1 * rms < 0.2
+    labels = [trial.cause.label for trial in two.regression.trials]
+    there = labels.index("viscous@a")
+    monkeypatch.setattr(proof_module, "ERRORS", (errors,))
+    proof = prove(two.regression, two.held, [there])
+    assert proof.proved == (there,)
+    assert [labels[n] for n in spanned_by(proof, there)] == ["coulomb@a"]

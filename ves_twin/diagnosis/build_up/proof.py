@@ -30,10 +30,10 @@ all that are in as well: columns of a gain hold what causes do, and 95 % less ga
 all frictions of an axis (EMPS, as it is drafted)."""
 
 ERRORS = ((True, False), (False, False), (False, True))
-"""What is compared, (memory, even): one-step prediction errors or plain ones, large errors by their
-logarithms or evenly, by their squares. Plain errors are large where a model is wrong, and by
-logarithms that is lost (oil that is a spring, where a cylinder's load changes: p of 0.5 for 0.03);
-by squares a double pendulum's link is. Squares of one-step errors lost TX40's coupling."""
+"""What is compared, (memory, even): one-step prediction errors or plain ones, scaled by the middle
+or evenly, by their rms. Plain errors are large where a model is wrong: by the middle that counts
+for little (oil that is a spring, where a cylinder's load changes: p of 0.5 for 0.03), by the rms
+a double pendulum's link is lost. Squares of one-step errors lost TX40's coupling."""
 
 ACTS = 0.05
 """Share of its strongest channel's part from which a trial counts as acting on a channel."""
@@ -51,7 +51,7 @@ class Bench:
         fit: of all trials of the bench, on the fitted half.
         held: the held-out half.
         regression: of the fitted half.
-        even: whether the scale of errors is their rms, so that large ones count by their squares.
+        even: whether the scale of errors is their rms, so that large ones count for more.
     """
 
     fit: LinearFit
@@ -205,7 +205,7 @@ class Proof:
 
     Attributes:
         proved: trials, in the order in which they were chosen.
-        differences: paired test of each of them, all others beside.
+        differences: paired test of each of them, beside those that were in when it passed best.
         dropped: trials that were put to proof and not proved, with p when they went.
         tested: trials that were put to proof in all.
         limit: largest p that the rate allows them.
