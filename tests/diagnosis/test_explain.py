@@ -16,6 +16,7 @@ from ves_twin.diagnosis.judge import (
     CLEAR,
     SLACK,
     _commissioning,
+    _held,
     _ranked,
     _second,
     judge,
@@ -382,6 +383,24 @@ def test_an_empty_library_explains_nothing():
     clean = Toy().simulate(FED, ONE).astype(np.float32)
     first = assess(clean, empty, whitening_declared(empty.base.runs), 15.0, 5.0, 4.0)
     assert explain(first, LEVELS, QUICK) is None
+
+
+def test_every_fit_near_the_first_is_held_where_that_costs_less_than_a_further_cause(looked):
+    """Whichever of them is the most probable in the end, its tolerances are those of a rig."""
+    record = looked(STRAINED)
+    evidence, base = record.evidence, record.screen.bank.base
+    causes = [h for h in record.screen.bank.hypotheses if h.effect in ("friction", "ripple")]
+    fits = [refine(evidence, (cause,), evidence.runs.origin, base) for cause in causes]
+    ranked = sorted(fits, key=lambda fit: fit.chi2)
+    limit = pull_limit(record.screen.bank, QUICK.alpha)
+    assert [fit.pull > limit for fit in ranked] == [True, True]
+    held = _held(evidence, ranked, limit, clear=1e6)
+    assert [fit.pull <= limit for fit in held] == [True, True]
+    assert held[0].chi2 <= held[1].chi2
+    assert _held(evidence, ranked, limit, clear=1e-6) == ranked
+    apart = 0.5 * (ranked[1].chi2 - ranked[0].chi2)
+    again = _held(evidence, ranked, limit, clear=apart)
+    assert any(fit is ranked[1] for fit in again)  # too far behind to be the most probable
 
 
 def test_progress_is_a_share_of_each_stage(looked):

@@ -133,12 +133,12 @@ def _relaxed(evidence: Evidence, fit: Fit) -> Fit:
 
 
 def _held(evidence: Evidence, ranked: list[Fit], limit: float, clear: float) -> list[Fit]:
-    """Fits by rising chi^2, the first with commissioning errors that a rig in order may have.
+    """Fits by rising chi^2, those near the first with errors that a rig in order may have.
 
     An error beyond the limit is one more thing that is wrong, and is taken for that where it takes
     as much off chi^2 as a further cause must. Less than that the simulation of a loud cause may be
     wrong by: 4.1 sd of errors make up for the integrator beside a joint spring of 3800 sigma, where
-    3.5 are allowed. Rivals that would then come first are held likewise.
+    3.5 are allowed. Whatever may be the most probable in the end is held, not the first alone.
 
     Args:
         evidence: whose chi^2 counts.
@@ -147,16 +147,14 @@ def _held(evidence: Evidence, ranked: list[Fit], limit: float, clear: float) -> 
         clear: chi^2 that a further cause must take off.
     """
     within = limit * (1.0 - 1e-9)  # errors that are held stand at the limit, to rounding
-    for _ in ranked:
-        fit = ranked[0]
-        if fit.pull <= limit:
-            break
-        at = (fit.shift, fit.local, 0, fit.step_share)
-        held = refine(evidence, fit.causes, *at, farthest=within)
-        if held.chi2 > fit.chi2 + clear:
-            break
-        ranked = sorted([held, *ranked[1:]], key=_chi2)
-    return ranked
+    found = []
+    for fit in ranked:
+        if fit.pull > limit and fit.chi2 <= ranked[0].chi2 + clear:
+            at = (fit.shift, fit.local, 0, fit.step_share)
+            held = refine(evidence, fit.causes, *at, farthest=within)
+            fit = held if held.chi2 <= fit.chi2 + clear else fit
+        found.append(fit)
+    return sorted(found, key=_chi2)
 
 
 def _commissioning(
