@@ -19,11 +19,10 @@ from ves_twin.diagnosis.whitening import whitening_declared
 HIDDEN = {"viscous@a:size": 1.0, "coulomb@b:size": 0.8}
 
 
-@pytest.fixture(scope="module")
-def proved():
+def fitted(hidden):
     """Two causes that held-out data prove, their full fit, and both halves."""
     plant = Linear(kinds=("viscous", "coulomb"))
-    one, two = (seen(plant, recorded(plant, HIDDEN, seed)) for seed in (5, 6))
+    one, two = (seen(plant, recorded(plant, hidden, seed)) for seed in (5, 6))
     runs = one.runs
     halves = halves_at(one, two, runs.origin, plant.hypotheses)
     labels = [trial.cause.label for trial in halves.regression.trials]
@@ -34,6 +33,11 @@ def proved():
     evidence = Evidence(runs, one.measured, whitening_declared(runs))
     fit = refine(evidence, causes, runs.origin, linearise(runs, runs.origin), 1)
     return proof, fit, runs, two
+
+
+@pytest.fixture(scope="module")
+def proved():
+    return fitted(HIDDEN)
 
 
 def moved(proof, fit, runs, size):
@@ -68,3 +72,18 @@ def test_a_size_at_which_the_plant_fails_is_not_taken_for_idle(proved, monkeypat
             return rows if np.any(shift[first]) else np.full_like(rows, np.nan)
 
     assert idle(proof, runs, replace(held, runs=Failing()), fit) is None
+
+
+def test_a_cause_that_is_there_and_earns_next_to_nothing_is_told(monkeypatch):
+    """Surely there, at p of less than 1 %, and worth a few hundredths of the squares."""
+    proof, fit, runs, held = fitted({"viscous@a:size": 1.0, "coulomb@b:size": 0.03})
+    small = proof.proved[1]
+    beside, without = (proof.bench.bare(n)[1] for n in (proof.proved, proof.proved[:1]))
+    share = without / beside - 1.0
+    assert 0.0 < share < 0.05
+    assert proof.differences[small].p < 0.01
+    place = "ves_twin.diagnosis.build_up.idle.EARNS"
+    monkeypatch.setattr(place, 0.1 * share)
+    assert idle(proof, runs, held, fit) is None
+    monkeypatch.setattr(place, 1.1 * share)
+    assert idle(proof, runs, held, fit) == small

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import pytest
@@ -73,3 +73,20 @@ def told(speed: float) -> set[str]:
 @pytest.mark.parametrize(("speed", "label"), [(30.0, "coulomb@a"), (0.6, "falling@a")])
 def test_friction_that_falls_beyond_the_speeds_of_a_record_is_coulomb_friction(speed, label):
     assert told(speed) == {label}
+
+
+def test_a_simpler_cause_that_was_dropped_before_counts_once_and_is_proved_now():
+    plant, hidden = Falling(), {"falling@a:level": 0.8, "falling@a:speed": 30.0}
+    one, two = (seen(plant, recorded(plant, hidden, seed)) for seed in (5, 6))
+    labels = {h.label: h for h in plant.hypotheses}
+    present = (Trial(labels["falling@a"], (0.8, 30.0), positive=True),)
+    halves = halves_at(one, two, one.runs.origin, plant.hypotheses, present)
+    trials = halves.regression.trials
+    falling = next(n for n, trial in enumerate(trials) if trial in present)
+    dry = next(n for n, trial in enumerate(trials) if trial.cause.label == "coulomb@a")
+    proof = prove(halves.regression, halves.held, [falling])
+    before = replace(proof, dropped={dry: 0.3}, tested=2)
+    after = simpler(before)
+    assert after.proved == (dry,)
+    assert dry not in after.dropped
+    assert after.tested == before.tested

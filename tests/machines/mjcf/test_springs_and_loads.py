@@ -97,6 +97,19 @@ def test_a_spring_that_was_fitted_away_still_has_a_compliance_in_the_library(mac
     assert not np.any(softer[INNER])
 
 
+def test_the_largest_compliance_of_a_spring_that_was_nearly_fitted_away_is_that_of_a_soft_one(
+    machine,
+):
+    def largest(value):
+        left = Setting(joint="rail", attribute="stiffness", value=value, sd=1.0)
+        kept = [p for p in machine.description.parameters if p.joint != "rail"]
+        forward = MjcfForward.of(with_rail(machine, parameters=(*kept, left)))
+        return {h.label: h.largest[0] for h in forward.hypotheses}["joint_compliance@rail"]
+
+    assert largest(1e-9) == pytest.approx(largest(0.0), rel=1e-9)
+    assert largest(1e6) < largest(1e-9)
+
+
 def test_a_compliance_below_zero_is_refused(machine):
     one = with_rail(machine, present={"joint_compliance": {"rail": {"compliance": -0.3}}})
     with pytest.raises(InvalidInputError, match=r"joint_compliance\.rail\.compliance.*at least 0"):

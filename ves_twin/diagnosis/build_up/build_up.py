@@ -112,7 +112,8 @@ def _near(builder: Builder, halves: Halves, proof: Proof) -> Fit | None:
     if not trials:
         return None
     evidence = builder.evidence(regression.fit(trials).residual, memory=False)
-    few = replace(proof, proved=trials)
+    bench = replace(proof.bench, fit=regression.solve(trials, proof.bench.fit.whitening))
+    few = replace(proof, proved=trials, bench=bench)
     left, fit = _at_work(halves, few, origin, evidence, builder.held)
     return fit if left.proved else None
 

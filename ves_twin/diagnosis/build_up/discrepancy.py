@@ -41,6 +41,7 @@ def discrepancy(
     covariance[quiet] = declared[quiet]
     covariance[:, 0] *= 1.0 + white
     covariance[:, 1:] *= memory
+    declared[:, 1:] *= memory
     copies, width = len(runs.slices), len(channels)
     plain = Whitening(
         runs,

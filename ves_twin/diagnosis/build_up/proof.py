@@ -51,13 +51,13 @@ class Bench:
         fit: of all trials of the bench, on the fitted half.
         held: the held-out half.
         regression: of the fitted half.
-        even: whether the scale of errors is their rms, so that large ones count for more.
+        errors: which are compared, one of ERRORS.
     """
 
     fit: LinearFit
     held: Half
     regression: Regression
-    even: bool = False
+    errors: tuple[bool, bool] = ERRORS[0]
 
     @cached_property
     def own_colour(self) -> Whitening:
@@ -176,7 +176,7 @@ class Bench:
     def scale(self, trials: Sequence[int]) -> FloatArray:
         """Scale of the innovations that a subset leaves (c,): robust, or their rms."""
         left = np.where(self.whole, self.innovations(trials), np.nan)
-        if self.even:
+        if self.errors[1]:
             return np.asarray(np.sqrt(np.nanmean(np.square(left), axis=0)) + 1e-30)
         return np.asarray(np.nanmedian(np.abs(left), axis=0) / 0.6745 + 1e-30)
 
@@ -225,6 +225,7 @@ def prove(
     held: Half,
     chosen: Sequence[int],
     more: int = 0,
+    errors: tuple[bool, bool] | None = None,
 ) -> Proof:
     """Drop the least proved trial until the false-discovery rate is kept by all that stay.
 
@@ -244,11 +245,12 @@ def prove(
         held: the held-out half.
         chosen: trials that are put to proof.
         more: trials that were put to proof before, which count for the rate.
+        errors: that are compared; those of ERRORS that show these trials best if None.
     """
     tested = len(chosen) + more
     kept, dropped = list(chosen), dict[int, float]()
     back: list[int] | None = None
-    whole = replace(_sharpest(regression, chosen), held=held)
+    whole = replace(_sharpest(regression, chosen, (errors,) if errors else ERRORS), held=held)
     if not whole.whole.any():
         limit = FALSE_SHARE / max(tested, 1)
         return Proof((), {}, dict.fromkeys(kept, 1.0), tested, limit, whole)
@@ -277,16 +279,18 @@ def prove(
                 found[n] = min(before[n], found[n], key=lambda one: one.p)
 
 
-def _sharpest(regression: Regression, chosen: Sequence[int]) -> Bench:
-    """The bench on the fitted half by those ERRORS that show the causes of a choice best.
+def _sharpest(
+    regression: Regression, chosen: Sequence[int], kinds: Sequence[tuple[bool, bool]]
+) -> Bench:
+    """The bench on the fitted half by those errors that show the causes of a choice best.
 
     None serves all: a slow cause hardly shows in one-step errors, and plain errors have few
     independent rows. What the fitted half says of it costs held-out rows nothing: the logarithms of
     p there, each as far as one test of many asks.
     """
     enough = FALSE_SHARE / max(len(chosen), 1)
-    fits = {memory: regression.fit(chosen, memory=memory) for memory in (True, False)}
-    benches = [Bench(fits[memory], regression.half, regression, even) for memory, even in ERRORS]
+    fits = {memory: regression.fit(chosen, memory=memory) for memory in {kind[0] for kind in kinds}}
+    benches = [Bench(fits[kind[0]], regression.half, regression, kind) for kind in kinds]
 
     def shown(bench: Bench) -> float:
         return -sum(float(np.log(max(test.p, enough))) for test in _each(bench, chosen).values())

@@ -25,11 +25,14 @@ def simpler(proof: Proof) -> Proof:
         for other in _fewer(told, n):
             names = [other if k == n else k for k in told.proved]
             bench = told.bench
-            gone = told.tested - len(names)  # one trial is new, the others were put to proof
-            tried = prove(bench.regression, bench.held, names, more=gone + 1)
+            new = other not in told.dropped  # the others were put to proof
+            gone = told.tested - len(names)
+            more = gone + new
+            tried = prove(bench.regression, bench.held, names, more, bench.errors)
             told = replace(told, tested=tried.tested)
             if set(tried.proved) == set(names):
-                told = replace(tried, dropped={**told.dropped, **tried.dropped})
+                dropped = {k: p for k, p in told.dropped.items() if k != other}
+                told = replace(tried, dropped={**dropped, **tried.dropped})
                 break
     return told
 

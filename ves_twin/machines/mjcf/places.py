@@ -18,6 +18,9 @@ from ves_twin.machines.mjcf.joint_units import joint_units
 SINGLE = (int(mujoco.mjtJoint.mjJNT_HINGE), int(mujoco.mjtJoint.mjJNT_SLIDE))
 """Joints that effects of joints are made for."""
 
+SOFTEST = 1e-3
+"""Of the typical effort over the typical travel: a stated spring is not taken for a softer one."""
+
 
 def place_of(effect: Effect, told: RigDescription, model: mujoco.MjModel) -> Place:
     """The place of an effect of a kind that a machine of an MJCF model can have.
@@ -99,9 +102,11 @@ def _joint(target: str, told: RigDescription, model: mujoco.MjModel) -> Place:
     effort = _positive(span.effort, "N*m" if hinge else "N", f"{what}.effort")
     travel = _positive(span.travel, "rad" if hinge else "m", f"{what}.travel")
     stiffness = float(model.jnt_stiffness[model.joint(target).id])
-    springs = {p.joint for p in told.parameters if p.attribute == "stiffness"}
-    if not stiffness and target in springs:
-        stiffness = effort / travel  # a spring that was fitted away is still one
+    stated = {
+        p.joint for p in told.parameters if p.attribute == "stiffness" and p.value is not None
+    }
+    if target in stated:  # a spring that was fitted away, all of it or nearly, is still one
+        stiffness = max(stiffness, SOFTEST * effort / travel)
     return Place(
         Element.JOINT,
         target,
