@@ -195,8 +195,9 @@ def _processor_time() -> float:
 def _answered(
     recording: Recording, held: Recording, still: Recording, settings: Settings, name: str
 ) -> tuple[dict[str, object] | None, str]:
+    quiet = None if name in OF_VES2 else still  # legs hunt over a count while they stand
     found = diagnose(
-        [recording], OF_VES2.get(name, name), held_out=[held], standstill=still, settings=settings
+        [recording], OF_VES2.get(name, name), held_out=[held], standstill=quiet, settings=settings
     )
     law: LawFinding | None = found.verdict.law
     return (asdict(law) if law else None), found.verdict.verdict.value
