@@ -11,6 +11,7 @@ from toy import Toy, programme, record
 from ves_twin.core.errors import InvalidInputError
 from ves_twin.core.quantity import shares
 from ves_twin.data.quality.check import Check, Grade, failed
+from ves_twin.diagnosis.aliases import Lookalike
 from ves_twin.diagnosis.build_up.result import Inseparable, Left, Proved, Size
 from ves_twin.diagnosis.diagnose import diagnose
 from ves_twin.diagnosis.envelope import ENVELOPE_SD
@@ -28,6 +29,7 @@ from ves_twin.diagnosis.whitening import whitening_declared
 from ves_twin.report.diagnosis.answer import headline, next_step, tone
 from ves_twin.report.diagnosis.basis import gain_words, taken_words
 from ves_twin.report.diagnosis.credibility import Pedigree, credibility
+from ves_twin.report.diagnosis.limits import limit_sentences
 from ves_twin.report.diagnosis.page import diagnosis_page
 from ves_twin.report.diagnosis.pictures import answer_figure
 from ves_twin.report.diagnosis.proved import near_sentence
@@ -458,6 +460,23 @@ def test_a_proved_extension_that_is_not_firm_acts_like_its_name_and_its_stand_in
     page = diagnosis_page(verdict)
     assert "acts like it, or like lag at plant" in page
     assert "Firm: friction at plant" in headline(proof_of(proven, firm=True))
+
+
+def test_where_more_is_wrong_sizes_of_noise_alone_are_not_promised(proven):
+    verdict = proof_of(proven, firm=False)
+    page, sure = diagnosis_page(verdict), diagnosis_page(proven)
+    assert "seen seven times out of ten" in sure
+    assert "seen seven times out of ten" not in page
+    assert "Here it lacks more (out.0: 2 times the noise is left)" in page
+    unknown = replace(proven, verdict=Kind.UNKNOWN)
+    assert "Here it lacks more, so" in diagnosis_page(unknown)
+    pair = Lookalike("friction@plant", "lag@plant", 0.01, "1", 0.2)
+    assert "would be taken for lag" in " ".join(
+        limit_sentences(replace(proven, lookalikes=(pair,)))
+    )
+    said = " ".join(limit_sentences(replace(verdict, lookalikes=(pair,))))
+    assert "would be taken for" not in said
+    assert "Intervals count what is left unexplained" in said
 
 
 def test_what_ends_its_range_is_not_counted_as_proved(proven):

@@ -193,9 +193,10 @@ class Verdict:
     cause or by several together; one alternative unless ambiguous. `gain` is on held-out
     recordings; `forecast` is ahead in time, where a cause's sizes belong to the recorded stretch
     of it. `tuned` are the plant's commissioning numbers at the fit. `lookalikes` say what a named
-    cause could be taken for, and up to which size; `twins` are cosines of all pairs. `quality`
-    has the checks that a recording failed; `alone` what each recording says
-    by itself, where all together have no explanation. `proved` are the causes that held-out data
+    cause could be taken for, and up to which size, and `smallest_findable` which sizes would have
+    shown, both beside noise and tolerances alone; `twins` are cosines of all pairs. `quality` has
+    the checks that a recording failed; `alone` what each recording says by itself, where all
+    together have no explanation. `proved` are the causes that held-out data
     prove one by one, out of `put_to_proof`, with the false-discovery rate that this keeps and the
     largest p that it allows; `unproved` has those of the same choice that were not, with their p;
     `left` is what then stays of each channel, `inseparable` what is known only in combination.
@@ -274,6 +275,11 @@ class Verdict:
                 if self.proved:
                     return self.proving + limit
                 return self.naming([self._name(i) for i in range(len(self.causes))]) + limit
+
+    @property
+    def lacks(self) -> bool:
+        """Whether more is wrong than what was named explains."""
+        return self.verdict in (Kind.PARTIAL, Kind.UNKNOWN)
 
     @property
     def lawful(self) -> str:

@@ -37,6 +37,22 @@ def rival_words(rival: Rival, best: bool) -> str:
     return "needs larger commissioning errors than the best"
 
 
+def findable_sentence(verdict: Verdict) -> str:
+    """What the smallest sizes mean, and what they leave out where more is wrong."""
+    if not verdict.lacks:
+        return (
+            "A cause of this size is seen seven times out of ten by recordings like these; to be"
+            " told from every other it may have to be larger."
+        )
+    ratios = {name: one.rms / one.noise for name, one in verdict.left.items() if one.noise > 0.0}
+    loudest = max(ratios, key=lambda name: ratios[name], default="")
+    told = f" ({loudest}: {digits(ratios[loudest])} times the noise is left)" if loudest else ""
+    return (
+        "These sizes count noise and tolerances alone, as if the model lacked nothing else. Here it"
+        f" lacks more{told}, so that a cause has to be larger to be found."
+    )
+
+
 def limit_sentences(verdict: Verdict) -> tuple[str, ...]:
     """What the verdict does not prove."""
     count = len(verdict.smallest_findable)
@@ -46,7 +62,12 @@ def limit_sentences(verdict: Verdict) -> tuple[str, ...]:
     ]
     if verdict.excluded:
         said.append(f"Not considered, as asked: {', '.join(map(spoken, verdict.excluded))}.")
-    if verdict.causes:
+    if verdict.causes and verdict.lacks:
+        said.append(
+            "Intervals count what is left unexplained, as far as these recordings show it. In"
+            " another motion the machine may differ from the model by more."
+        )
+    elif verdict.causes:
         said.append(
             "Probabilities and intervals hold if the cause is in the library and the model is"
             " otherwise right; they are not probabilities that the machine is as the model says."
@@ -78,7 +99,12 @@ def limit_sentences(verdict: Verdict) -> tuple[str, ...]:
 
 
 def _lookalikes(verdict: Verdict) -> tuple[str, ...]:
-    """What each named cause could be taken for, and up to which size; the worst first."""
+    """What each named cause could be taken for, and up to which size; the worst first.
+
+    Of noise alone, so that it says nothing where more is left unexplained.
+    """
+    if verdict.lacks:
+        return ()
     ranked = sorted(verdict.lookalikes, key=lambda pair: -(pair.beyond or inf))
     said = []
     for pair in ranked[:TOLD]:

@@ -19,7 +19,12 @@ from ves_twin.report.diagnosis.answer import (
 from ves_twin.report.diagnosis.basis import basis_sentences, gain_sentence, rests_on
 from ves_twin.report.diagnosis.credibility import credibility
 from ves_twin.report.diagnosis.law import law_heading, law_parts
-from ves_twin.report.diagnosis.limits import limit_sentences, next_sentences, rival_words
+from ves_twin.report.diagnosis.limits import (
+    findable_sentence,
+    limit_sentences,
+    next_sentences,
+    rival_words,
+)
 from ves_twin.report.diagnosis.pictures import (
     answer_figure,
     cells_figure,
@@ -277,11 +282,7 @@ def _findable(verdict: Verdict) -> list[Html]:
     blind = [spoken(k) for k, f in verdict.smallest_findable.items() if f.value is None]
     rows = [(spoken(label), quantity(f.value, f.unit)) for label, f in known.items()]
     parts = [
-        paragraph(
-            "A cause of this size is seen seven times out of ten by recordings like these; to be"
-            " told from every other it may have to be larger.",
-            "note",
-        ),
+        paragraph(findable_sentence(verdict), "note"),
         table(("cause", "smallest size"), rows),
     ]
     if len(rows) > 3 * SHOWN:
