@@ -1,6 +1,7 @@
 """Protocols of blind suites: rigs in order beside the cases, lacking physics, cuts, next steps."""
 
 import json
+from dataclasses import replace
 from itertools import pairwise
 
 import numpy as np
@@ -30,7 +31,7 @@ from ves_twin.machines.mjcf.forward import MjcfForward
 from ves_twin.machines.mjcf.mjcf_machine import MjcfMachine
 from ves_twin.machines.mjcf.started import start_signal, started
 from ves_twin.suites.answer import answer_suite
-from ves_twin.suites.answers import Answer, write_answers
+from ves_twin.suites.answers import Answer, read_answers, write_answers
 from ves_twin.suites.machine import BlindRig
 from ves_twin.suites.make import make_suite
 from ves_twin.suites.material import Material, Use
@@ -243,6 +244,19 @@ def test_a_rig_in_order_cut_out_of_its_motion_is_in_order(tmp_path):
     found = answer_suite(folder, tmp_path / "answers.json", Settings(nulls=30), silent)
     assert [answer.verdict for answer in found.values()] == ["nothing", "nothing"]
     write_answers({}, tmp_path / "answers.json")
+
+
+@pytest.mark.slow
+def test_two_processes_answer_as_one_does_each_a_case_of_its_own(tmp_path):
+    folder, _ = made(tmp_path, counts={Hidden.NONE: 2, Hidden.SINGLE: 1})
+    told = []
+    for workers in (1, 2):
+        settings = Settings(nulls=30, workers=workers)
+        answers = answer_suite(folder, tmp_path / f"{workers}.json", settings, silent)
+        assert sorted(answers) == sorted(read_answers(tmp_path / f"{workers}.json"))
+        told.append({case: replace(answer, seconds=0.0) for case, answer in answers.items()})
+    assert told[0] == told[1]
+    assert len(told[0]) == 3
 
 
 @pytest.mark.parametrize(

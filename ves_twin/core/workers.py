@@ -5,7 +5,7 @@ from __future__ import annotations
 import multiprocessing
 import os
 from collections.abc import Callable, Iterator, Sequence
-from concurrent.futures import ProcessPoolExecutor
+from concurrent.futures import ProcessPoolExecutor, as_completed
 from contextlib import contextmanager
 from typing import TypeVar
 
@@ -54,11 +54,27 @@ class Workers:
         if self.count == 1 or len(jobs) < 2:
             yield from map(function, jobs)
             return
+        with single_threads():
+            yield from self._started.map(function, jobs, chunksize=chunk)
+
+    def as_done(
+        self, function: Callable[[Job], Result], jobs: Sequence[Job]
+    ) -> Iterator[tuple[int, Result]]:
+        """Numbers of jobs with their results, in the order in which they end."""
+        if self.count == 1 or len(jobs) < 2:
+            yield from ((n, function(job)) for n, job in enumerate(jobs))
+            return
+        with single_threads():
+            waiting = {self._started.submit(function, job): n for n, job in enumerate(jobs)}
+            for future in as_completed(waiting):
+                yield waiting[future], future.result()
+
+    @property
+    def _started(self) -> ProcessPoolExecutor:
         if self._pool is None:
             context = multiprocessing.get_context("spawn")
             self._pool = ProcessPoolExecutor(self.count, mp_context=context)
-        with single_threads():
-            yield from self._pool.map(function, jobs, chunksize=chunk)
+        return self._pool
 
     def collect(
         self,

@@ -123,5 +123,5 @@ def write_answers(found: Mapping[str, Answer], path: Path) -> None:
     Raises:
         FileAccessError: not writable.
     """
-    content = {case: vars(answer) for case, answer in found.items()}
+    content = {case: vars(answer) for case, answer in sorted(found.items())}
     write_whole(path, json.dumps(content, indent=1) + "\n")
