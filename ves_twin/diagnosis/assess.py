@@ -13,6 +13,7 @@ from ves_twin.diagnosis.evidence import Evidence
 from ves_twin.diagnosis.linearise import Linearisation
 from ves_twin.diagnosis.prewhitened import Prewhitened
 from ves_twin.diagnosis.refine import ROUGH, Fit, bare_residual, refine, residual_about
+from ves_twin.diagnosis.runs import Progress, silent
 from ves_twin.diagnosis.screen import Candidate, Screen
 from ves_twin.diagnosis.search import FARTHEST, ITERATIONS, RELATIVE_CONVERGENCE
 from ves_twin.diagnosis.signature_library import SignatureLibrary
@@ -106,6 +107,7 @@ def assess(
     pull: float,
     bends: float = 0.0,
     sparse: bool = False,
+    progress: Progress = silent,
 ) -> Assessment:
     """Screen a record; where it looks faulty, once more with the nuisances fitted in full.
 
@@ -119,6 +121,7 @@ def assess(
         bends: relative error of what fitted commissioning errors explain.
         sparse: whether a record that stays far from noise is fitted roughly, as a machine of many
             parameters needs.
+        progress: told how far it is.
     """
     runs = bank.base.runs
     shaped = Prewhitened(bank, whitening)
@@ -126,7 +129,9 @@ def assess(
     if not first.exceeds(effect, level, pull):
         return first
     look = first
-    for rounds, steps in ((0, GLANCE), (0, ITERATIONS), (ROUNDS, ITERATIONS)):
+    looks = ((0, GLANCE), (0, ITERATIONS), (ROUNDS, ITERATIONS))
+    for n, (rounds, steps) in enumerate(looks):
+        progress(n / len(looks), "fitting the tolerances")
         if sparse and rounds and _left(look) > FAR:
             break
         rough = sparse and _left(look) > STRANGE

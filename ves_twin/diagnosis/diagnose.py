@@ -141,6 +141,7 @@ class _View:
     ) -> _View:
         """Look; the forward's tolerances are `widened` times the declared ones."""
         recordings, standstill = material.recordings, material.standstill
+        progress(0.0, "the model as it was given")
         seen = preprocess(forward, recordings, workers, chosen.rate)
         whitening = whitening_of(seen.runs, standstill)
         differs = None
@@ -153,7 +154,7 @@ class _View:
         limits = cached_thresholds(bank, whitening, chosen, progress)
         pull = pull_limit(bank, chosen.alpha)
         levels = (limits.effect, limits.misfit, pull, limits.bends, chosen.sparse)
-        first = assess(seen.measured, bank, whitening, *levels)
+        first = assess(seen.measured, bank, whitening, *levels, progress=progress)
         kappa, scale = naming_limit(bank, material.scale), material.scale
         findings = Findings(seen, first, limits, chosen, kappa, scale, widened, differs)
         return _View(forward, material, findings, pull, whitening)
