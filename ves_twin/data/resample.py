@@ -22,6 +22,10 @@ FLAT, STOP = 0.4, 0.5
 SAME = 1e-3
 """Rates that differ by less count as one."""
 
+LATE = 0.1
+"""Part of a row by which the stamp of a held value may be late: with none, jitter of any size takes
+every second value from the row before."""
+
 
 @dataclass(frozen=True)
 class Resampled:
@@ -72,7 +76,7 @@ def resample(
     chosen = _chosen(way, role, period, step)
     if chosen is Way.HOLD:
         found = Resampled(
-            _newest(values, time, rows), "newest value held", period if period > step else 0.0
+            _newest(values, time, rows, step), "newest value held", period if period > step else 0.0
         )
     elif chosen is Way.LINEAR:
         found = Resampled(np.asarray(np.interp(rows, time, values)), "straight between rows", 0.0)
@@ -82,7 +86,7 @@ def resample(
     if gaps is Gaps.HOLD:
         after = rows >= time[0]
         fill = empty & after
-        found.values[fill] = _newest(values, time, rows[fill])
+        found.values[fill] = _newest(values, time, rows[fill], step)
         empty &= ~after
     found.values[empty] = np.nan
     return found
@@ -120,9 +124,9 @@ def _filtered(
     return Resampled(np.asarray(CubicSpline(even, on_grid)(inside)), how, 0.0)
 
 
-def _newest(values: FloatArray, time: FloatArray, rows: FloatArray) -> FloatArray:
-    """The newest value at each row; round-off of a microsecond does not make it older."""
-    place = np.searchsorted(time, rows + 1e-6, "right") - 1
+def _newest(values: FloatArray, time: FloatArray, rows: FloatArray, step: float) -> FloatArray:
+    """The newest value at each row; a stamp that is late by LATE does not make it older."""
+    place = np.searchsorted(time, rows + LATE * step, "right") - 1
     return np.asarray(values[np.maximum(place, 0)])
 
 

@@ -204,6 +204,22 @@ def test_a_window_leaves_out_empty_rows_before_they_are_refused(tmp_path):
     assert (len(recording), recording["rail.position"][0, 0]) == (90, pytest.approx(-0.010))
 
 
+@pytest.mark.parametrize("jitter", [2e-5, 5e-4, 2e-3])
+def test_jitter_moves_no_effort_against_the_motion(tmp_path, jitter):
+    """Held from the newest stamp, each effort that is stamped late would be that of before."""
+    rng = np.random.default_rng(5)
+    time = 0.01 * np.arange(400) + rng.uniform(-jitter, jitter, 400)
+    time[0] = 0.0
+    log = "t,x,a,w,f\n" + "\n".join(
+        f"{t:.6f},{1000 * np.sin(t):.6f},0,0,{np.sin(3.0 * t):.6f}" for t in time
+    )
+    recording = read_rig_recording(tmp_path / "log.csv", written(tmp_path, log=log))
+    effort, true = recording["drive.effort"][:, 0], np.sin(3.0 * recording.time)
+    slope = 3.0 * np.cos(3.0 * recording.time)
+    late = float(slope @ (true - effort)) / float(slope @ slope)
+    assert abs(late) < 1e-3  # of a row of 10 ms: what is left of the jitter, averaged
+
+
 def test_stamps_that_jitter_are_read_at_even_rows_commands_held(tmp_path):
     rng = np.random.default_rng(5)
     time = 0.01 * np.arange(100) + rng.uniform(0.0, 0.002, 100)

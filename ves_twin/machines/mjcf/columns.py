@@ -16,7 +16,7 @@ from ves_twin.data.clock_report import usual_step
 from ves_twin.data.column_expression import ColumnExpression
 from ves_twin.data.log import Kind, Log
 from ves_twin.data.open_log import open_log
-from ves_twin.machines.mjcf.description import Column, RigDescription
+from ves_twin.machines.mjcf.description import Column, Mode, RigDescription
 from ves_twin.machines.mjcf.machine import Rig
 from ves_twin.machines.mjcf.signals import rig_signals
 from ves_twin.machines.mjcf.turned import turned
@@ -33,7 +33,7 @@ def read_rig_recording(path: Path, rig: Rig) -> Recording:
 
     Rows outside the file's `window` are left out before anything is refused. Where stamps jitter
     by more than UNEVEN of a step, every signal is read at even rows: measurements straight
-    between the rows, commands held.
+    between the rows, commands of the nearest row.
 
     Args:
         path: of any format that `ves-twin inspect` reads.
@@ -148,9 +148,8 @@ def _even(recording: Recording, rig: Rig) -> Recording:
     if np.max(steps) > HOLE * period:  # whoever needs even rows says so
         return recording
     rows = np.asarray(time[0] + period * np.arange(int((time[-1] - time[0]) / period) + 1))
-    roles = {signal.name: signal.role for signal in rig_signals(rig)}
     read = {
-        name: np.stack([_at(rows, c, time, roles[name]) for c in values.T], axis=1)
+        name: np.stack([_at(rows, c, time, held(rig, name)) for c in values.T], axis=1)
         for name, values in recording.signals.items()
     }
     jitter = float(np.max(np.abs(steps - period))) / period
@@ -159,8 +158,22 @@ def _even(recording: Recording, rig: Rig) -> Recording:
     return Recording(rows, read, info)
 
 
-def _at(rows: FloatArray, values: FloatArray, time: FloatArray, role: Role) -> FloatArray:
-    """A column at other times: the newest command, or straight between measurements."""
-    if role is Role.COMMAND:
-        return np.asarray(values[np.searchsorted(time, rows + 1e-9, "right") - 1])
+def held(rig: Rig, signal: str) -> bool:
+    """Whether a signal is a command that the machine held from one row to the next.
+
+    Where motion is fed in, efforts are what is measured, and belong to the instant of the motion.
+    """
+    roles = {one.name: one.role for one in rig_signals(rig)}
+    measured = rig.description.drive.mode is Mode.MOTION
+    return roles.get(signal) is Role.COMMAND and not measured
+
+
+def _at(rows: FloatArray, values: FloatArray, time: FloatArray, hold: bool) -> FloatArray:
+    """A column at other times: of a held command the nearest row, else straight between rows.
+
+    The newest one would be that of the row before wherever a stamp is late by any jitter.
+    """
+    if hold:
+        middles = 0.5 * (time[1:] + time[:-1])
+        return np.asarray(values[np.searchsorted(middles, rows, "right")])
     return np.asarray(np.interp(rows, time, values))

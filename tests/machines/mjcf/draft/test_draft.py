@@ -264,3 +264,16 @@ def test_rows_that_come_unevenly_are_no_thousand_gaps(swing, write):
     found, _ = drafted(model, write({n: v[kept] for n, v in columns.items()}))
     assert "clock t: uneven, steps of 0.01 to 0.02 s; rows are read at even steps" in found.look
     assert not any("gaps" in words for words in found.look)
+
+
+def test_typical_efforts_are_those_of_the_joints_behind_their_gears(arm, tmp_path, columns, write):
+    """Of motors that turn fifty times as fast: what is typical of a joint does not change."""
+    found = []
+    for gear in (1.0, 50.0):
+        geared = tmp_path / f"arm{gear:g}.xml"
+        geared.write_text(arm.read_text().replace("<motor ", f'<motor gear="{gear}" '))
+        shaft = {n: v / gear if n.startswith("tau") else v for n, v in columns.items()}
+        _, rig = drafted(geared, write(shaft))
+        found.append({j: span.effort for j, span in rig.description.typical.joint.items()})
+    assert set(found[0]) == {"turn", "lift", "bend"}
+    assert found[1] == pytest.approx(found[0], rel=0.02)

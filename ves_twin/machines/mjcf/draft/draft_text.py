@@ -69,7 +69,7 @@ def draft_text(
         "[signals]",
     ]
     lines = [*head, *_signals(check, mode)]
-    lines += ["", "[typical.joint]", *_joints(log, check)]
+    lines += ["", "[typical.joint]", *_joints(log, check, model)]
     spans = list(_spans(log, check))
     lines += ["", "[typical.signal]", *spans] if spans else []
     if mode.mode is Mode.CONTROL:
@@ -140,8 +140,8 @@ def _signal(group: list[Match], mode: Chosen) -> str:
     return f"{_quoted(signal_name(first))} = {{ {text} }}   # {why}"
 
 
-def _joints(log: LogColumns, check: Checked) -> Iterator[str]:
-    """Typical effort, speed and travel of each joint that was recorded."""
+def _joints(log: LogColumns, check: Checked, model: mujoco.MjModel) -> Iterator[str]:
+    """Typical effort, speed and travel of each joint that was recorded, behind its gear."""
     efforts = {m.spot.joint: m for m in check.found if m.spot.quantity is Quantity.EFFORT}
     for match in check.found:
         if match.spot.quantity is not Quantity.POSITION:
@@ -151,7 +151,9 @@ def _joints(log: LogColumns, check: Checked) -> Iterator[str]:
         sizes = {"speed": typical(speed), "travel": travel(position)}
         own = efforts.get(match.spot.name)
         if own is not None:
-            sizes = {"effort": typical(own.factor * log.values[own.column]), **sizes}
+            drive = model.actuator(own.spot.name)
+            gain = abs(float(drive.gear[0] * drive.gainprm[0])) or 1.0
+            sizes = {"effort": typical(gain * own.factor * log.values[own.column]), **sizes}
         elif check.motion is not None:
             steady = check.motion.steady[:, check.dofs[match.spot.name]]
             sizes = {"effort": typical(steady), **sizes}
