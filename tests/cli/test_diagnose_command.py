@@ -127,3 +127,13 @@ def test_one_file_cannot_be_measured_and_held_out(capsys, tmp_path, recording):
     options = ["--experiment", str(tmp_path / "lab.toml"), "--out", str(tmp_path / "out")]
     assert main(["diagnose", recording, "--held-out", recording, *options]) == 2
     assert "two of one name" in capsys.readouterr().err
+
+
+def test_a_copy_of_a_fitted_file_cannot_be_held_out(capsys, tmp_path, recording):
+    copy = tmp_path / "copy.parquet"
+    copy.write_bytes(Path(recording).read_bytes())
+    options = ["--out", str(tmp_path / "out")]
+    assert main(["diagnose", recording, "--held-out", str(copy), *options]) == 2
+    error = capsys.readouterr().err.strip().splitlines()[-1]
+    assert "held-out recording: got 'copy" in error
+    assert "which is fitted and has the same rows" in error

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -14,11 +15,12 @@ from ves_twin.core.errors import InvalidInputError, UnknownNameError
 from ves_twin.core.recording.recording import Recording
 from ves_twin.diagnosis import diagnose as verb
 from ves_twin.diagnosis.diagnose import diagnose
-from ves_twin.diagnosis.forward import Parameter
+from ves_twin.diagnosis.forward import Hypothesis, Parameter
 from ves_twin.diagnosis.search import Search
 from ves_twin.diagnosis.settings import Settings
 from ves_twin.diagnosis.verdict import Kind
 from ves_twin.diagnosis.whitening import Whitening
+from ves_twin.report.diagnosis.answer import headline
 
 
 @pytest.fixture(scope="module")
@@ -329,3 +331,39 @@ def test_shapes_are_distinct_enough_to_be_told_apart():
     all_shapes = np.array([(shape(c, u, fed.time) / SD).ravel() for c in CAUSES])
     unit = all_shapes / np.linalg.norm(all_shapes, axis=1)[:, None]
     assert np.max(np.abs(unit @ unit.T - np.eye(len(CAUSES)))) < 0.95
+
+
+class Late(Toy):
+    """Its lag is a delay [s], one of which is worth 0.1 of the lag's size."""
+
+    NAMES = ("lag@plant:delay", "lag.size")
+
+    @property
+    def parameters(self):
+        told = {p.name: p for p in super().parameters}
+        lag = replace(told.pop(self.NAMES[1]), name=self.NAMES[0], unit="s")
+        return (*told.values(), replace(lag, low=0.0, high=1.0))
+
+    @property
+    def hypotheses(self):
+        lag = Hypothesis("lag", "plant", (self.NAMES[0],), (1e-4,), (0.5,), signs=(1,))
+        return (*(h for h in super().hypotheses if h.effect != "lag"), lag)
+
+    def simulate(self, programme, values, refined=False):
+        late = values.get(self.NAMES[0], 0.0)
+        return super().simulate(programme, {**values, self.NAMES[1]: 10.0 * late}, refined)
+
+
+@pytest.mark.parametrize(
+    ("delay", "logged", "firm"), [(0.005, True, False), (0.005, False, True), (0.02, True, True)]
+)
+def test_a_delay_of_less_than_a_row_is_firm_where_the_clock_is_known(delay, logged, firm):
+    """A log says of no column when in its row of 10 ms it was read; what simulates knows."""
+    one = record(np.random.default_rng(4), {Late.NAMES[0]: delay}, spread=0.2, plant=Late())
+    info = replace(one.info, imported={"file": "log.csv"} if logged else {})
+    said = diagnose(Late(), [replace(one, info=info)], settings=QUICK)
+    assert said.verdict is Kind.NAMED
+    (cause,) = said.causes
+    assert (cause.effect, cause.firm, cause.below_row) == ("lag", firm, not firm)
+    words = headline(said)
+    assert ("whose clock explains that as well" in words) is not firm

@@ -55,6 +55,7 @@ class Findings:
         forecast: ahead in time, of causes that belong to a stretch of it.
         proposals: next programmes.
         apart: what each recording says alone.
+        logged: whether a recording comes from a log, whose stamps nobody knows to a row.
         widened: factor on the declared commissioning sd in this view.
         differs: largest difference of the baseline's inputs, of their range; None without one.
         built: what building up proved.
@@ -70,6 +71,7 @@ class Findings:
     settings: Settings
     kappa: float
     scale: float | None
+    logged: bool = False
     widened: float = 1.0
     differs: float | None = None
     found: Explanation | None = None
@@ -266,7 +268,8 @@ def _cause(
 ) -> Cause:
     """Firm if it is no commissioning parameter, or further off than commissioning errors go.
 
-    Not where every interval holds what the model has already: such a size may be none.
+    Not where every interval holds what the model has already: such a size may be none. Nor a delay
+    of less than a row of a log.
     """
     runs = findings.seen.runs
     z = float(norm.isf(0.5 * (1.0 - findings.settings.confidence)))
@@ -281,13 +284,16 @@ def _cause(
             sigmas.append(findings.widened * abs(size) / parameter.sd)
     absent = len(sigmas) < len(hypothesis.parameters)
     shown = any(not e.low <= e.nominal <= e.high for e in estimates.values())
+    row = _row(findings.seen) if findings.logged else 0.0
+    below = any(_below(name, e, row) for name, e in estimates.items())
     return Cause(
         effect=hypothesis.effect,
         target=hypothesis.target,
         parameters=estimates,
         probability=weight,
-        firm=shown and (absent or max(sigmas) >= findings.kappa),
+        firm=shown and not below and (absent or max(sigmas) >= findings.kappa),
         sigmas=max(sigmas, default=None),
+        below_row=below,
     )
 
 

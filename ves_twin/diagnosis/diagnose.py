@@ -156,7 +156,8 @@ class _View:
         levels = (limits.effect, limits.misfit, pull, limits.bends, chosen.sparse)
         first = assess(seen.measured, bank, whitening, *levels, progress=progress)
         kappa, scale = naming_limit(bank, material.scale), material.scale
-        findings = Findings(seen, first, limits, chosen, kappa, scale, widened, differs)
+        logged = any(one.info.imported for one in recordings)
+        findings = Findings(seen, first, limits, chosen, kappa, scale, logged, widened, differs)
         return _View(forward, material, findings, pull, whitening)
 
     @property

@@ -88,9 +88,11 @@ class Cause:
         effect, target: what and where.
         parameters: name -> estimate.
         probability: given the library and that one of its causes, or pairs, is at work.
-        firm: False where a commissioning error of `sigmas` declared sd is not excluded.
+        firm: False where a commissioning error of `sigmas` declared sd is not excluded, or its size
+            may be none, or the clock of a log explains it as well.
         sigmas: largest departure in declared sd, with a baseline in sd of what a rig in order may
             change by since then; None if it is no commissioning parameter.
+        below_row: whether it is a delay of less than a row of a log.
     """
 
     effect: str
@@ -99,6 +101,7 @@ class Cause:
     probability: float
     firm: bool
     sigmas: float | None
+    below_row: bool = False
 
     @property
     def shortened(self) -> Cause:

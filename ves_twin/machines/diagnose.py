@@ -6,6 +6,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
+import numpy as np
+
 from ves_twin.core.errors import InvalidInputError
 from ves_twin.core.recording.recording import Recording
 from ves_twin.diagnosis import diagnose as core
@@ -74,7 +76,8 @@ def diagnose(
 
     Raises:
         VesTwinError: recordings whose columns look swapped, turned or in other units.
-        InvalidInputError: no recording, or recordings that cannot be of one machine.
+        InvalidInputError: no recording, recordings that cannot be of one machine, or a held-out
+            one that is fitted as well.
         UnknownNameError: an unknown cause in `exclude`, or an input that is not recorded.
     """
     given = Material(
@@ -85,6 +88,7 @@ def diagnose(
         standstill,
     )
     prepared = prepare(machine_of(plant), given, experiment)
+    _check_held_out(prepared.material)
     if alternate is not None:
         prepared = prepared.split(alternate)
     machine, material = prepared.machine, prepared.material
@@ -112,6 +116,23 @@ def diagnose(
     basis = replace(verdict.basis, recordings=_origin(given))
     verdict = replace(verdict, causes=causes, nearest=near, quality=prepared.flaws, basis=basis)
     return _concluded(verdict, machine, offered)
+
+
+def _check_held_out(given: Material) -> None:
+    """Refuse a held-out recording that is fitted as well: it would confirm anything."""
+    for held in given.held_out:
+        for one in given.measured:
+            if _same(held.recording, one.recording):
+                expected = f"another one than {one.name}, which is fitted and has the same rows"
+                raise InvalidInputError("held-out recording", held.name, expected)
+
+
+def _same(one: Recording, other: Recording) -> bool:
+    """Whether two recordings have the same signals and rows."""
+    if one.signals.keys() != other.signals.keys() or not np.array_equal(one.time, other.time):
+        return False
+    pairs = ((values, other.signals[name]) for name, values in one.signals.items())
+    return all(np.array_equal(a, b, equal_nan=True) for a, b in pairs)
 
 
 def _origin(given: Material) -> str:

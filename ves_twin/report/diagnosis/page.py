@@ -15,6 +15,7 @@ from ves_twin.report.diagnosis.answer import (
     next_step,
     tone,
     verdict_sentence,
+    why_loose,
 )
 from ves_twin.report.diagnosis.basis import basis_sentences, gain_sentence, rests_on
 from ves_twin.report.diagnosis.credibility import credibility
@@ -175,8 +176,7 @@ def _origin(verdict: Verdict) -> str:
 
 
 def _cause(cause: Cause, verdict: Verdict) -> list[tuple[str, ...]]:
-    off = f"{cause.sigmas or 0.0:.1f} tolerances off"
-    why = "not confirmed on held-out recordings" if verdict.unconfirmed else off
+    why = "not confirmed on held-out recordings" if verdict.unconfirmed else why_loose(cause)
     standing = "firm" if cause.firm else f"provisional, {why}"
     if verdict.verdict is Kind.AMBIGUOUS:
         standing = f"one of {len(verdict.alternatives)}, {standing}"
