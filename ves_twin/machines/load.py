@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from pathlib import Path
 
+from ves_twin.core.errors import InvalidInputError
 from ves_twin.core.recording.recording import Recording
 from ves_twin.data.import_map import ImportMap
 from ves_twin.machines.machine import Machine, Named
@@ -13,6 +14,9 @@ from ves_twin.machines.mjcf.machine import Rig
 from ves_twin.machines.mjcf.mjcf_machine import MjcfMachine
 from ves_twin.machines.ves2.ves2_machine import Ves2Machine
 from ves_twin.plant.plant import Plant
+
+MODELS = (".xml", ".mjcf", ".urdf")
+"""Ends of files that hold a model alone, without signals and tolerances."""
 
 Given = Machine | Plant | Rig | str | Path | None
 """What names a machine: itself, what it is made of, or its name or file; None: VES II."""
@@ -33,6 +37,9 @@ def open_machine(
     """
     if not name_or_path:
         return Ves2Machine(mapping=mapping, folder=folder)
+    if Path(name_or_path).suffix.lower() in MODELS and Path(name_or_path).is_file():
+        expected = f"a machine's file; `ves-twin new {Path(name_or_path).name} LOG` drafts one"
+        raise InvalidInputError(f"plant {name_or_path}", "a model", expected)
     if is_rig(name_or_path):
         return MjcfMachine(Rig.load(name_or_path), mapping, folder)
     return Ves2Machine(Plant.load(name_or_path), mapping=mapping, folder=folder)

@@ -17,6 +17,7 @@ from ves_twin.core.recording.recording import POSES
 from ves_twin.core.resources import resource_folder
 from ves_twin.diagnosis.verdict import Basis, Cause, Estimate, Kind, Statistics, Verdict
 from ves_twin.machines.data_folder import find_data
+from ves_twin.machines.load import open_machine
 from ves_twin.machines.mjcf.columns import read_rig_recording
 from ves_twin.machines.mjcf.extend import extended, write_rig
 from ves_twin.machines.mjcf.forward import MjcfForward
@@ -113,7 +114,6 @@ def test_a_part_of_another_kind_is_refused_by_name(tmp_path, keys, value):
         ("t,f,", "time,f,", "unknown column of log.csv 't'"),
         ("0.05,5,", "0.03,5,", "strictly increasing"),
         (",fz", ",fzz", "did you mean 'fzz'"),
-        ("0.07,7,1", "0.07,7,one", "numbers"),
         (LOG.split("\n", 1)[1], "", "0 rows"),
     ],
 )
@@ -258,3 +258,10 @@ def test_a_model_that_mujoco_cannot_move_is_refused_in_one_line(tmp_path):
     with pytest.raises(VesTwinError, match="a model that can move") as caught:
         Rig.load(str(tmp_path / "emps.toml"))
     assert "\n" not in str(caught.value)
+
+
+@pytest.mark.parametrize("name", ["axis.xml", "axis.URDF"])
+def test_a_model_alone_is_no_machine_and_the_way_to_one_is_said(tmp_path, name):
+    (tmp_path / name).write_text("<mujoco/>")
+    with pytest.raises(InvalidInputError, match=f"`ves-twin new {name} LOG` drafts one"):
+        open_machine(str(tmp_path / name))

@@ -193,11 +193,25 @@ def test_a_formula_of_columns_is_a_column(tmp_path):
     assert recording["drive.effort"][8, 0] == pytest.approx(2 * 1 - 8 / 4)
 
 
+@pytest.mark.parametrize("cell", ["", "n/a"])
+def test_a_few_rows_without_a_number_are_read_over_and_said(tmp_path, cell):
+    lines = LOG.splitlines()
+    for k in (3, 40, 41, 42, 43):
+        lines[k] = lines[k].replace(f",{k - 1},", f",{cell},", 1)
+    whole = read_rig_recording(tmp_path / "log.csv", written(tmp_path, log=LOG))
+    recording = read_rig_recording(tmp_path / "log.csv", written(tmp_path, log="\n".join(lines)))
+    assert recording.time == pytest.approx(whole.time)
+    assert recording["rail.position"] == pytest.approx(whole["rail.position"])
+    (said,) = recording.info.imported["suspected"]
+    assert said.startswith("log.csv: 5 rows without a number")
+
+
 def test_a_window_leaves_out_empty_rows_before_they_are_refused(tmp_path):
     lines = LOG.splitlines()
-    lines[3] = lines[3].replace(",2,", ",,", 1)
+    for k in range(3, 8):
+        lines[k] = lines[k].replace(f",{k - 1},", ",,", 1)
     rig = written(tmp_path, log="\n".join(lines))
-    with pytest.raises(VesTwinError, match="window"):
+    with pytest.raises(VesTwinError, match=r"5 empty rows, the first is row 3 of .*window"):
         read_rig_recording(tmp_path / "log.csv", rig)
     rig = written(tmp_path, "drive =", 'window = { start = "0.1 s" }\ndrive =', "\n".join(lines))
     recording = read_rig_recording(tmp_path / "log.csv", rig)

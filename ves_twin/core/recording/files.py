@@ -83,5 +83,8 @@ def _table(file: Path) -> pa.Table:
             return pq.read_table(opened)
     except (pa.ArrowInvalid, OSError) as error:
         reason = str(error).split("\n", 1)[0]
-        wanted = "a Parquet recording; `ves-twin import` makes one of a log"
+        wanted = (
+            "a Parquet recording; `ves-twin import` makes one of a log, --plant FILE names the"
+            " machine whose file reads it"
+        )
         raise InvalidInputError(str(file), reason, wanted) from None

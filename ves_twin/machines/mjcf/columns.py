@@ -14,6 +14,7 @@ from ves_twin.core.signals import Role
 from ves_twin.core.types import BoolArray, FloatArray
 from ves_twin.data.clock_report import usual_step
 from ves_twin.data.column_expression import ColumnExpression
+from ves_twin.data.empty_cells import FEW, lone
 from ves_twin.data.log import Kind, Log
 from ves_twin.data.open_log import open_log
 from ves_twin.machines.mjcf.description import Column, Mode, RigDescription
@@ -31,7 +32,8 @@ HOLE = 5.0
 def read_rig_recording(path: Path, rig: Rig) -> Recording:
     """A recording of a rig.
 
-    Rows outside the file's `window` are left out before anything is refused. Where stamps jitter
+    Rows outside the file's `window` are left out before anything is refused, and so are a FEW rows
+    together in which a cell holds no number, which is said. Where stamps jitter
     by more than UNEVEN of a step, every signal is read at even rows: measurements straight
     between the rows, commands of the nearest row.
 
@@ -42,19 +44,26 @@ def read_rig_recording(path: Path, rig: Rig) -> Recording:
     Raises:
         FileAccessError: missing file.
         UnknownNameError: a column that is not there; says the nearest one.
-        InvalidInputError: no table, no rows, text among numbers, or time that steps back.
+        InvalidInputError: no table, no rows, more rows together without a number, or time that
+            steps back.
     """
     if not path.is_file():
         raise FileAccessError(f"recording file '{path}' does not exist")
     told = rig.description
     table = _Table.of(open_log(path), told)
     time, inside = _times(table, told, path)
+    asked = np.count_nonzero(inside)
+    inside = inside if told.clock.poses else _whole(table, told, inside)
+    time, left_out = time[inside], int(asked - np.count_nonzero(inside))
     signals = {name: _signal(table, c, inside, path) for name, c in told.signals.items()}
     for name, column in told.signals.items():
         if column.into:
             signals[name] = turned(signals[name], signals, name, column.into)
     log = POSES if told.clock.poses else ""
     info = RecordingInfo("measured", scenario=path.stem, log=log, outcome="finished")
+    if left_out:
+        words = f"{path.name}: {left_out} rows without a number are left out, read over by a line"
+        info = replace(info, imported={"suspected": [words]})
     if told.clock.poses:
         return Recording(time, signals, info)
     return _even(Recording(time, signals, info), rig)
@@ -90,19 +99,26 @@ class _Table:
             raise InvalidInputError(str(log.path), "0 rows", "a recording")
         return _Table(rows, {name: read[column] for name, column in own.items()})
 
-    def column(self, text: str, inside: BoolArray, path: Path) -> FloatArray:
-        """A column or a formula of columns (n,) in some rows, all of them numbers."""
+    def all_of(self, text: str) -> FloatArray:
+        """A column or a formula of columns in every row, NaN where a cell is empty."""
         values = self.columns.get(text)
         if values is None:
-            formula = ColumnExpression(text)
-            values = formula.value(self.columns)
-        values = np.asarray(np.broadcast_to(values, self.rows)[inside])
-        bad = np.flatnonzero(~np.isfinite(values))
+            values = ColumnExpression(text).value(self.columns)
+        return np.asarray(np.broadcast_to(values, self.rows))
+
+    def column(self, text: str, inside: BoolArray, path: Path) -> FloatArray:
+        """The same in some rows (n,), all of them numbers."""
+        values = self.all_of(text)
+        bad = np.flatnonzero(inside & ~np.isfinite(values))
         if len(bad):
-            came = f"{len(bad)} empty rows, the first is row {bad[0] + 1}"
-            expected = "numbers; window in the machine's file leaves a stretch out"
-            raise InvalidInputError(f"column {text} of {path.name}", came, expected)
-        return values
+            came = f"{len(bad)} empty rows, the first is row {bad[0] + 1} of the table"
+            expected = (
+                f"numbers, or {FEW} empty rows together at most; window in the machine's file"
+            )
+            raise InvalidInputError(
+                f"column {text} of {path.name}", came, f"{expected} leaves a stretch out"
+            )
+        return values[inside]
 
 
 def needed(text: str, known: Mapping[str, object]) -> tuple[str, ...]:
@@ -117,10 +133,13 @@ def needed(text: str, known: Mapping[str, object]) -> tuple[str, ...]:
 
 
 def _times(table: _Table, told: RigDescription, path: Path) -> tuple[FloatArray, BoolArray]:
-    """Times of the rows in the window [s], and which rows these are."""
+    """Times of all rows [s], and which of them are in the window."""
     clock, whole = told.clock, np.ones(table.rows, dtype=bool)
     if clock.column:
-        time = clock.scale * table.column(clock.column, whole, path)
+        empty = ~np.isfinite(table.all_of(clock.column))
+        time = clock.scale * table.all_of(clock.column)
+        table.column(clock.column, whole & ~lone(empty), path)
+        time = np.interp(np.arange(table.rows), np.flatnonzero(~empty), time[~empty])
     else:
         time = np.asarray(np.arange(table.rows) / clock.rate, np.float64)
     since = time - time[0]
@@ -128,7 +147,15 @@ def _times(table: _Table, told: RigDescription, path: Path) -> tuple[FloatArray,
     if not inside.any():
         came = f"{told.window.start:g} to {told.window.stop:g} s"
         raise InvalidInputError("window", came, f"a stretch of 0 to {since[-1]:.4g} s")
-    return time[inside], inside
+    return time, inside
+
+
+def _whole(table: _Table, told: RigDescription, inside: BoolArray) -> BoolArray:
+    """Rows without those whose cells are empty here and there: even rows are read over them."""
+    names = [name for one in told.signals.values() for name in one.columns]
+    names += [told.clock.column] if told.clock.column else []
+    empty = ~np.all([np.isfinite(table.all_of(name)) for name in names], axis=0)
+    return inside & ~lone(inside & empty)
 
 
 def _signal(table: _Table, told: Column, inside: BoolArray, path: Path) -> FloatArray:
@@ -154,7 +181,7 @@ def _even(recording: Recording, rig: Rig) -> Recording:
     }
     jitter = float(np.max(np.abs(steps - period))) / period
     note = f"stamps jitter by up to {jitter:.0%}: read at even {1.0 / period:.5g} Hz"
-    info = replace(recording.info, imported={"notes": [note]})
+    info = replace(recording.info, imported={**recording.info.imported, "notes": [note]})
     return Recording(rows, read, info)
 
 

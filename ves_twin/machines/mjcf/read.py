@@ -35,7 +35,9 @@ def read_recording(path: Path, rig: Rig, told: ImportMap | None = None) -> Recor
         return rig_recording(load_recording(path), rig, name)
     if told is None:
         raw = read_rig_recording(path, rig)
-        return replace(raw, info=replace(raw.info, imported={"file": path.name}))
+        return replace(
+            raw, info=replace(raw.info, imported={**raw.info.imported, "file": path.name})
+        )
     known, plausible = rig_signals(rig), rig_ranges(rig)
-    imported = import_log(open_log(path), told, plausible=plausible, known=known)
-    return rig_recording(imported.recording, rig, name)
+    log = import_log(open_log(path), told, plausible=plausible, known=known)
+    return rig_recording(log.recording, rig, name)

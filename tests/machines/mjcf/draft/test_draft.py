@@ -208,9 +208,21 @@ def test_columns_numbered_from_zero_are_those_of_the_first_joint_on(arm, columns
 
 def test_rows_with_empty_cells_at_the_end_are_left_out_by_a_window(arm, columns, write):
     log = write(columns)
-    log.write_text(log.read_text() + "8.0,,,,,,,,,\n")
+    log.write_text(log.read_text() + "".join(f"{8 + k / 200},,,,,,,,,\n" for k in range(9)))
     found, rig = drafted(arm, log)
     assert tomllib.loads(found.text)["window"]["stop"] == pytest.approx(7.9975)
+    assert len(read_recording(log, rig)) == 1600
+
+
+def test_an_empty_cell_here_and_there_leaves_the_log_whole(arm, columns, write):
+    log = write(columns)
+    lines = log.read_text().splitlines()
+    for k in (100, 901):
+        lines[k] = ",".join([lines[k].partition(",")[0], *[""] * (len(columns) - 1)])
+    log.write_text("\n".join(lines) + "\n")
+    found, rig = drafted(arm, log)
+    assert "window" not in tomllib.loads(found.text)
+    assert any("2 rows with empty cells are left out" in words for words in found.look)
     assert len(read_recording(log, rig)) == 1600
 
 

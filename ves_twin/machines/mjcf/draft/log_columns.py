@@ -12,6 +12,7 @@ from ves_twin.core.errors import InvalidInputError
 from ves_twin.core.types import BoolArray, FloatArray
 from ves_twin.data.clock_fields import clock_fields
 from ves_twin.data.clock_report import GAP, UNEVEN, usual_step
+from ves_twin.data.empty_cells import lone
 from ves_twin.data.log import Column, Kind
 from ves_twin.data.open_log import open_log
 
@@ -129,11 +130,15 @@ def _sorted(
     good = np.isfinite(time) & np.concatenate([[True], np.diff(time) > 0.0])
     full = {n: np.isfinite(v) for n, v in read.items() if n != clock}
     empty = [n for n, finite in full.items() if np.mean(finite) < FILLED]
-    stretch = _longest(np.all([f for n, f in full.items() if n not in empty] or [good], axis=0))
-    window = None
+    whole = np.all([f for n, f in full.items() if n not in empty] or [good], axis=0)
+    left_out = lone(~whole)
+    stretch, window, good = _longest(whole | left_out), None, good & ~left_out
+    if np.any(left_out[stretch]):
+        count = np.count_nonzero(left_out[stretch])
+        notes.append(f"{count} rows with empty cells are left out; even rows are read over them")
     if stretch != slice(0, rows):
         window = (float(time[stretch][0] - time[0]), float(time[stretch][-1] - time[0]))
-        notes.append(f"rows with empty cells are left out: window {window[0]:g} to {window[1]:g} s")
+        notes.append(f"longer empty stretches: window {window[0]:g} to {window[1]:g} s is used")
     own = time[stretch][good[stretch]]
     even = own[0] + period * np.arange(int((own[-1] - own[0]) / period + 1.0 + 1e-6))
     used = {n: read[n][stretch][good[stretch]] for n in full if n not in empty}

@@ -11,23 +11,30 @@ from ves_twin.machines.mjcf.draft.spots import Quantity, Spot, words_of
 
 POSITION = (
     "q qm qg pos position angle angles ang theta th phi psi alpha x y z s stroke disp displacement"
-    " travel encoder enc length rot rotation"
+    " travel encoder enc length rot rotation weg lage winkel"
 )
-SPEED = "dq qd qdot dqdt vel velocity speed rate omega w v dx dy xd xdot thetadot gyro qv"
+SPEED = (
+    "dq qd qdot dqdt vel velocity speed rate omega w v dx dy xd xdot thetadot gyro qv drehzahl"
+    " geschw geschwindigkeit"
+)
 EFFORT = (
     "tau torque trq tq force f fx u effort load moment current i cur amp volt voltage pwm drive"
-    " motor control ctrl command input"
+    " motor control ctrl command input kraft drehmoment strom motorstrom spannung"
 )
 KIND_WORDS = {
     Quantity.POSITION: frozenset(POSITION.split()),
     Quantity.SPEED: frozenset(SPEED.split()),
     Quantity.EFFORT: frozenset(EFFORT.split()),
 }
-"""Words that laboratories use for a quantity; a column's name is cut at digits and bars."""
+"""Words that laboratories use for a quantity, English and German; a column's name is cut at digits
+and bars."""
 
-ASKED = "ref reference set setpoint des desired target goal demand nominal cmd command commanded"
+ASKED = (
+    "ref reference set setpoint des desired target goal demand nominal cmd command commanded soll"
+    " sollwert"
+)
 SETPOINT = frozenset(ASKED.split())
-MEASURED = frozenset({"meas", "measured", "act", "actual", "fb", "feedback"})
+MEASURED = frozenset({"meas", "measured", "act", "actual", "fb", "feedback", "ist", "istwert"})
 
 ELECTRICAL = frozenset({"V", "mV", "A", "mA", "%", "counts", "W", "1"})
 """Units of what drives an actuator when it is no effort: a constant stands between."""
