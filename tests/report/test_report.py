@@ -479,6 +479,18 @@ def test_where_more_is_wrong_sizes_of_noise_alone_are_not_promised(proven):
     assert "Intervals count what is left unexplained" in said
 
 
+def test_numbers_of_the_model_that_the_fit_moved_are_told_beside_what_they_alone_leave(proven):
+    """A fault within a wide tolerance is no cause, and takes most of the error away."""
+    surely, maybe = Estimate(3e-4, 2e-4, 4e-4, "1", 1e-4), Estimate(3e-4, 0.0, 4e-4, "1", 1e-4)
+    page = diagnosis_page(replace(proven, tuned={"inertia@hub:value": surely}))
+    assert "inertia at hub, value" in page
+    assert "What a wide tolerance lets move is not called a fault" in page
+    assert "inertia at hub" not in diagnosis_page(replace(proven, tuned={"inertia@hub:x": maybe}))
+    assert "tolerances alone" in page
+    for error in proven.residuals.values():
+        assert error.after_si <= error.tolerances_si <= error.before_si
+
+
 def test_what_ends_its_range_is_not_counted_as_proved(proven):
     verdict = proof_of(proven, firm=False)
     ended = replace(verdict, proved=(replace(verdict.proved[0], ended=True),))

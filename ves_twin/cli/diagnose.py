@@ -212,9 +212,12 @@ def _text(found: Diagnosis, folder: Path) -> str:
         lines += ["", f"  {proof_sentence(verdict)}", *map(proved_line, verdict.proved)]
         lines += [f"  {near_sentence(verdict)}"] if near_sentence(verdict) else []
         lines += [f"  not separated: {text}" for text in inseparable_sentences(verdict)]
-    lines += ["", "  channel             before     after   (rms, in the channel's unit)"]
+    lines += ["", "  channel             before     tuned     after   (rms, in the channel's unit;"]
+    lines += [f"{'':51}tuned: by tolerances alone)"]
     for name, error in verdict.residuals.items():
-        lines.append(f"  {name:<18}{error.before_si:10.3g}{error.after_si:10.3g}   {error.unit}")
+        tuned = error.after_si if error.tolerances_si is None else error.tolerances_si
+        numbers = "".join(f"{e:10.3g}" for e in (error.before_si, tuned, error.after_si))
+        lines.append(f"  {name:<18}{numbers}   {error.unit}")
     if verdict.gain is not None and verdict.gain.errors:
         lines += ["", "  held out            before     after   (nothing tuned there; the gain"]
         lines += [f"{'':41}allows for what is new in each recording)"]

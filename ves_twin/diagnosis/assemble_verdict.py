@@ -334,6 +334,7 @@ def _residuals(exhibit: ReportTraces) -> dict[str, ChannelError]:
             after_si=_rms([t.measured[:, c] - t.fitted[:, c] for t in traces]),
             unit=channel.unit,
             spread=_rms([t.measured[:, c] - np.nanmean(t.measured[:, c]) for t in traces]),
+            tolerances_si=_rms([t.measured[:, c] - t.tolerances[:, c] for t in traces]),
         )
     return found
 

@@ -122,7 +122,8 @@ class Cause:
 class ChannelError:
     """Rms error of a channel before and after, in noise sigma (whitened) and in its unit.
 
-    `spread` is the sd of what was measured, in that unit.
+    `spread` is the sd of what was measured, in that unit; `tolerances_si` what the model leaves
+    with its tolerances fitted and no cause, which then equals `after_si`.
     """
 
     before: float
@@ -131,6 +132,7 @@ class ChannelError:
     after_si: float
     unit: str
     spread: float = 0.0
+    tolerances_si: float | None = None
 
 
 @dataclass(frozen=True)

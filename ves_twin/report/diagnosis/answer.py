@@ -167,6 +167,15 @@ def _proved(verdict: Verdict) -> str:
     return said
 
 
+def moved(verdict: Verdict) -> list[tuple[str, Estimate]]:
+    """The model's own numbers that the fit moved, those that it moved most surely first."""
+
+    def off(one: Estimate) -> float:
+        return abs(one.value - one.nominal) / max(one.high - one.low, 1e-30)
+
+    return sorted(verdict.tuned.items(), key=lambda item: -off(item[1]))
+
+
 def strained_sentence(verdict: Verdict) -> str:
     """Which of the model's own numbers had to leave their tolerances beside; else empty."""
     best = next((rival for rival in verdict.rivals if rival.standing is Standing.KEPT), None)
@@ -174,14 +183,10 @@ def strained_sentence(verdict: Verdict) -> str:
     if best is None or best.pull is None or limit is None or best.pull <= limit:
         return ""
 
-    def off(one: Estimate) -> float:
-        return abs(one.value - one.nominal) / max(one.high - one.low, 1e-30)
-
-    moved = sorted(verdict.tuned.items(), key=lambda item: -off(item[1]))
     told = [
         f"{spoken(name.rpartition(':')[0])} {quantity(one.value, one.unit)}"
         f" (model {quantity(one.nominal, one.unit)})"
-        for name, one in moved[:STRANGEST]
+        for name, one in moved(verdict)[:STRANGEST]
     ]
     return f" Tolerances are strained, by up to {best.pull:.0f} sd: {', '.join(told)}."
 

@@ -11,6 +11,7 @@ from ves_twin.diagnosis.rivals import Rival
 from ves_twin.diagnosis.verdict import MANY, Cause, Kind, Verdict
 from ves_twin.report.diagnosis.answer import (
     confidence_sentence,
+    moved,
     nearest_sentence,
     next_step,
     tone,
@@ -199,19 +200,47 @@ def _probability(share: float) -> str:
 
 
 def _levels(verdict: Verdict) -> list[Html]:
-    head = ("channel", "before, sigma", "after, sigma", "before", "after", "spread of the signal")
+    head = (
+        *("channel", "before, sigma", "after, sigma", "before", "tolerances alone"),
+        *("after", "spread of the signal"),
+    )
     rows = [
         (
             name,
             digits(e.before),
             digits(e.after),
             quantity(e.before_si, e.unit),
+            quantity(e.after_si if e.tolerances_si is None else e.tolerances_si, e.unit),
             quantity(e.after_si, e.unit),
             quantity(e.spread, e.unit),
         )
         for name, e in verdict.residuals.items()
     ]
-    return [change_figure(verdict), table(head, rows)]
+    return [change_figure(verdict), table(head, rows), *_moved(verdict)]
+
+
+def _moved(verdict: Verdict) -> list[Html]:
+    """The model's own numbers that were fitted beside: a fault may hide in a wide tolerance."""
+    away = [item for item in moved(verdict) if not item[1].low <= item[1].nominal <= item[1].high]
+    if not away:
+        return []
+    rows = [
+        (
+            spoken(name.rpartition(":")[0]) + (f", {name.rpartition(':')[2]}"),
+            quantity(one.nominal, one.unit),
+            quantity(one.value, one.unit),
+            interval_words(one),
+        )
+        for name, one in away
+    ]
+    said = (
+        "Numbers of the model that were fitted within their tolerances, with or without a cause;"
+        " the extended model has them. What a wide tolerance lets move is not called a fault."
+    )
+    shown = table(("number", "model", "fitted", "interval"), rows)
+    if len(rows) > 2 * SHOWN:
+        shown = folded(f"{len(rows)} numbers that moved", shown)
+    return [paragraph(said, "note"), shown]
 
 
 def _pictures(verdict: Verdict, exhibit: ReportTraces) -> list[Html]:
