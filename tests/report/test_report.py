@@ -498,6 +498,8 @@ def test_what_ends_its_range_is_not_counted_as_proved(proven):
     assert said in headline(ended)
     assert "No causes improve the prediction" in headline(ended)
     assert "0 of them improve" in diagnosis_page(ended)
+    assert next_step(ended).startswith("Look for what else is wrong")
+    assert next_step(verdict).startswith("Simulate with the extended model")
     assert "0 extensions proved" in ended.words
     assert said.partition(":")[0] in ended.words
     assert said not in headline(verdict)

@@ -77,6 +77,10 @@ def next_step(verdict: Verdict) -> str:
         firm = [spoken(one.label) for one in verdict.proved if one.firm]
         if firm:
             return f"Simulate with the extended model, and look at {listed(firm[:TOLD])}."
+        if all(one.ended for one in verdict.proved):
+            return (
+                "Look for what else is wrong: what was fitted ends its range and stands for that."
+            )
         return "Simulate with the extended model. A motion in which they differ settles the names."
     if verdict.law is not None and verdict.law.claimed:
         place = verdict.law.place

@@ -38,11 +38,12 @@ def proof_sentence(verdict: Verdict) -> str:
     if verdict.put_to_proof is None:
         return ""
     rate = percent(verdict.false_discovery_rate)
+    tested, better = verdict.put_to_proof, sum(not one.ended for one in verdict.proved)
+    were = "cause was" if tested == 1 else "causes were"
     said = (
-        f"{verdict.put_to_proof} causes were tested on held-out data;"
-        f" {sum(not one.ended for one in verdict.proved)} of them improve its prediction. Of such,"
-        f" at most {rate} are"
-        " expected to be false."
+        f"{tested} {were} tested on held-out data; {better} of them"
+        f" improve{'s' * (better == 1)} its prediction. Of such, at most {rate} are expected to be"
+        " false."
     )
     if not verdict.proved:
         return said
