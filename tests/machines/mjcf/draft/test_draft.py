@@ -289,3 +289,49 @@ def test_typical_efforts_are_those_of_the_joints_behind_their_gears(arm, tmp_pat
         found.append({j: span.effort for j, span in rig.description.typical.joint.items()})
     assert set(found[0]) == {"turn", "lift", "bend"}
     assert found[1] == pytest.approx(found[0], rel=0.02)
+
+
+HOIST = """
+<mujoco model="hoist"><worldbody><body name="load">
+  <joint name="z" type="slide" axis="0 0 1" range="-0.3 0.3" limited="true" damping="20"/>
+  <geom size="0.1" mass="5"/></body></worldbody>
+  <actuator><motor name="lift" joint="z"/></actuator></mujoco>
+"""
+
+
+def hoisted(folder, **changes):
+    """A load that is lifted and lowered, 0.3 A for each newton, and what a draft says of its log."""
+    (folder / "hoist.xml").write_text(HOIST)
+    time = 0.01 * np.arange(2000)
+    z = 0.1 * np.sin(2.0 * time) + 0.04 * np.sin(5.3 * time + 1.0) + 0.02 * np.sin(9.1 * time)
+    v, a = np.gradient(z, 0.01), np.gradient(np.gradient(z, 0.01), 0.01)
+    columns = {
+        "t": time,
+        "z": z,
+        "i_A": 0.3 * (5.0 * (a + 9.81) + 20.0 * v + 2.0 * np.tanh(v / 0.01)),
+    }
+    for name, factor in changes.items():
+        columns[name] = factor * columns[name]
+    head, rows = ",".join(columns), np.column_stack(list(columns.values()))
+    np.savetxt(folder / "log.csv", rows, "%.8g", ",", header=head, comments="")
+    return drafted(folder / "hoist.xml", folder / "log.csv")
+
+
+@pytest.mark.parametrize("current", [1.0, -1.0])
+@pytest.mark.parametrize("position", [1.0, -1.0])
+def test_a_weight_tells_whether_the_position_or_the_current_counts_backwards(
+    tmp_path, position, current
+):
+    """Turning the other of them explains the motion as well, and lets the weight push up."""
+    found, rig = hoisted(tmp_path, z=position, i_A=current)
+    turned = {name: np.sign(scale) for name, scale in scales(rig).items()}
+    assert turned == {"z.position": position, "lift.effort": current}
+    said = [words for words in found.look if "turned" in words]
+    assert len(said) == (position < 0.0) + (current < 0.0)
+
+
+def test_a_position_far_beyond_its_joint_s_range_is_told(tmp_path):
+    found, _ = hoisted(tmp_path, z=1000.0)
+    assert any("joint z from -0.3 to 0.3: another unit?" in words for words in found.look)
+    found, _ = hoisted(tmp_path)
+    assert not any("another unit" in words for words in found.look)

@@ -32,6 +32,11 @@ OFF = 0.1
 TURN = 0.02
 """Weight against turning an effort's sign, so that where all else is equal none is turned."""
 
+LOADED = 0.2
+"""Share of an effort's rms that a steady load is, in the log and in the model, for its sign to
+count; and weight against a change by which it would pull the other way, above GAINED: a current
+that is turned where a position counts backwards would let a weight push up."""
+
 WORKS = 0.1
 """Share of the most work from which on its sign counts: what springs and masses give back is less
 over some periods of a motion."""
@@ -89,6 +94,7 @@ def checked(log: LogColumns, matches: Matches, model: mujoco.MjModel) -> Checked
         found, said = judge.efforts(found, motion)
         findings += said
         explained = judge.explained(found, motion)
+    findings += _beyond(log, found, model)
     found, said = _speeds(log, found, corner)
     dofs = {model.joint(i).name: int(model.jnt_dofadr[i]) for i in range(model.njnt)}
     return Checked(tuple(found), (*findings, *said), explained, motion, corner, dofs)
@@ -104,6 +110,7 @@ class _Fit:
         gain: what of that the model's effort adds to friction alone.
         work: of the effort along the motion, as a share of the most that it could do.
         free: whether any constant may stand between effort and column.
+        against: whether a steady load, as a weight, pulls the other way than the slope says.
     """
 
     slope: float
@@ -111,6 +118,7 @@ class _Fit:
     gain: float
     work: float
     free: bool
+    against: bool
 
     @property
     def usable(self) -> bool:
@@ -164,7 +172,7 @@ class _Judge:
         for match in self.driving(found):
             fit, dof = self.fit(match, motion), self.dof(match)
             driven.add(dof)
-            total += fit.share - TURN * (fit.sign < 0)
+            total += fit.share - TURN * (fit.sign < 0) - LOADED * fit.against
             if not match.electrical and fit.gain > STRONG and fit.slope:
                 total -= OFF * min(abs(float(np.log10(abs(fit.slope)))), 3.0)
         for dof in set(range(self.model.nv)) - driven - self.pushed(found):
@@ -211,7 +219,10 @@ class _Judge:
             shares.append(max(1.0 - float(rest @ rest) / power, 0.0))
         most = float(np.linalg.norm(v) * np.linalg.norm(y)) or 1.0
         gain, work = shares[0] - shares[1], float(v @ y) / most
-        return _Fit(float(slopes[0]), shares[0], gain, work, match.electrical)
+        loads = float(slopes[0] * need.mean()), float(y.mean())
+        heavy = min(map(abs, loads)) > LOADED * float(np.sqrt(np.mean(y**2)))
+        against = gain > TELLS and heavy and loads[0] * loads[1] < 0.0
+        return _Fit(float(slopes[0]), shares[0], gain, work, match.electrical, against)
 
     def efforts(self, found: list[Match], motion: Motion) -> tuple[list[Match], list[str]]:
         """With signs and constants of efforts as the motion needs them."""
@@ -224,9 +235,10 @@ class _Judge:
                 scale = 1.0 / fit.slope
                 found[i] = replace(match, scale=float(f"{scale:.3g}"))
                 unit = f"{match.spot.unit} per {match.unit}"
+                turned = ", turned (or its joint's position counts the other way)" * (scale < 0.0)
                 said.append(
                     f"{match.column} is electrical: {abs(scale):.3g} {unit} makes it fit this"
-                    " model; put the motor's constant there"
+                    f" model{turned}; put the motor's constant there"
                 )
             elif fit.sign < 0:
                 found[i] = replace(match, scale=-match.scale)
@@ -290,6 +302,22 @@ def _exchanged(one: Match, two: Match) -> tuple[Match, Match]:
     """Both spots with the other's column."""
     first = replace(two, spot=one.spot, reasons=("fits the model better there",))
     return first, replace(one, spot=two.spot, reasons=("fits the model better there",))
+
+
+def _beyond(log: LogColumns, found: list[Match], model: mujoco.MjModel) -> Iterator[str]:
+    """Positions that leave the range of their joint by more than that range is wide."""
+    for match in found:
+        joint = model.joint(match.spot.name) if match.spot.quantity is Quantity.POSITION else None
+        if joint is None or not model.jnt_limited[joint.id]:
+            continue
+        low, high = joint.range
+        values = match.factor * log.values[match.column]
+        lowest, highest = float(np.min(values)), float(np.max(values))
+        if max(low - lowest, highest - high) > high - low:
+            yield (
+                f"{match.column} goes from {lowest:.3g} to {highest:.3g} {match.spot.unit}, joint"
+                f" {match.spot.name} from {low:.3g} to {high:.3g}: another unit?"
+            )
 
 
 def _speeds(log: LogColumns, found: list[Match], corner: float) -> tuple[list[Match], list[str]]:
