@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from ves_twin.data.empty_cells import FEW, lone
+from ves_twin.data.empty_cells import FEW, filled, lone
 
 
 @pytest.mark.parametrize("start", [0, 3, 20])
@@ -20,3 +20,9 @@ def test_each_stretch_counts_by_itself():
     empty[[2, 5, 6, 39]] = True
     empty[10:30] = True
     assert list(np.flatnonzero(lone(empty))) == [2, 5, 6, 39]
+
+
+@pytest.mark.parametrize(("held", "wanted"), [(False, [1, 2, 3, 4, 4]), (True, [1, 1, 1, 4, 4])])
+def test_what_is_missing_is_straight_between_its_neighbours_or_as_it_was(held, wanted):
+    values = np.array([1.0, np.nan, np.nan, 4.0, np.nan])
+    assert list(filled(values, ~np.isfinite(values), held)) == wanted

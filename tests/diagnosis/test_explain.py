@@ -385,7 +385,9 @@ def test_an_empty_library_explains_nothing():
     assert explain(first, LEVELS, QUICK) is None
 
 
-def test_every_fit_near_the_first_is_held_where_that_costs_less_than_a_further_cause(looked):
+def test_every_fit_near_the_first_is_held_where_that_costs_less_than_a_further_cause(
+    looked, monkeypatch
+):
     """Whichever of them is the most probable in the end, its tolerances are those of a rig."""
     record = looked(STRAINED)
     evidence, base = record.evidence, record.screen.bank.base
@@ -399,8 +401,16 @@ def test_every_fit_near_the_first_is_held_where_that_costs_less_than_a_further_c
     assert held[0].chi2 <= held[1].chi2
     assert _held(evidence, ranked, limit, clear=1e-6) == ranked
     apart = 0.5 * (ranked[1].chi2 - ranked[0].chi2)
+    tried = []
+
+    def counted(*given, **named):
+        tried.append(given[1])
+        return refine(*given, **named)
+
+    monkeypatch.setattr("ves_twin.diagnosis.judge.refine", counted)
     again = _held(evidence, ranked, limit, clear=apart)
-    assert any(fit is ranked[1] for fit in again)  # too far behind to be the most probable
+    assert tried == [ranked[0].causes]  # the other is too far behind to be the most probable
+    assert any(fit is ranked[1] for fit in again)
 
 
 def test_progress_is_a_share_of_each_stage(looked):

@@ -571,6 +571,8 @@ def test_causes_whose_p_one_stretch_of_time_may_turn_are_told_on_both_sides_of_t
     close = replace(sure, proved=(replace(sure.proved[0], p=0.009),))
     assert "Near it: friction at plant (p 0.009, accepted)." in near_sentence(close)
     assert not near_sentence(proven)
+    small = replace(sure, unproved={"lag@plant": 1e-6})
+    assert near_sentence(small).endswith("so not kept: lag at plant.")
 
 
 def test_what_is_proved_stands_in_the_verdict_file(proven):

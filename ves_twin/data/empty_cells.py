@@ -1,14 +1,16 @@
-"""lone: rows with an empty cell that a line between their neighbours may stand for."""
+"""lone, filled: a few rows without a number, which their neighbours may stand for."""
 
 from __future__ import annotations
 
 import numpy as np
 
-from ves_twin.core.types import BoolArray
+from ves_twin.core.types import BoolArray, FloatArray
 
 FEW = 4
-"""Rows in a row that may be empty: over five periods a line is drawn, over more it would invent
-what happened."""
+"""Rows together that may lack a number: over more a line would invent what happened."""
+
+MOST = 0.1
+"""Share of its rows that a column may lack; of more it is a slower signal, not a log with holes."""
 
 
 def lone(empty: BoolArray) -> BoolArray:
@@ -22,3 +24,19 @@ def lone(empty: BoolArray) -> BoolArray:
     for start, stop in zip(edges[::2], edges[1::2], strict=True):
         found[start:stop] = stop - start <= FEW
     return found
+
+
+def filled(values: FloatArray, empty: BoolArray, held: bool) -> FloatArray:
+    """Values with those that are missing straight between their neighbours, or as they were before.
+
+    Args:
+        values: at even rows (n,).
+        empty: rows to fill (n,).
+        held: whether the newest value stands until the next one comes, as of a command.
+    """
+    there, rows = np.flatnonzero(~empty), np.arange(len(values))
+    if not len(there) or len(there) == len(values):
+        return values
+    if held:
+        return np.asarray(values[there[np.maximum(np.searchsorted(there, rows, "right") - 1, 0)]])
+    return np.asarray(np.where(empty, np.interp(rows, there, values[there]), values))

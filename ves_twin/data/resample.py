@@ -23,8 +23,8 @@ SAME = 1e-3
 """Rates that differ by less count as one."""
 
 LATE = 0.1
-"""Part of a row by which the stamp of a held value may be late: with none, jitter of any size takes
-every second value from the row before."""
+"""Part of a row, or of the value's own period where that is shorter, by which the stamp of a held
+value may be late: with none, jitter of any size takes every second value from the row before."""
 
 
 @dataclass(frozen=True)
@@ -76,7 +76,9 @@ def resample(
     chosen = _chosen(way, role, period, step)
     if chosen is Way.HOLD:
         found = Resampled(
-            _newest(values, time, rows, step), "newest value held", period if period > step else 0.0
+            _newest(values, time, rows, min(step, period)),
+            "newest value held",
+            period if period > step else 0.0,
         )
     elif chosen is Way.LINEAR:
         found = Resampled(np.asarray(np.interp(rows, time, values)), "straight between rows", 0.0)
@@ -86,7 +88,7 @@ def resample(
     if gaps is Gaps.HOLD:
         after = rows >= time[0]
         fill = empty & after
-        found.values[fill] = _newest(values, time, rows[fill], step)
+        found.values[fill] = _newest(values, time, rows[fill], min(step, period))
         empty &= ~after
     found.values[empty] = np.nan
     return found

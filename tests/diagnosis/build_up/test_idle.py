@@ -87,3 +87,11 @@ def test_a_cause_that_is_there_and_earns_next_to_nothing_is_told(monkeypatch):
     assert idle(proof, runs, held, fit) is None
     monkeypatch.setattr(place, 1.1 * share)
     assert idle(proof, runs, held, fit) == small
+
+
+def test_a_cause_whose_work_others_do_when_refitted_is_told(proved, monkeypatch):
+    """As it was fitted it takes much away; without it the rest is fitted to do the same."""
+    proof, fit, runs, held = proved
+    whole = proof.bench.bare(proof.proved)
+    monkeypatch.setattr("ves_twin.diagnosis.build_up.proof.Bench.bare", lambda *_: whole)
+    assert idle(proof, runs, held, fit) in proof.proved

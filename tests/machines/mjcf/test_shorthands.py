@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -9,7 +10,8 @@ import pytest
 from two_link import MODEL
 
 from ves_twin.core.errors import VesTwinError
-from ves_twin.machines.mjcf.columns import read_rig_recording
+from ves_twin.machines.mjcf.columns import held, read_rig_recording
+from ves_twin.machines.mjcf.description import Mode
 from ves_twin.machines.mjcf.extend import write_rig
 from ves_twin.machines.mjcf.machine import Rig
 
@@ -194,16 +196,49 @@ def test_a_formula_of_columns_is_a_column(tmp_path):
 
 
 @pytest.mark.parametrize("cell", ["", "n/a"])
-def test_a_few_rows_without_a_number_are_read_over_and_said(tmp_path, cell):
+@pytest.mark.parametrize("start", [1, 3, 17, 40, 64, 96])
+def test_a_few_cells_without_a_number_are_filled_and_said(tmp_path, cell, start):
+    """Each column from its own rows: what lacks a position keeps its effort."""
     lines = LOG.splitlines()
-    for k in (3, 40, 41, 42, 43):
+    for k in range(start, start + 4):
         lines[k] = lines[k].replace(f",{k - 1},", f",{cell},", 1)
     whole = read_rig_recording(tmp_path / "log.csv", written(tmp_path, log=LOG))
     recording = read_rig_recording(tmp_path / "log.csv", written(tmp_path, log="\n".join(lines)))
     assert recording.time == pytest.approx(whole.time)
-    assert recording["rail.position"] == pytest.approx(whole["rail.position"])
+    assert np.array_equal(recording["drive.effort"], whole["drive.effort"])
+    if start > 1 and start + 4 < len(lines):
+        assert recording["rail.position"] == pytest.approx(whole["rail.position"])
     (said,) = recording.info.imported["suspected"]
-    assert said.startswith("log.csv: 5 rows without a number")
+    assert said.startswith("log.csv: 4 rows lack a number")
+
+
+@pytest.mark.parametrize("start", range(20, 60, 3))
+@pytest.mark.parametrize("jitter", [0.0, 5e-4])
+def test_four_rows_that_are_not_there_are_read_over_wherever_they_are(tmp_path, start, jitter):
+    rng = np.random.default_rng(start)
+    time = 0.01 * np.arange(100) + rng.uniform(-jitter, jitter, 100)
+    rows = [k for k in range(100) if not start <= k < start + 4]
+    log = "t,x,a,w,f\n" + "\n".join(f"{time[k]:.6f},{1000 * time[k]:.4f},0,0,{k}" for k in rows)
+    recording = read_rig_recording(tmp_path / "log.csv", written(tmp_path, log=log))
+    assert np.ptp(np.diff(recording.time)) < 1e-9
+    assert recording["rail.position"][:, 0] == pytest.approx(-recording.time, abs=1e-5)
+
+
+def test_a_column_that_lacks_many_numbers_is_refused(tmp_path):
+    lines = LOG.splitlines()
+    for k in range(3, 100, 7):
+        lines[k] = lines[k].replace(f",{k - 1},", ",,", 1)
+    with pytest.raises(VesTwinError, match=r"14 empty rows.* 10% in all at most"):
+        read_rig_recording(tmp_path / "log.csv", written(tmp_path, log="\n".join(lines)))
+
+
+def test_efforts_belong_to_the_motion_where_that_is_fed_in_and_are_held_else(tmp_path):
+    rig = written(tmp_path)
+    told = rig.description
+    motion = told.model_copy(update={"drive": told.drive.model_copy(update={"mode": Mode.MOTION})})
+    assert held(rig, "drive.effort")
+    assert not held(replace(rig, description=motion), "drive.effort")
+    assert not held(rig, "rail.position")
 
 
 def test_a_window_leaves_out_empty_rows_before_they_are_refused(tmp_path):

@@ -101,8 +101,13 @@ def _at_work(
         proof = replace(
             proof,
             proved=tuple(n for n in proof.proved if n != gone),
-            dropped={**proof.dropped, gone: 1.0},
+            dropped={**proof.dropped, gone: _p_of(proof, gone)},
         )
+
+
+def _p_of(proof: Proof, trial: int) -> float:
+    """Its p, where it was put to proof."""
+    return proof.differences[trial].p if trial in proof.differences else 1.0
 
 
 def _near(builder: Builder, halves: Halves, proof: Proof) -> Fit | None:

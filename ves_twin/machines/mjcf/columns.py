@@ -14,10 +14,10 @@ from ves_twin.core.signals import Role
 from ves_twin.core.types import BoolArray, FloatArray
 from ves_twin.data.clock_report import usual_step
 from ves_twin.data.column_expression import ColumnExpression
-from ves_twin.data.empty_cells import FEW, lone
+from ves_twin.data.empty_cells import FEW, MOST, filled, lone
 from ves_twin.data.log import Kind, Log
 from ves_twin.data.open_log import open_log
-from ves_twin.machines.mjcf.description import Column, Mode, RigDescription
+from ves_twin.machines.mjcf.description import Mode, RigDescription
 from ves_twin.machines.mjcf.machine import Rig
 from ves_twin.machines.mjcf.signals import rig_signals
 from ves_twin.machines.mjcf.turned import turned
@@ -26,14 +26,15 @@ UNEVEN = 0.01
 """Largest departure of a time step from the mean that passes as an even clock."""
 
 HOLE = 5.0
-"""Periods over which a line is drawn between two rows; a longer gap is left to be refused."""
+"""Periods over which a line is drawn between two rows, that is over four rows that are not there;
+a longer gap is left to be refused."""
 
 
 def read_rig_recording(path: Path, rig: Rig) -> Recording:
     """A recording of a rig.
 
-    Rows outside the file's `window` are left out before anything is refused, and so are a FEW rows
-    together in which a cell holds no number, which is said. Where stamps jitter
+    Rows outside the file's `window` are left out before anything is refused. A FEW rows together
+    that lack a number are filled, which is said. Where stamps jitter
     by more than UNEVEN of a step, every signal is read at even rows: measurements straight
     between the rows, commands of the nearest row.
 
@@ -52,19 +53,22 @@ def read_rig_recording(path: Path, rig: Rig) -> Recording:
     told = rig.description
     table = _Table.of(open_log(path), told)
     time, inside = _times(table, told, path)
-    asked = np.count_nonzero(inside)
-    inside = inside if told.clock.poses else _whole(table, told, inside)
-    time, left_out = time[inside], int(asked - np.count_nonzero(inside))
-    signals = {name: _signal(table, c, inside, path) for name, c in told.signals.items()}
+    poses = told.clock.poses
+    empty = np.zeros(table.rows, bool) if poses else _lacking(table, told, inside)
+    time, signals = time[inside], dict[str, FloatArray]()
+    for name, column in told.signals.items():
+        whole = [table.column(c, inside, path, held(rig, name), poses) for c in column.columns]
+        signals[name] = np.asarray(column.scale * np.stack(whole, axis=1) + column.offset)
     for name, column in told.signals.items():
         if column.into:
             signals[name] = turned(signals[name], signals, name, column.into)
-    log = POSES if told.clock.poses else ""
+    log = POSES if poses else ""
     info = RecordingInfo("measured", scenario=path.stem, log=log, outcome="finished")
-    if left_out:
-        words = f"{path.name}: {left_out} rows without a number are left out, read over by a line"
+    if empty.any():
+        count = f"{path.name}: {np.count_nonzero(empty)} rows lack a number"
+        words = f"{count}: measurements are taken straight between rows, commands as before"
         info = replace(info, imported={"suspected": [words]})
-    if told.clock.poses:
+    if poses:
         return Recording(time, signals, info)
     return _even(Recording(time, signals, info), rig)
 
@@ -106,19 +110,21 @@ class _Table:
             values = ColumnExpression(text).value(self.columns)
         return np.asarray(np.broadcast_to(values, self.rows))
 
-    def column(self, text: str, inside: BoolArray, path: Path) -> FloatArray:
-        """The same in some rows (n,), all of them numbers."""
+    def column(
+        self, text: str, inside: BoolArray, path: Path, hold: bool = False, strict: bool = False
+    ) -> FloatArray:
+        """The same in some rows (n,), a FEW together without a number filled; none if strict."""
         values = self.all_of(text)
-        bad = np.flatnonzero(inside & ~np.isfinite(values))
+        empty = inside & ~np.isfinite(values)
+        few = lone(empty) & (np.mean(empty[inside]) <= MOST) & (not strict)
+        bad = np.flatnonzero(empty & ~few)
         if len(bad):
             came = f"{len(bad)} empty rows, the first is row {bad[0] + 1} of the table"
-            expected = (
-                f"numbers, or {FEW} empty rows together at most; window in the machine's file"
-            )
-            raise InvalidInputError(
-                f"column {text} of {path.name}", came, f"{expected} leaves a stretch out"
-            )
-        return values[inside]
+            expected = f"numbers, or {FEW} empty rows together and {MOST:.0%} in all at most"
+            where = f"column {text} of {path.name}"
+            advice = f"{expected}; window in the machine's file leaves a stretch out"
+            raise InvalidInputError(where, came, advice)
+        return filled(values[inside], empty[inside], hold)
 
 
 def needed(text: str, known: Mapping[str, object]) -> tuple[str, ...]:
@@ -136,10 +142,7 @@ def _times(table: _Table, told: RigDescription, path: Path) -> tuple[FloatArray,
     """Times of all rows [s], and which of them are in the window."""
     clock, whole = told.clock, np.ones(table.rows, dtype=bool)
     if clock.column:
-        empty = ~np.isfinite(table.all_of(clock.column))
-        time = clock.scale * table.all_of(clock.column)
-        table.column(clock.column, whole & ~lone(empty), path)
-        time = np.interp(np.arange(table.rows), np.flatnonzero(~empty), time[~empty])
+        time = clock.scale * table.column(clock.column, whole, path, strict=clock.poses)
     else:
         time = np.asarray(np.arange(table.rows) / clock.rate, np.float64)
     since = time - time[0]
@@ -150,17 +153,12 @@ def _times(table: _Table, told: RigDescription, path: Path) -> tuple[FloatArray,
     return time, inside
 
 
-def _whole(table: _Table, told: RigDescription, inside: BoolArray) -> BoolArray:
-    """Rows without those whose cells are empty here and there: even rows are read over them."""
+def _lacking(table: _Table, told: RigDescription, inside: BoolArray) -> BoolArray:
+    """Rows of the window in which a column that is used lacks a number."""
     names = [name for one in told.signals.values() for name in one.columns]
     names += [told.clock.column] if told.clock.column else []
-    empty = ~np.all([np.isfinite(table.all_of(name)) for name in names], axis=0)
-    return inside & ~lone(inside & empty)
-
-
-def _signal(table: _Table, told: Column, inside: BoolArray, path: Path) -> FloatArray:
-    columns = [table.column(name, inside, path) for name in told.columns]
-    return np.asarray(told.scale * np.stack(columns, axis=1) + told.offset)
+    whole = np.all([np.isfinite(table.all_of(name)) for name in names], axis=0)
+    return np.asarray(inside & ~whole)
 
 
 def _even(recording: Recording, rig: Rig) -> Recording:
@@ -172,14 +170,15 @@ def _even(recording: Recording, rig: Rig) -> Recording:
     if np.ptp(steps) <= UNEVEN * np.mean(steps):
         return replace(recording, time=np.linspace(time[0], time[-1], len(time)))
     period = usual_step(time)
-    if np.max(steps) > HOLE * period:  # whoever needs even rows says so
+    if np.max(steps) > (HOLE + 0.5) * period:  # whoever needs even rows says so
         return recording
     rows = np.asarray(time[0] + period * np.arange(int((time[-1] - time[0]) / period) + 1))
     read = {
         name: np.stack([_at(rows, c, time, held(rig, name)) for c in values.T], axis=1)
         for name, values in recording.signals.items()
     }
-    jitter = float(np.max(np.abs(steps - period))) / period
+    near = steps[steps < 1.5 * period]
+    jitter = float(np.max(np.abs(near - period))) / period
     note = f"stamps jitter by up to {jitter:.0%}: read at even {1.0 / period:.5g} Hz"
     info = replace(recording.info, imported={**recording.info.imported, "notes": [note]})
     return Recording(rows, read, info)

@@ -218,21 +218,25 @@ def _doubt(verdict: Verdict) -> str:
     return f"Held-out recordings confirm it: there it takes {share} of the error beyond noise away."
 
 
+OFF = "tolerances off"
+"""How a cause ends that may be an error of commissioning."""
+
+
 def why_loose(cause: Cause) -> str:
     """Why a name is not firm."""
     if cause.below_row:
         return "less than a row of the log, whose clock explains that as well"
-    if not cause.sigmas:
+    if not cause.sigmas or all(e.low <= e.nominal <= e.high for e in cause.parameters.values()):
         return "its interval holds what the model has already"
-    return f"{cause.sigmas:.1f} tolerances off"
+    return f"{cause.sigmas:.1f} {OFF}"
 
 
 def _loose(verdict: Verdict, loose: list[Cause]) -> str:
     """Of causes that may be commissioning errors, or something else."""
     most = max(cause.sigmas or 0.0 for cause in loose)
-    other = next((cause for cause in loose if cause.below_row or not cause.sigmas), None)
-    if other is not None:
-        return f"{capital(name_of(other))} is provisional: {why_loose(other)}."
+    for cause in loose:
+        if not why_loose(cause).endswith(OFF):
+            return f"{capital(name_of(cause))} is provisional: {why_loose(cause)}."
     which = "It is" if len(verdict.causes) == 1 else f"{name_of(loose[0])} is"
     which = "Each is" if len(loose) == len(verdict.causes) > 1 else capital(which)
     upto = "up to " if len(loose) > 1 else ""

@@ -234,8 +234,8 @@ def _moved(verdict: Verdict) -> list[Html]:
         for name, one in away
     ]
     said = (
-        "Numbers of the model that were fitted within their tolerances, with or without a cause;"
-        " the extended model has them. What a wide tolerance lets move is not called a fault."
+        "Numbers of the model that were fitted beside, as their tolerances let them move. What a"
+        " wide tolerance lets move is not called a fault."
     )
     shown = table(("number", "model", "fitted", "interval"), rows)
     if len(rows) > 2 * SHOWN:

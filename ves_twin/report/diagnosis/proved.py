@@ -54,22 +54,28 @@ def proof_sentence(verdict: Verdict) -> str:
 
 
 def near_sentence(verdict: Verdict) -> str:
-    """Which causes stand near the limit, on either side; empty where none does."""
+    """Which causes stand near the limit, or pass it and are worth nothing; empty without any."""
     limit = verdict.p_limit
     if limit is None:
         return ""
     accepted = {one.label: one.p for one in verdict.proved if NEAR * one.p > limit}
-    missed = {name: p for name, p in verdict.unproved.items() if p <= NEAR * limit}
+    missed = {name: p for name, p in verdict.unproved.items() if limit < p <= NEAR * limit}
+    small = [spoken(name) for name, p in verdict.unproved.items() if p <= limit]
+    worth = (
+        f"Hardly worth anything once all is fitted, so not kept: {', '.join(small)}."
+        if small
+        else ""
+    )
     said = [
         f"{spoken(name)} (p {p:.2g}, {told})"
         for some, told in ((accepted, "accepted"), (missed, "not accepted"))
         for name, p in some.items()
     ]
     if not said:
-        return ""
+        return worth
     return (
         f"Accepted is a p of {limit:.2g} at most. Near it: {', '.join(said)}. Other recordings of"
-        " the same machine may turn that; longer ones settle it."
+        f" the same machine may turn that; longer ones settle it. {worth}".rstrip()
     )
 
 

@@ -222,7 +222,7 @@ def test_an_empty_cell_here_and_there_leaves_the_log_whole(arm, columns, write):
     log.write_text("\n".join(lines) + "\n")
     found, rig = drafted(arm, log)
     assert "window" not in tomllib.loads(found.text)
-    assert any("2 rows with empty cells are left out" in words for words in found.look)
+    assert any("2 rows lack a number" in words for words in found.look)
     assert len(read_recording(log, rig)) == 1600
 
 

@@ -17,7 +17,7 @@ from ves_twin.machines.mjcf.draft.chosen import RATES, Chosen
 from ves_twin.machines.mjcf.draft.estimates import travel, two_digits, typical
 from ves_twin.machines.mjcf.draft.log_columns import LogColumns
 from ves_twin.machines.mjcf.draft.match import Match, Matches
-from ves_twin.machines.mjcf.draft.spots import Quantity
+from ves_twin.machines.mjcf.draft.spots import Quantity, is_motor
 from ves_twin.machines.mjcf.inverse import smoothed
 
 SHARES = {
@@ -150,7 +150,7 @@ def _joints(log: LogColumns, check: Checked, model: mujoco.MjModel) -> Iterator[
         speed = np.gradient(smoothed(position, log.period, check.corner), log.period)
         sizes = {"speed": typical(speed), "travel": travel(position)}
         own = efforts.get(match.spot.name)
-        if own is not None:
+        if own is not None and is_motor(model, model.actuator(own.spot.name).id):
             drive = model.actuator(own.spot.name)
             gain = abs(float(drive.gear[0] * drive.gainprm[0])) or 1.0
             sizes = {"effort": typical(gain * own.factor * log.values[own.column]), **sizes}

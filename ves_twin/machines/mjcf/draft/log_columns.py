@@ -12,7 +12,7 @@ from ves_twin.core.errors import InvalidInputError
 from ves_twin.core.types import BoolArray, FloatArray
 from ves_twin.data.clock_fields import clock_fields
 from ves_twin.data.clock_report import GAP, UNEVEN, usual_step
-from ves_twin.data.empty_cells import lone
+from ves_twin.data.empty_cells import filled, lone
 from ves_twin.data.log import Column, Kind
 from ves_twin.data.open_log import open_log
 
@@ -127,21 +127,22 @@ def _sorted(
     """Columns by what can be done with them: the longest stretch that all fill, at even steps."""
     rows = len(next(iter(read.values())))
     time = scale * read[clock] if clock else period * np.arange(rows)
-    good = np.isfinite(time) & np.concatenate([[True], np.diff(time) > 0.0])
+    known = np.isfinite(time)
+    good = known & np.concatenate([[True], np.diff(time) > 0.0])
     full = {n: np.isfinite(v) for n, v in read.items() if n != clock}
     empty = [n for n, finite in full.items() if np.mean(finite) < FILLED]
-    whole = np.all([f for n, f in full.items() if n not in empty] or [good], axis=0)
-    left_out = lone(~whole)
-    stretch, window, good = _longest(whole | left_out), None, good & ~left_out
-    if np.any(left_out[stretch]):
-        count = np.count_nonzero(left_out[stretch])
-        notes.append(f"{count} rows with empty cells are left out; even rows are read over them")
+    kept = {n: finite | lone(~finite) for n, finite in full.items() if n not in empty}
+    stretch, window = _longest(np.all([*kept.values()] or [good], axis=0)), None
+    count = np.count_nonzero(~np.all([full[n][stretch] for n in kept] or [good[stretch]], axis=0))
+    if count:
+        notes.append(f"{count} rows lack a number: it is taken straight between its neighbours")
     if stretch != slice(0, rows):
-        window = (float(time[stretch][0] - time[0]), float(time[stretch][-1] - time[0]))
+        ends = time[known & (np.arange(rows) >= stretch.start) & (np.arange(rows) < stretch.stop)]
+        window = (float(ends[0] - time[known][0]), float(ends[-1] - time[known][0]))
         notes.append(f"longer empty stretches: window {window[0]:g} to {window[1]:g} s is used")
     own = time[stretch][good[stretch]]
     even = own[0] + period * np.arange(int((own[-1] - own[0]) / period + 1.0 + 1e-6))
-    used = {n: read[n][stretch][good[stretch]] for n in full if n not in empty}
+    used = {n: filled(read[n][stretch], ~full[n][stretch], held=False)[good[stretch]] for n in kept}
     constant = [n for n, v in used.items() if np.ptp(v) == 0.0]
     values = {n: np.asarray(np.interp(even, own, v)) for n, v in used.items() if n not in constant}
     if not values or len(even) < FEWEST:
