@@ -468,6 +468,8 @@ def test_where_more_is_wrong_sizes_of_noise_alone_are_not_promised(proven):
     assert "seen seven times out of ten" in sure
     assert "seen seven times out of ten" not in page
     assert "Here it lacks more (out.0: 2 times the noise is left)" in page
+    quiet = {"out.0": replace(verdict.left["out.0"], rms=0.008)}
+    assert "Here it lacks more, so" in diagnosis_page(replace(verdict, left=quiet))
     unknown = replace(proven, verdict=Kind.UNKNOWN)
     assert "Here it lacks more, so" in diagnosis_page(unknown)
     pair = Lookalike("friction@plant", "lag@plant", 0.01, "1", 0.2)

@@ -44,7 +44,8 @@ def findable_sentence(verdict: Verdict) -> str:
             "A cause of this size is seen seven times out of ten by recordings like these; to be"
             " told from every other it may have to be larger."
         )
-    ratios = {name: one.rms / one.noise for name, one in verdict.left.items() if one.noise > 0.0}
+    louder = {name: one for name, one in verdict.left.items() if one.rms > one.noise > 0.0}
+    ratios = {name: one.rms / one.noise for name, one in louder.items()}
     loudest = max(ratios, key=lambda name: ratios[name], default="")
     told = f" ({loudest}: {digits(ratios[loudest])} times the noise is left)" if loudest else ""
     return (
