@@ -60,7 +60,8 @@ def confidence_sentence(verdict: Verdict) -> str:
             rate = percent(verdict.false_discovery_rate)
             return (
                 f"{verdict.put_to_proof} {'was' if verdict.put_to_proof == 1 else 'were'} tested on"
-                f" held-out data; of those accepted, at most {rate} are expected to be false. Only firm names are the mechanism."
+                f" held-out data; of those accepted, at most {rate} are expected to be false. Only"
+                " firm names are the mechanism."
             )
         case _:
             return _doubt(verdict)
