@@ -19,6 +19,7 @@ from ves_twin.diagnosis.forecast import forecast
 from ves_twin.diagnosis.forward import Forward
 from ves_twin.diagnosis.gain import Gain
 from ves_twin.diagnosis.held_out import HeldOut
+from ves_twin.diagnosis.on_line import on_line
 from ves_twin.diagnosis.preprocess import Dataset
 from ves_twin.diagnosis.profile import profiled
 from ves_twin.diagnosis.refine import ROUGH, Fit, refine
@@ -182,6 +183,7 @@ def _probed(found: Explanation, settings: Settings) -> Explanation:
         )
         for fit in found.chosen
     )
+    chosen = tuple(on_line(evidence, fit) for fit in chosen)
     if not settings.sparse and not evidence.runs.budget.skips("profiles of sizes"):
         chosen = tuple(profiled(evidence, fit) for fit in chosen)
     chosen = tuple(spread(evidence, fit) for fit in chosen)
