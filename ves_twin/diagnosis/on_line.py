@@ -9,7 +9,7 @@ import numpy as np
 from ves_twin.core.types import FloatArray
 from ves_twin.diagnosis.evidence import Evidence
 from ves_twin.diagnosis.refine import Fit
-from ves_twin.diagnosis.search import Search
+from ves_twin.diagnosis.search import Point, Search
 
 AT = np.array([-3.0, -1.5, 0.0, 1.5, 3.0])
 """Standard deviations from the fit that are simulated: beyond a 90 % interval, and not so far that
@@ -43,48 +43,48 @@ def on_line(evidence: Evidence, fit: Fit) -> Fit:
 
 
 def _along(evidence: Evidence, fit: Fit, place: int) -> Fit:
-    """Of one size."""
-    runs, count = evidence.runs, len(fit.sizes)
-    variance = fit.posterior[place, place]
+    """Of one size; as it was where a bound is in the way, or chi^2 has no least there."""
+    runs, count, variance = evidence.runs, len(fit.sizes), fit.posterior[place, place]
     if not variance > 0.0 or not np.isfinite(fit.chi2):
         return fit
     search = Search(evidence, fit.active[:count], fit.local)
     line = np.zeros(len(fit.shift))
     line[fit.active] = fit.posterior[:, place] / np.sqrt(variance)
 
-    def at(t: float) -> FloatArray:
-        return np.clip(fit.shift + t * line, search.low, search.high)
+    def at(t: float) -> Point:
+        return search.at(np.clip(fit.shift + t * line, search.low, search.high), fit.step_share)
 
-    ends = [at(t) for t in AT]
-    reached = np.array([(end - fit.shift) @ line for end in ends]) / (line @ line)
-    if not np.allclose(reached, AT, atol=0.1):  # a bound is in the way
+    axis = fit.active[place]
+    ends = fit.shift[axis] + AT * line[axis]
+    if np.any(ends < runs.low[axis]) or np.any(ends > runs.high[axis]):
         return fit
-    chi2 = [
-        search.at(end, fit.step_share).chi2 if t else fit.chi2
-        for t, end in zip(AT, ends, strict=True)
-    ]
-    if not np.all(np.isfinite(chi2)):
-        return fit
-    curve, slope, least = np.polyfit(AT, chi2, 2)
+    chi2 = np.array([at(t).chi2 if t else fit.chi2 for t in AT])
+    curve, slope, least = np.polyfit(AT, chi2, 2) if np.all(np.isfinite(chi2)) else np.zeros(3)
     if curve <= 0.0:
         return fit
     scatter = np.linalg.norm(np.polyval((curve, slope, least), AT) - chi2) / np.sqrt(len(AT) - 3)
     chance = scatter / (2.0 * curve * np.linalg.norm(AT))
-    grown = np.ones(count)
-    grown[place] = np.sqrt(max(1.0, 1.0 / curve) + chance**2)
-    best = float(np.clip(-slope / (2.0 * curve), AT[0], AT[-1]))
-    moved = search.at(at(best), fit.step_share)
-    known = np.diag(runs.sd[fit.active[:count]] ** 2)
-    covariance = (fit.covariance - known) * np.outer(grown, grown) + known
-    if moved.chi2 >= fit.chi2:
-        return replace(fit, covariance=covariance)
+    sure = _wider(fit, place, float(np.sqrt(max(1.0, 1.0 / curve) + chance**2)), runs.sd)
+    moved = at(float(np.clip(-slope / (2.0 * curve), AT[0], AT[-1])))
+    return _at(sure, moved) if moved.chi2 < fit.chi2 else sure
+
+
+def _wider(fit: Fit, place: int, times: float, sd: FloatArray) -> Fit:
+    """With what the record tells of one size so many times wider; commissioning tells the rest."""
+    count = len(fit.sizes)
+    grown, known = np.ones(count), np.diag(sd[fit.active[:count]] ** 2)
+    grown[place] = times
+    return replace(fit, covariance=(fit.covariance - known) * np.outer(grown, grown) + known)
+
+
+def _at(fit: Fit, point: Point) -> Fit:
+    """Elsewhere, with the columns and the covariance that it has."""
     return replace(
         fit,
-        shift=moved.shift,
-        step_share=moved.delta,
-        sizes=moved.shift[fit.active[:count]],
-        covariance=covariance,
-        chi2=moved.chi2,
-        residual=moved.residual,
-        prediction=moved.prediction,
+        shift=point.shift,
+        step_share=point.delta,
+        sizes=point.shift[fit.active[: len(fit.sizes)]],
+        chi2=point.chi2,
+        residual=point.residual,
+        prediction=point.prediction,
     )

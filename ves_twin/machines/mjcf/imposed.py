@@ -18,6 +18,9 @@ HEAVY = 1e6
 """Inertia of an imposed joint, in the largest of the model: its acceleration is a millionth off
 what is asked, which the next step, set anew to the recorded place and speed, does not remember."""
 
+STAGED = mujoco.mjtIntegrator.mjINT_RK4
+"""Integrator with several looks at a step, of which the last one is left behind in the data."""
+
 
 @dataclass(frozen=True)
 class Imposed:
@@ -28,10 +31,16 @@ class Imposed:
     imposed ones do to them, with constraints and friction as they are. The effort that imposed
     joints need is that of inverse dynamics along the motion that comes of it.
 
+    An acceleration is held over a step. Euler's and the implicit integrators have speeds between
+    the steps, so that it is the one at the step's begin; that of Runge and Kutta has them at the
+    steps, and it is the one in the middle, else all efforts are late by half a step.
+
     Attributes:
         work: with the model as it is.
         places, dofs: addresses of the imposed coordinates in qpos and qvel.
-        position, speed, pull: of them at each step (steps, k).
+        position, speed: of them at each step (steps, k).
+        pull: acceleration that is held from there on (steps, k).
+        begun: acceleration at each step (steps, k).
         inertia: that they get.
     """
 
@@ -41,6 +50,7 @@ class Imposed:
     position: FloatArray
     speed: FloatArray
     pull: FloatArray
+    begun: FloatArray
     inertia: float
 
     @staticmethod
@@ -53,18 +63,20 @@ class Imposed:
         model, programme, drive = work.model, work.programme, work.rig.description.drive
         rows = len(programme.time)
         at = np.arange(rows * steps) / steps
+        late = 0.5 / steps if model.opt.integrator == STAGED else 0.0
         places, dofs, motions = [], [], []
         for joint, signal in drive.imposed_signals.items():
             column = work.position(joint, programme.drive[signal][:, 0])
             smooth = smoothed(column, programme.period, drive.smoothing)
             spline, rate = CubicSpline(np.arange(rows), smooth), 1.0 / programme.period
-            motions.append([rate**k * spline(at, k) for k in range(3)])
+            motion = [rate**k * spline(at, k) for k in range(3)]
+            motions.append([*motion, rate**2 * spline(at + late, 2)])
             places.append(int(model.joint(joint).qposadr[0]))
             dofs.append(int(model.joint(joint).dofadr[0]))
         joints = [model.joint(joint).id for joint in drive.locked]
         still = np.flatnonzero(np.isin(model.dof_jntid, joints))
         stands = np.concatenate([_coordinates(model, joint) for joint in joints] or [still])
-        position, speed, pull = np.array(motions).reshape(-1, 3, len(at)).transpose(1, 2, 0)
+        position, speed, begun, pull = np.array(motions).reshape(-1, 4, len(at)).transpose(1, 2, 0)
         none = np.zeros((len(at), len(still)))
         inertia = HEAVY * max(float(np.max(model.dof_M0, initial=0.0)), 1e-9)
         plain = replace(work, model=copy.copy(model))
@@ -77,6 +89,7 @@ class Imposed:
             np.hstack([position, np.tile(model.qpos0[stands], (len(at), 1))]),
             np.hstack([speed, none]),
             np.hstack([pull, none]),
+            np.hstack([begun, none]),
             inertia,
         )
 
@@ -87,6 +100,19 @@ class Imposed:
         data.qpos[self.places] = self.position[step]
         data.qvel[self.dofs] = self.speed[step]
         data.qfrc_applied[self.dofs] = self.inertia * self.pull[step]
+
+    def step(self, model: mujoco.MjModel, data: mujoco.MjData, step: int) -> FloatArray:
+        """One step of the machine; accelerations (nv,) at its begin."""
+        self.move(data, step)
+        if model.opt.integrator != STAGED or not len(self.dofs):
+            mujoco.mj_step(model, data)
+            return np.asarray(data.qacc)
+        data.qfrc_applied[self.dofs] = self.inertia * self.begun[step]
+        mujoco.mj_forward(model, data)
+        begun = np.array(data.qacc)
+        self.move(data, step)
+        mujoco.mj_step(model, data)
+        return begun
 
     def commands(self, path: FloatArray, pull: FloatArray) -> dict[str, FloatArray]:
         """What the actuators of imposed joints give (n,), where they are compared.

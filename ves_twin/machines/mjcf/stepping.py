@@ -284,10 +284,9 @@ def _stepped(
                 data.qfrc_applied[dof] = -effort
             if len(laws.codes):
                 push(laws, data, own)
-            imposed.move(data, k * steps + n)
-            mujoco.mj_step(model, data)
+            begun = imposed.step(model, data, k * steps + n)
             if n == 0:
-                sensed[k], pull[k] = data.sensordata, data.qacc
+                sensed[k], pull[k] = data.sensordata, begun
         if k % CHECKED == 0 and _failed(data):
             break
     path, sensed, pull = (_led(one[first:], first) for one in (path, sensed, pull))
