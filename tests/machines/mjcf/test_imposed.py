@@ -90,6 +90,30 @@ def test_imposed_motion_swings_the_arm_as_the_equation_of_motion_says(tmp_path):
     assert found == pytest.approx(path, abs=0.01 * np.max(np.abs(path)))
 
 
+def test_imposed_motion_under_runge_kutta_is_that_of_fine_steps(tmp_path):
+    """An acceleration held over a step belongs to its middle: 4 ms late is 1 % of the force."""
+    lines = (BOTH, f'{BOTH}\nimposed = ["rail"]'), (EACH, HINGE)
+    time = 0.008 * np.arange(500)
+    x = 0.05 * (1.0 - np.cos(6.0 * time))
+    fed = {"cart.position": x[:, None], "hinge.torque": np.zeros((len(time), 1))}
+    found = {}
+    for sort, option in (
+        ("fine", 'timestep="0.0001" integrator="implicitfast"'),
+        ("coarse", 'timestep="0.008" integrator="RK4"'),
+    ):
+        folder = tmp_path / sort
+        folder.mkdir()
+        told(folder, "control", *lines, ('"60 Hz"', '"20 Hz"'))
+        model = folder / "two_link.xml"
+        plain = 'timestep="0.001" integrator="implicitfast"'
+        model.write_text(model.read_text().replace(plain, option))
+        rig = Rig.load(str(folder / "two_link.toml"))
+        found[sort] = moved(rig, Excitation("shaken", time, fed))
+    for name in ("arm.angle", "drive.force"):
+        fine, coarse = (found[sort][name][20:-20] for sort in ("fine", "coarse"))
+        assert np.sqrt(np.mean((coarse - fine) ** 2)) < 2e-3 * np.std(fine)
+
+
 def test_a_joint_without_a_motion_is_refused_by_name(tmp_path):
     alone = (BOTH, 'joints = { rail = "cart.position" }')
     with pytest.raises(InvalidInputError, match=r"joint swing, mode 'motion'.*drive.locked"):
