@@ -10,7 +10,7 @@ import pytest
 from linear import JOINTS, PERIOD, Linear, recorded, seen
 
 from ves_twin.diagnosis.build_up.halves import halves_at
-from ves_twin.diagnosis.build_up.proof import prove
+from ves_twin.diagnosis.build_up.proof import ERRORS, prove
 from ves_twin.diagnosis.build_up.simpler import simpler
 from ves_twin.diagnosis.build_up.trials import Trial
 from ves_twin.diagnosis.forward import Excitation, Hypothesis, Parameter
@@ -90,3 +90,18 @@ def test_a_simpler_cause_that_was_dropped_before_counts_once_and_is_proved_now()
     assert after.proved == (dry,)
     assert dry not in after.dropped
     assert after.tested == before.tested
+
+
+@pytest.mark.parametrize("errors", ERRORS)
+def test_what_takes_a_causes_place_is_proved_by_the_errors_that_proved_the_cause(errors):
+    """Not by those that would show it best by itself: two proofs would then be compared."""
+    plant, hidden = Falling(), {"falling@a:level": 0.8, "falling@a:speed": 30.0}
+    one, two = (seen(plant, recorded(plant, hidden, seed)) for seed in (5, 6))
+    cause = next(h for h in plant.hypotheses if h.label == "falling@a")
+    present = (Trial(cause, (0.8, 30.0), positive=True),)
+    halves = halves_at(one, two, one.runs.origin, plant.hypotheses, present)
+    trials = halves.regression.trials
+    falling = next(n for n, trial in enumerate(trials) if trial in present)
+    after = simpler(prove(halves.regression, halves.held, [falling], errors=errors))
+    assert [trials[n].cause.label for n in after.proved] == ["coulomb@a"]
+    assert after.bench.errors == errors
