@@ -82,16 +82,6 @@ def test_swapped_columns_and_turned_gravity_are_named(machine):
     assert "gravity the other way" in found.came
 
 
-@pytest.mark.parametrize("amperes", [1.0, 0.3])
-def test_a_position_and_an_effort_in_each_others_columns_are_named(machine, amperes):
-    """Whatever the effort is in: of a log with two columns nothing else can be swapped."""
-    log = scaled(recorded(machine), **{"drive.force": amperes})
-    found = implausible(machine, swapped(log, "cart.position", "drive.force"))
-    assert found is not None
-    assert "cart.position and drive.force exchanged" in found.came
-    assert "the columns of cart.position and drive.force" in found.expected
-
-
 def test_no_cause_of_the_library_at_its_largest_passes_for_a_wrong_file(machine):
     for cause in machine.hypotheses:
         sizes = np.max(np.abs(cause.departures()), axis=0)

@@ -71,19 +71,13 @@ class Implausible:
 
 @dataclass(frozen=True)
 class _Reading:
-    """Columns read in another way: factors and order of positions and efforts, gravity's sign.
-
-    `exchanged` takes the position of this joint for the effort of the `free` actuator, which may be
-    in any unit: a file that has the columns wrong has that wrong, too.
-    """
+    """Columns read in another way: factors and order of positions and efforts, gravity's sign."""
 
     name: str
     key: str
     positions: Mapping[str, float]
     efforts: Mapping[str, float]
     swapped: tuple[str, str] | None = None
-    exchanged: str = ""
-    free: str = ""
     gravity: float = 1.0
 
 
@@ -120,7 +114,6 @@ def implausible(rig: Rig, recording: Recording) -> Implausible | None:
             found.append((float(np.sum(np.minimum(left, 1.0))), changed, reading))
     if not found:
         return None
-    found = [one for one in found if not one[-1].exchanged] or found  # fits more, having more free
     least = min(score for score, _, _ in found)
     best = [(changed, reading) for score, changed, reading in found if score <= ALIKE * least]
     names = [seen.names[i] for i in np.flatnonzero(best[0][0])]
@@ -209,12 +202,6 @@ class _Seen:
             for one, two in combinations(names, 2):
                 told = f"{names[one]} and {names[two]}"
                 yield _Reading(f"{told} swapped", f"the columns of {told}", {}, {}, (one, two))
-        for n, (actuator, signal) in enumerate(sources.items()):
-            joint = driven_joint(self.rig.model, actuator)
-            told = f"{angles[joint]} and {signal}"
-            if self.left(_Reading("", "", {}, {}, free=actuator))[n] > BAD:
-                key = f"the columns of {told}"
-                yield _Reading(f"{told} exchanged", key, {}, {}, exchanged=joint, free=actuator)
         if len(self.efforts) > 1:
             every = dict.fromkeys(self.efforts, -1.0)
             yield _Reading("the other sign of all efforts", "the sign of all efforts", {}, every)
@@ -241,10 +228,6 @@ class _Seen:
             for group in (positions, efforts):
                 if one in group:
                     group[one], group[two] = group[two], group[one]
-        if reading.exchanged:
-            joint, one = reading.exchanged, reading.free
-            ratio = self._number(one) / self._number(joint)
-            positions[joint], efforts[one] = efforts[one] / ratio, positions[joint] * ratio
         work = self._plain
         model = work.model
         q = np.tile(model.qpos0, (len(self.fed.time), 1))
@@ -261,14 +244,7 @@ class _Seen:
         model.opt.gravity[:] = reading.gravity * gravity
         needs = efforts_along(work, list(efforts), q, v, a)
         model.opt.gravity[:] = gravity
-        parts = [(n, efforts[n], needs[n], v, corner, n == reading.free) for n in efforts]
-        return np.array([self._share(model, *part) for part in parts])
-
-    def _number(self, name: str) -> float:
-        """What one of the numbers of a column is in SI, by the joint or the actuator."""
-        sources = dict(zip(self.efforts, self.names, strict=True))
-        signal = sources.get(name) or MjcfForward.of(self.rig).position_of(name)
-        return self.rig.description.signals[signal].scale
+        return np.array([self._share(model, n, efforts[n], needs[n], v, corner) for n in efforts])
 
     def _share(
         self,
@@ -278,19 +254,13 @@ class _Seen:
         need: FloatArray,
         speed: FloatArray,
         corner: float,
-        free: bool,
     ) -> float:
-        """Of one effort: what friction that resists, and an offset, leave beside what it needs.
-
-        Or beside so many times of it, where that is free.
-        """
+        """Of one effort: what friction that resists, and an offset, leave beside what it needs."""
         own = speed[:, int(model.joint(driven_joint(model, actuator)).dofadr[0])]
         gain = float(model.actuator(actuator).gear[0] * model.actuator(actuator).gainprm[0])
         quiet = QUIET * max(float(np.max(np.abs(own))), 1e-30)
         one = np.ones_like(own)
         basis = np.stack([own / gain, np.tanh(own / quiet) / gain, one, -one], axis=1)
-        if free:
-            basis, need = np.column_stack([basis, need]), np.zeros_like(need)
         if not self.fed.poses:
             effort = smoothed(effort, self.fed.period, corner)
         scale = np.maximum(np.linalg.norm(basis, axis=0), 1e-30)
