@@ -73,5 +73,5 @@ def test_what_an_arm_lacks_without_its_couplings_is_of_two_axes_together(data_fo
     assert law.part
     assert (law.place, law.of) == ("joint_5 + joint_6", ("speed@joint_5 + joint_6",))
     before, after = law.gain.errors["torque.6"]
-    assert after < 0.75 * before  # what the library leaves by friction of joint 6 alone
+    assert before > 1.3  # by friction of joint 6 alone
     assert after == pytest.approx(0.908, rel=0.05)  # the couplings themselves leave that, offered
