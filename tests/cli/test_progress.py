@@ -41,6 +41,18 @@ def test_a_stage_without_news_is_told_all_the_same(impatient, capsys):
         assert "compare, 0 %, 0 s so far" in _lines_with("compare", capsys)
 
 
+def test_a_stage_whose_end_nobody_knows_tells_its_own_time(monkeypatch):
+    now = [100.0]
+    monkeypatch.setattr(progress.time, "monotonic", lambda: now[0])
+    bar = RunProgress("diagnose", 1.0, unit="share")
+    bar.share(0.7, "signatures")
+    now[0] = 110.0
+    bar.share(0.0, "choosing causes")
+    assert bar.line() == "diagnose: choosing causes, 10 s so far"
+    now[0] = 145.0
+    assert bar.line() == "diagnose: choosing causes, 45 s so far, 35 s in this stage"
+
+
 def test_quick_work_prints_no_line(capsys, monkeypatch):
     monkeypatch.setattr(progress, "FIRST", 60.0)
     with RunProgress("run", 2.0) as bar:

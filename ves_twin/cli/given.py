@@ -102,7 +102,7 @@ def refuse_missing(arguments: argparse.Namespace) -> None:
     Raises:
         FileAccessError: a machine's file or a recording that is not there.
     """
-    from ves_twin.core.errors import FileAccessError
+    from ves_twin.core.missing_file import missing_file
     from ves_twin.core.resources import find_resource
 
     plant = getattr(arguments, "plant", None) or ""
@@ -116,7 +116,7 @@ def refuse_missing(arguments: argparse.Namespace) -> None:
         given = getattr(arguments, option, None) or ()
         for name in (given,) if isinstance(given, str) else given:
             if not os.path.lexists(name):
-                raise FileAccessError(f"recording file '{name}' does not exist")
+                raise missing_file("recording", name)
 
 
 def _machine_name(arguments: argparse.Namespace) -> str:

@@ -21,12 +21,12 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def execute(arguments: argparse.Namespace) -> int:
     """Draft, write, print what was guessed and why."""
-    from ves_twin.core.errors import FileAccessError
+    from ves_twin.core.missing_file import missing_file
 
     model, logs = Path(arguments.model), [Path(name) for name in arguments.logs]
     for path in (model, *logs):
         if not path.is_file():  # before what reads it is imported
-            raise FileAccessError(f"file '{path}' does not exist")
+            raise missing_file("", path)
     from ves_twin.cli.new_text import new_text
     from ves_twin.core.units import to_si
     from ves_twin.machines.new_machine import new_machine

@@ -69,9 +69,13 @@ class RunProgress:
         """Stage, share, time so far and time left of the stage, as a log shows them."""
         now = time.monotonic()
         what = f"{self._name}: {self._stage}" if self._stage else self._name
+        here = now - self._stage_begun
+        if self._stage and self._done == 0.0:  # a stage whose end nobody knows
+            within = f", {_span(here)} in this stage" if here >= 1.0 else ""
+            return f"{what}, {_span(now - self._begun)} so far{within}"
         text = f"{what}, {100.0 * self._done:.0f} %, {_span(now - self._begun)} so far"
         if 0.0 < self._done < 1.0:
-            left = (now - self._stage_begun) * (1.0 / self._done - 1.0)
+            left = here * (1.0 / self._done - 1.0)
             text += f", about {_span(left)} left" + (" in this stage" if self._stage else "")
         return text
 

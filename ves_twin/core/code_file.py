@@ -6,13 +6,8 @@ import importlib.util
 from pathlib import Path
 from typing import Any
 
-from ves_twin.core.errors import (
-    FileAccessError,
-    InvalidInputError,
-    PluginError,
-    UnknownNameError,
-    one_line,
-)
+from ves_twin.core.errors import InvalidInputError, PluginError, UnknownNameError, one_line
+from ves_twin.core.missing_file import missing_file
 from ves_twin.core.plugins import lacks
 
 
@@ -34,7 +29,7 @@ def load_class(text: str, base: type) -> type[Any]:
         raise InvalidInputError("code", text, "FILE.py:Class, for instance my_policy.py:MyPolicy")
     path = Path(name)
     if not path.is_file():
-        raise FileAccessError(f"code file '{name}' does not exist")
+        raise missing_file("code", name)
     spec = importlib.util.spec_from_file_location(path.stem, path)
     if spec is None or spec.loader is None:
         raise PluginError(f"{name} cannot be run as Python")

@@ -5,6 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from ves_twin.core.errors import FileAccessError, UnknownNameError
+from ves_twin.core.missing_file import missing_file
 
 
 def resource_folder(name: str) -> Path:
@@ -37,7 +38,7 @@ def find_resource(kind: str, folder: str, name_or_path: str, suffix: str = ".tom
     if given.suffix or len(given.parts) > 1:
         if _is_file(given):
             return given
-        raise FileAccessError(f"{kind} file '{name_or_path}' does not exist")
+        raise missing_file(kind, name_or_path)
     root = resource_folder(folder)
     path = root / f"{name_or_path}{suffix}"
     if _is_file(path):

@@ -8,7 +8,8 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from ves_twin.core.errors import FileAccessError, InvalidInputError
+from ves_twin.core.errors import InvalidInputError
+from ves_twin.core.missing_file import missing_file
 
 if TYPE_CHECKING:
     from ves_twin.machines.mjcf.description import Data
@@ -45,4 +46,4 @@ def find_data(name: str, data: Sequence[Data], folder: str | None = None) -> Pat
         return path
     where = f"here or in {root}" if root else f"here, and --data or {VARIABLE} names no folder"
     source = f"; its source: {listed.source}" if listed else ""
-    raise FileAccessError(f"recording file '{name}' does not exist {where}{source}")
+    raise missing_file("recording", name, f" {where}{source}")

@@ -122,7 +122,9 @@ def test_rows_of_a_killed_run_are_not_overwritten(tmp_path):
 
 
 def test_time_that_steps_back_is_refused():
-    with pytest.raises(InvalidInputError, match="strictly increasing"):
+    with pytest.raises(
+        InvalidInputError, match=r"0\.1 s after 0\.2 s in row 3.*strictly increasing"
+    ):
         Recording(np.array([0.0, 0.2, 0.1]), {}, INFO)
 
 

@@ -9,6 +9,7 @@ import pyarrow.parquet as pq
 
 from ves_twin.core.arrow_file import arrow_file
 from ves_twin.core.errors import FileAccessError, InvalidInputError
+from ves_twin.core.missing_file import missing_file
 from ves_twin.core.recording.recording import Recording
 from ves_twin.core.recording.stream import FILE_NAME, ROW_GROUP, STREAM_NAME
 from ves_twin.core.recording.stream_batches import stream_batches
@@ -35,7 +36,7 @@ def load_recording(path: str | Path) -> Recording:
             raise FileAccessError(f"folder {file} holds neither {FILE_NAME} nor {STREAM_NAME}")
         file = found[0]
     if not file.is_file():
-        raise FileAccessError(f"recording file '{file}' does not exist")
+        raise missing_file("recording", file)
     return recording_of(_table(file), file)
 
 

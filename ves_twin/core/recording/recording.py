@@ -112,6 +112,15 @@ class RecordingInfo:
         return RecordingInfo(**values, events=told, own_signals=tuple(map(_signal, own)))  # type: ignore[arg-type]
 
 
+def _fall(time: FloatArray) -> str:
+    """Words for the first row whose time is no number, or not after that of the row before."""
+    bad = ~np.isfinite(time)
+    bad[1:] |= ~(np.diff(time) > 0.0)
+    row = int(np.argmax(bad))
+    before = f" after {time[row - 1]:.6g} s" if row else ""
+    return f"{time[row]:.6g} s{before} in row {row + 1}"
+
+
 def _signal(content: Mapping[str, Any]) -> Signal:
     axes, units = tuple(map(str, content["axes"])), tuple(map(str, content["units"]))
     words = {key: str(content[key]) for key in ("name", "frame", "meaning")}
@@ -138,9 +147,7 @@ class Recording(ReadOnly):
     def __post_init__(self) -> None:
         super().__post_init__()
         if not np.all(np.isfinite(self.time)) or np.any(np.diff(self.time) <= 0):
-            raise InvalidInputError(
-                "recording time", "a step back or a gap", "strictly increasing times"
-            )
+            raise InvalidInputError("recording time", _fall(self.time), "strictly increasing times")
         for name, values in self.signals.items():
             if values.ndim != 2 or values.shape[0] != len(self.time):
                 raise InvalidInputError(

@@ -72,6 +72,7 @@ def build_up(desk: FitContext, start: Explanation, fitted: Dataset, held: Datase
     proof = _counted(found)
     if not proof.tested:
         return None
+    desk.progress(0.0, "fitting what is proved, and its intervals")
     evidence = builder.evidence(proof.bench.fit.residual, memory=False)
     proof, final = _at_work(halves, simpler(proof), point, evidence, held)
     before = in_full(halves.regression, (), point, evidence)

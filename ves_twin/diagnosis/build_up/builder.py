@@ -60,6 +60,7 @@ class Builder:
         causes = self.desk.first.screen.bank.hypotheses
         data = (self.fitted, self.held)
         both = halves_at(*data, point, causes, present, self.bent, self.desk.progress)
+        self.desk.progress(0.0, "choosing causes")
         return replace(both, regression=replace(both.regression, barred=self.barred))
 
     def evidence(self, residual: FloatArray, memory: bool = True) -> Evidence:
@@ -96,6 +97,7 @@ class Builder:
         found = [self.offer(*self.settled(Selector, halves, ahead, point), known)]
         if self.fitted.runs.budget.skips("causes chosen by plain squares"):
             return found
+        self.desk.progress(0.0, "choosing causes")
         path = PlainSelector(halves.regression).path(begin)
         known = found[-1].known
         if set(path[-1]) != set(ahead):
@@ -121,6 +123,7 @@ class Builder:
         """
         present, least = tuple[Trial, ...](), np.inf
         for last in range(ROUNDS):
+            self.desk.progress(0.0, f"fitting {len(chosen)} causes together")
             regression = halves.regression
             evidence = self.evidence(regression.fit(chosen).residual)
             fit = in_full(regression, chosen, point, evidence)
@@ -145,6 +148,7 @@ class Builder:
         self, halves: Halves, point: FloatArray, chosen: list[int], known: frozenset[str]
     ) -> Offer:
         """What is proved of a choice, fitted in full."""
+        self.desk.progress(0.0, f"putting {len(chosen)} causes to proof")
         labels = frozenset(halves.regression.trials[n].cause.label for n in chosen)
         proof = prove(halves.regression, halves.held, chosen, more=len(known - labels))
         evidence = self.evidence(proof.bench.fit.residual, memory=False)
@@ -180,6 +184,7 @@ class Builder:
         regression = halves.regression
         if not regression.trials or self.fitted.runs.budget.skips("the best single cause or pair"):
             return []
+        self.desk.progress(0.0, "choosing the best single cause or pair")
         chosen, known = best_proved(halves, Selector(regression).best(), known)
         return [self.offer(halves, point, chosen, known)] if chosen else []
 

@@ -8,7 +8,8 @@ from pathlib import Path
 
 import numpy as np
 
-from ves_twin.core.errors import FileAccessError, InvalidInputError, UnknownNameError
+from ves_twin.core.errors import InvalidInputError, UnknownNameError
+from ves_twin.core.missing_file import missing_file
 from ves_twin.core.recording.recording import POSES, Recording, RecordingInfo
 from ves_twin.core.signals import Role
 from ves_twin.core.types import BoolArray, FloatArray
@@ -49,7 +50,7 @@ def read_rig_recording(path: Path, rig: Rig) -> Recording:
             steps back.
     """
     if not path.is_file():
-        raise FileAccessError(f"recording file '{path}' does not exist")
+        raise missing_file("recording", path)
     told = rig.description
     table = _Table.of(open_log(path), told)
     time, inside = _times(table, told, path)

@@ -164,8 +164,11 @@ def _contrast(cells: list[Cell]) -> str:
         return ""
     top, least = max(cells, key=lambda c: c.rms), min(cells, key=lambda c: c.rms)
     if least.rms > 0.0 and top.rms > CONTRAST * least.rms:
-        return f"; {top.rms / least.rms:.2g} times larger with {top.label} than {least.label}"
+        (name, _, state), other = top.label.rpartition(" "), least.label.rpartition(" ")[2]
+        times = f"{top.rms / least.rms:.2g} times"
+        return f"; {times} as large while {name} is {state} as while it is {other}"
     apart = max(cells, key=lambda c: abs(c.mean))
     if abs(apart.mean) > 0.6 * top.rms:
-        return f"; its mean changes with {apart.label}"
+        name, _, state = apart.label.rpartition(" ")
+        return f"; its mean is another while {name} is {state}"
     return ""

@@ -100,6 +100,58 @@ def test_an_electrical_command_gets_the_constant_that_fits_and_a_word_to_replace
     assert rig.description.tolerances["gain"] == 0.2
 
 
+@pytest.mark.parametrize(
+    ("name", "factor", "other"),
+    [("q1_deg", 1.0, "radians"), ("q1_deg", 57.2958, ""), ("q1_rad", 57.2958, "degrees")],
+)
+def test_an_angle_in_the_other_unit_is_asked_after_where_a_constant_would_hide_it(
+    arm, columns, write, name, factor, other
+):
+    log = {{"q1": name, "tau1": "u1_V"}.get(n, n): v for n, v in columns.items()}
+    log[name] = factor * log[name]
+    found, _ = drafted(arm, write(log))
+    asked = [words for words in found.look if words.startswith(name) and "if these are" in words]
+    assert [f"if these are {other}" in words for words in asked] == [True] * bool(other)
+
+
+def test_a_joint_whose_motor_has_no_column_has_its_motion_given(arm, columns, write):
+    found, rig = drafted(arm, write({n: v for n, v in columns.items() if n != "tau3"}))
+    assert found.mode == "motion: every joint has a position; what moves bend is not told"
+    assert set(found.explained) == {"tau1", "tau2"}
+    assert min(found.explained.values()) > 0.9
+    assert not rig.description.drive.imposed
+
+
+TABLE = """
+<mujoco model="table"><option timestep="0.002" integrator="implicitfast"/><worldbody>
+  <body name="slide"><joint name="x" type="slide" axis="1 0 0" damping="8" stiffness="60"/>
+    <geom size="0.1" mass="3"/>
+    <body name="head"><joint name="turn" axis="0 0 1" damping="0.5" stiffness="4"/>
+      <geom type="capsule" fromto="0 0 0 0.3 0 0" size="0.03" mass="2"/></body></body>
+  </worldbody><actuator><motor name="mx" joint="x"/><motor name="mt" joint="turn"/></actuator></mujoco>
+"""
+
+
+def test_a_joint_whose_motor_has_no_column_is_imposed_where_others_are_predicted(tmp_path):
+    """Positions too noisy to be differentiated twice, and nothing tells what turns the head."""
+    model, rng = mujoco.MjModel.from_xml_string(TABLE), np.random.default_rng(5)
+    data, rows = mujoco.MjData(model), []
+    for k in range(10_000):
+        t = 0.002 * k
+        data.ctrl[:] = 20.0 * np.sin(3.1 * t) + 9.0 * np.sin(7.3 * t), 2.0 * np.sin(2.3 * t)
+        if k % 5 == 0:
+            rows.append([t, *(data.qpos + 0.004 * rng.standard_normal(2)), data.ctrl[0]])
+        mujoco.mj_step(model, data)
+    (tmp_path / "table.xml").write_text(TABLE)
+    log = tmp_path / "log.csv"
+    np.savetxt(log, rows, "%.8g", ",", header="t,x_m,turn_rad,mx_N", comments="")
+    found, rig = drafted(tmp_path / "table.xml", log)
+    assert found.mode.startswith("control: x_m is too noisy")
+    assert rig.description.drive.imposed == ("turn",)
+    assert set(rig.description.start) == {"x"}
+    assert found.explained["x.position"] > 0.8
+
+
 def test_an_arm_that_drifts_open_loop_has_its_motion_given_though_it_is_noisy(arm, columns, write):
     rng = np.random.default_rng(4)
     noisy = {f"q{i}": columns[f"q{i}"] + 0.003 * rng.standard_normal(1600) for i in (1, 2, 3)}

@@ -46,6 +46,13 @@ FAR = 3.0
 
 DEGREE = np.pi / 180.0
 
+HALF_TURN = np.pi
+"""Angle up to which numbers named degrees may be radians: a joint seldom turns round more."""
+
+FAR_ROUND = 8.0 * np.pi
+"""Angle from which numbers named radians may be degrees: 25 degrees are such, four turns are few
+joints'."""
+
 
 @dataclass(frozen=True)
 class Checked:
@@ -240,6 +247,7 @@ class _Judge:
                     f"{match.column} is electrical: {abs(scale):.3g} {unit} makes it fit this"
                     f" model{turned}; put the motor's constant there"
                 )
+                said += _other_angle(self.log, found, match.spot.joint, scale, unit)
             elif fit.sign < 0:
                 found[i] = replace(match, scale=-match.scale)
                 why = f"slope {fit.slope:.2f}" if fit.usable else f"work {fit.work:.0%}"
@@ -302,6 +310,23 @@ def _exchanged(one: Match, two: Match) -> tuple[Match, Match]:
     """Both spots with the other's column."""
     first = replace(two, spot=one.spot, reasons=("fits the model better there",))
     return first, replace(one, spot=two.spot, reasons=("fits the model better there",))
+
+
+def _other_angle(
+    log: LogColumns, found: list[Match], joint: str, scale: float, unit: str
+) -> Iterator[str]:
+    """An angle that may be in the other unit, where a constant that is fitted hides the factor."""
+    for match in found:
+        mine = match.spot.quantity is Quantity.POSITION and match.spot.name == joint
+        if not (mine and match.told and match.unit in ("deg", "rad")):
+            continue
+        most, degrees = float(np.max(np.abs(log.values[match.column]))), match.unit == "deg"
+        if most < HALF_TURN if degrees else most > FAR_ROUND:
+            other, factor = ("radians", 1.0 / DEGREE) if degrees else ("degrees", DEGREE)
+            yield (
+                f"{match.column} reaches {most:.3g} {match.unit} at most: if these are {other}, the"
+                f" constant is {abs(scale) * factor:.3g} {unit}"
+            )
 
 
 def _beyond(log: LogColumns, found: list[Match], model: mujoco.MjModel) -> Iterator[str]:

@@ -15,7 +15,7 @@ from ves_twin.machines.mjcf.draft.estimates import noise_of, rest_of
 from ves_twin.machines.mjcf.draft.log_columns import LogColumns
 from ves_twin.machines.mjcf.draft.match import Match, Matches
 from ves_twin.machines.mjcf.draft.motion import band_of
-from ves_twin.machines.mjcf.draft.spots import Quantity, is_motor, single_joints
+from ves_twin.machines.mjcf.draft.spots import ON_JOINT, Quantity, is_motor, single_joints
 
 BAND = 2.0
 """Band that is analysed where motion is given, as a multiple of that which has 99 % of the power
@@ -39,13 +39,14 @@ class Chosen:
     """What a drafted file says of its mode.
 
     Attributes:
-        mode: MOTION where every joint is recorded, has a motor with a column, and its position is
-            good enough to be differentiated twice; else CONTROL.
+        mode: MOTION where every joint is recorded, has a motor, and its position is good enough to
+            be differentiated twice; else CONTROL.
         why: in words.
         rate: of the analysis [Hz].
         smoothing: corner of the low-pass of positions [Hz].
         noise: column -> sd of one row in SI, and how it was told.
         either: the motion could be given as well.
+        imposed: joints that move as recorded in CONTROL, since no column tells what moves them.
     """
 
     mode: Mode
@@ -54,6 +55,7 @@ class Chosen:
     smoothing: float
     noise: Mapping[str, tuple[float, str]]
     either: bool = False
+    imposed: tuple[str, ...] = ()
 
 
 def chosen(
@@ -64,6 +66,9 @@ def chosen(
     closed: str | None = None,
 ) -> Chosen:
     """Choose the mode.
+
+    A motor without a column moves its joint all the same: by what, nothing tells. Its motion is fed
+    in, and the efforts of others are compared.
 
     Where motion is given, the band is that of the efforts, or the lower one in which the noise of
     differentiated positions stays below DROWNED: it grows with the band's power of 2.5. A short
@@ -91,10 +96,14 @@ def chosen(
         noise[m.column] = (abs(m.factor) * sd, how)
     driven = {m.spot.joint for m in efforts if _is_plain(m, model)}
     single = {model.joint(i).name for i in single_joints(model)}
-    if check.motion is None or driven != single or model.nv != len(single):
+    unknown = _moved_by(model) & single - driven
+    told = {m.spot.name for m in positions}
+    imposed = tuple(sorted(unknown & told))
+    if check.motion is None or driven | unknown != single or model.nv != len(single) or not driven:
         free = sorted(single - driven)
         why = f"no effort is told at {', '.join(free)}" if free else "not every position is told"
-        return Chosen(Mode.CONTROL, why, RATES[1], check.corner, noise)
+        return Chosen(Mode.CONTROL, why, RATES[1], check.corner, noise, imposed=imposed)
+    positions = [m for m in positions if m.spot.name in driven]
     band = BAND * max(band_of(log.values[m.column], log.period, 0.99) for m in efforts)
     band = float(np.clip(band, 0.5 * RATES[0], min(0.5 * RATES[1], 0.25 / log.period)))
     share = max(_induced(m, noise, efforts, model, log, band)[1] for m in positions)
@@ -104,15 +113,17 @@ def chosen(
         if closed is None:
             rows = 2.0 * band * length
             why = f"{length:.2g} s of motion leave {rows:.0f} rows in the band of the efforts"
-            return Chosen(Mode.CONTROL, why, RATES[1], check.corner, noise, True)
+            return Chosen(Mode.CONTROL, why, RATES[1], check.corner, noise, True, imposed)
         band = min(0.5 * ENOUGH / length, 0.25 / log.period)
     sharp = {m.column: _induced(m, noise, efforts, model, log, band) for m in positions}
     worst = max(sharp, key=lambda column: sharp[column][1])
     why = "every joint has a position and an effort"
+    if unknown:
+        why = f"every joint has a position; what moves {', '.join(imposed)} is not told"
     if sharp[worst][1] > DROWNED and closed is None:
         share = sharp[worst][1]
         why = f"{worst} is too noisy to be differentiated twice ({share:.0%} of the effort)"
-        return Chosen(Mode.CONTROL, why, RATES[1], check.corner, noise, True)
+        return Chosen(Mode.CONTROL, why, RATES[1], check.corner, noise, True, imposed)
     of_joint = {m.spot.name: sharp[m.column][0] for m in positions}
     for m in efforts:
         sd, how = noise[m.column]
@@ -122,6 +133,12 @@ def chosen(
 
 def _is_plain(match: Match, model: mujoco.MjModel) -> bool:
     return bool(match.spot.joint) and is_motor(model, model.actuator(match.spot.name).id)
+
+
+def _moved_by(model: mujoco.MjModel) -> set[str]:
+    """Joints that an actuator moves."""
+    drives = [model.actuator(i) for i in range(model.nu)]
+    return {model.joint(int(d.trnid[0])).name for d in drives if int(d.trntype[0]) == ON_JOINT}
 
 
 def _induced(

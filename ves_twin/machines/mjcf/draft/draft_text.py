@@ -61,8 +61,7 @@ def draft_text(
     head += [
         f"clock = {_clock(log)}",
         *([f"window = {_window(log)}"] if log.window else []),
-        f'drive = {{ mode = "{mode.mode}", smoothing = {two_digits(mode.smoothing):g} }}'
-        f"   # {mode.why}",
+        _drive(mode),
         f"tolerances = {_tolerances(model, check)}   # shares of the model's values: yours?",
         'effects = [{ kind = "*", on = ["*"] }]   # every one that the model has a place for',
         "",
@@ -87,12 +86,24 @@ def compared(match: Match, mode: Chosen) -> bool:
     """Whether the mode predicts it."""
     if match.spot.quantity is Quantity.SENSOR:
         return True
+    if match.spot.name in mode.imposed:
+        return False
     return (match.spot.quantity is Quantity.EFFORT) == (mode.mode is Mode.MOTION)
 
 
 def used(match: Match, mode: Chosen) -> bool:
     """Whether the mode feeds it in or predicts it."""
-    return mode.mode is Mode.CONTROL or match.spot.quantity is not Quantity.SPEED
+    fed = mode.mode is Mode.MOTION or match.spot.name in mode.imposed
+    return not (fed and match.spot.quantity is Quantity.SPEED)
+
+
+def _drive(mode: Chosen) -> str:
+    """What is fed in, and why."""
+    keys = {"mode": _quoted(mode.mode), "smoothing": f"{two_digits(mode.smoothing):g}"}
+    if mode.imposed:
+        keys["imposed"] = json.dumps(mode.imposed, ensure_ascii=False)
+    text = ", ".join(f"{key} = {value}" for key, value in keys.items())
+    return f"drive = {{ {text} }}   # {mode.why}"
 
 
 def _unused(matches: Matches, check: Checked, mode: Chosen) -> Iterator[tuple[str, str]]:
@@ -135,6 +146,10 @@ def _signal(group: list[Match], mode: Chosen) -> str:
     if compared(first, mode):
         keys["noise"] = f"{max(mode.noise[m.column][0] for m in group):.2g}"
         reasons.append(f"noise: {mode.noise[first.column][1]}")
+    if first.electrical:
+        reasons.append(
+            "another scale changes noise by its factor; tolerances.gain says how well you know it"
+        )
     text = ", ".join(f"{key} = {value}" for key, value in keys.items())
     why = "; ".join([", ".join(reasons), *first.others])
     return f"{_quoted(signal_name(first))} = {{ {text} }}   # {why}"
@@ -176,7 +191,7 @@ def _spans(log: LogColumns, check: Checked) -> Iterator[str]:
 def _starts(check: Checked, mode: Chosen) -> Iterator[str]:
     """Read off the first rows: position to its noise, speed to that behind the low-pass."""
     for match in check.found:
-        if match.spot.quantity is Quantity.POSITION:
+        if match.spot.quantity is Quantity.POSITION and match.spot.name not in mode.imposed:
             sd = mode.noise[match.column][0]
             speed = 2.0 * np.pi * mode.smoothing * sd
             text = f'position = "measured", sd = {sd:.2g}, speed_sd = {speed:.2g}'

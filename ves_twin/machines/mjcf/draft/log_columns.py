@@ -107,7 +107,9 @@ def _period(time: FloatArray, clock: str, notes: list[str]) -> float:
     if len(wide):
         notes.append(f"clock {clock}: {len(wide)} gaps, the longest of {np.max(wide):.4g} s")
     if np.any(steps <= 0.0):
-        notes.append(f"clock {clock}: {np.count_nonzero(steps <= 0.0)} steps do not rise")
+        back = np.flatnonzero(steps <= 0.0)
+        first = f"{time[back[0]]:.6g} to {time[back[0] + 1]:.6g} s behind row {back[0] + 1}"
+        notes.append(f"clock {clock}: {len(back)} steps do not rise, the first from {first}")
     even = steps[(steps > 0.0) & (steps <= GAP * period)]
     if len(even) and np.max(np.abs(even - period)) > JITTER * period:
         share = np.max(np.abs(even - period)) / period
