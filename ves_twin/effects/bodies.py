@@ -19,6 +19,9 @@ from ves_twin.effects.size import Size
 if TYPE_CHECKING:
     import mujoco
 
+LOAD = 3.0
+"""What the last body of an arm may carry, in its own mass: tools are heavy. Assumed."""
+
 LEFT = 0.01
 """Share of a body's mass and inertia that is left at least: MuJoCo takes neither at zero or below,
 and a body next to nothing needs steps next to nothing."""
@@ -65,7 +68,7 @@ class Payload(Effect):
     @classmethod
     def magnitudes_at(cls, place: Place) -> tuple[Magnitude, ...]:
         """Up to three times the body, up to half a metre from its origin."""
-        return cls.ranged(place, 3.0 * place.mass, 0.5, 0.5, 0.5)
+        return cls.ranged(place, LOAD * place.mass, 0.5, 0.5, 0.5)
 
     @classmethod
     def starts(cls, place: Place) -> tuple[tuple[float, ...], ...]:
@@ -98,10 +101,10 @@ class BodyMass(Effect):
     rows = (Row(LINKS, (0.05, 0.1, 4.0), WEIGHED, part=Part.PAYLOAD),)
     anywhere = Anywhere(
         Element.BODY,
-        lambda p: 0.5 * p.mass,
+        lambda p: (LOAD if p.carries else 0.5) * p.mass,
         lambda p: 0.001 * p.mass,
         change.MASS,
-        source="assumed: up to half of the body",
+        source="assumed: up to half of the body, three times the last one of an arm",
     )
 
     def least(self, nominal: float) -> float:

@@ -21,6 +21,7 @@ class Place:
         unit: of a signal, or of an actuator's command.
         span: typical range of a signal [its unit].
         mass: of a body [kg].
+        carries: whether a body is the last of an arm, and may carry what nobody declared.
         begin, end, terms: stretch that drift shapes span, and their count.
     """
 
@@ -34,6 +35,7 @@ class Place:
     unit: str = "1"
     span: float = 0.0
     mass: float = 0.0
+    carries: bool = False
     begin: float = 0.0
     end: float = 1.0
     terms: int = 4

@@ -1,6 +1,7 @@
 """Intervals count choices of causes that are not proved, each weighed by its evidence."""
 
 from itertools import product
+from math import comb
 
 import numpy as np
 import pytest
@@ -19,7 +20,7 @@ def enumerated(columns, target, spread):
         part = columns[:, list(chosen)]
         covariance = np.eye(len(target)) + spread**2 * part @ part.T
         evidence = multivariate_normal(np.zeros(len(target)), covariance).logpdf(target)
-        evidence += sum(chosen) * np.log(averaged.ODDS)
+        evidence -= np.log(comb(len(chosen), sum(chosen)))
         if chosen[0]:
             gain = spread**2 * part.T @ np.linalg.inv(covariance)
             variance = spread**2 * (1.0 - gain[0] @ part[:, 0])
@@ -69,8 +70,7 @@ def widths(plant, hidden, proved):
 
 
 def test_a_cause_that_another_one_could_share_is_known_less():
-    """A twin of viscous friction, v + 0.02 sin 9 q, is beside it at odds of one in ten: more than
-    the three in a hundred that are asked for here. A harmonic of position is no twin."""
+    """A twin of viscous friction, v + 0.02 sin 9 q, may take its place; a harmonic may not."""
     hidden = {"viscous@a:size": 0.6, "offset@b:size": 0.5}
     told = {
         kind: widths(Linear(("viscous", "offset", kind)), hidden, list(hidden))

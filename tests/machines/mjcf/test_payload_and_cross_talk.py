@@ -12,11 +12,12 @@ from numpy.testing import assert_allclose
 
 from ves_twin.core.errors import VesTwinError
 from ves_twin.diagnosis.forward import Excitation
-from ves_twin.effects import MassCentre, Payload
+from ves_twin.effects import BodyMass, MassCentre, Payload
 from ves_twin.machines.mjcf.description import Mode
 from ves_twin.machines.mjcf.extend import write_rig
 from ves_twin.machines.mjcf.forward import MjcfForward
 from ves_twin.machines.mjcf.machine import Rig
+from ves_twin.machines.mjcf.places import place_of
 
 OFFERED = {"ripple": "a.12 a.24", "dahl_friction": "b", "payload": "two", "actuator_deadband": "ma"}
 TALK = '[[effects]]\nkind = "drive_cross_talk"\non = ["ma from mb", "mb from ma"]\n'
@@ -181,3 +182,28 @@ def test_a_place_that_is_not_there_is_named(
     more = f'[[effects]]\nkind = "{kind}"\non = ["{target}"]\n'
     with pytest.raises(VesTwinError, match=words):
         arm(tmp_path, {}, more)
+
+
+CHAIN = """
+<mujoco><worldbody>
+  <body name="one"><joint axis="0 0 1"/><geom size="0.1" mass="4"/>
+    <body name="two"><joint axis="0 1 0"/><geom size="0.1" mass="3"/>
+      <body name="three">{}<geom size="0.1" mass="2"/></body></body></body>
+</worldbody></mujoco>
+"""
+
+
+@pytest.mark.parametrize(
+    ("joint", "body", "largest"),
+    [
+        ('<joint axis="1 0 0"/>', "three", 6.0),
+        ('<joint axis="1 0 0"/>', "two", 1.5),
+        ("", "three", 1.0),
+    ],
+)
+def test_the_last_body_of_an_arm_may_weigh_what_a_tool_weighs(joint, body, largest):
+    """Three joints make an arm; of any other body up to half may be undeclared."""
+    model = mujoco.MjModel.from_xml_string(CHAIN.format(joint))
+    effect = BodyMass(body)
+    (mass,) = effect.magnitudes_at(place_of(effect, None, model))
+    assert mass.largest == pytest.approx(largest)

@@ -24,6 +24,7 @@ from ves_twin.diagnosis.build_up.result import BuildUp
 from ves_twin.diagnosis.build_up.select import Selector
 from ves_twin.diagnosis.build_up.simpler import simpler
 from ves_twin.diagnosis.build_up.sizes import half_widths
+from ves_twin.diagnosis.build_up.within_range import within_range
 from ves_twin.diagnosis.evidence import Evidence
 from ves_twin.diagnosis.explanation import Explanation
 from ves_twin.diagnosis.fit_context import FitContext
@@ -75,6 +76,7 @@ def build_up(desk: FitContext, start: Explanation, fitted: Dataset, held: Datase
     desk.progress(0.0, "fitting what is proved, and its intervals")
     evidence = builder.evidence(proof.bench.fit.residual, memory=False)
     proof, final = _at_work(halves, simpler(proof), point, evidence, held)
+    proof, final = within_range(proof, final, point, evidence)
     before = in_full(halves.regression, (), point, evidence)
     there = held.runs.one(carried_point(fitted.runs, held.runs, final.shift))
     ends = (

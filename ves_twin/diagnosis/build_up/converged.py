@@ -6,7 +6,7 @@ import numpy as np
 from scipy.linalg import cho_factor, cho_solve
 from scipy.optimize import least_squares
 
-from ves_twin.core.types import FloatArray
+from ves_twin.core.types import FloatArray, SingleArray
 from ves_twin.diagnosis.evidence import Evidence
 from ves_twin.diagnosis.forward import Hypothesis
 from ves_twin.diagnosis.linearise import linearise
@@ -87,15 +87,17 @@ def _descended(evidence: Evidence, fit: Fit) -> FloatArray | None:
     begin = np.clip(fit.sizes, low, high)
     unit = np.maximum(np.abs(begin), 0.1 * (high - low))
 
-    def left(sizes: FloatArray) -> FloatArray:
+    def at(sizes: FloatArray) -> FloatArray:
+        return runs.depart(fit.shift, free, sizes * unit)
+
+    def beside(rows: SingleArray) -> FloatArray:
         """Whitened, the pull of commissioning errors behind (samples + errors,); nan if it failed.
 
         The trust region shrinks then.
 
         Args:
-            sizes: in their units.
+            rows: predicted (rows, c).
         """
-        rows = runs.one(runs.depart(fit.shift, free, sizes * unit))
         share = np.float32(fit.step_share) * fit.local.columns[-1]
         z = evidence.whitening.apply(evidence.measured - rows - share)
         if not np.all(np.isfinite(z)):
@@ -103,14 +105,16 @@ def _descended(evidence: Evidence, fit: Fit) -> FloatArray | None:
         there = np.clip(here + cho_solve(factor, columns.T @ z - here), *ends)
         return np.concatenate([z - columns @ (there - here), there])
 
+    def left(sizes: FloatArray) -> FloatArray:
+        """What sizes leave, in their units."""
+        return beside(runs.one(at(sizes)))
+
     def slopes(sizes: FloatArray) -> FloatArray:
         """Of that by each size, to the side where there is room; none where the plant fails."""
-        base, found = left(sizes), list[FloatArray]()
-        for n, reach in enumerate(STEP * np.maximum(np.abs(sizes), 0.1 * (high - low) / unit)):
-            end = sizes.copy()
-            end[n] += reach if sizes[n] + reach <= high[n] / unit[n] else -reach
-            found.append((left(end) - base) / (end[n] - sizes[n]))
-        return np.nan_to_num(np.stack(found, axis=1))
+        reach = STEP * np.maximum(np.abs(sizes), 0.1 * (high - low) / unit)
+        reach = np.where(sizes + reach <= high / unit, reach, -reach)
+        base, *found = map(beside, runs.many([at(sizes), *map(at, sizes + np.diag(reach))]))
+        return np.nan_to_num(np.stack(found, axis=1) - base[:, None]) / reach
 
     least = 0.5 * (1.0 - WORTH) * fit.chi2
     bounds = (low / unit, high / unit)

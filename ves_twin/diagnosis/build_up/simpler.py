@@ -5,8 +5,9 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import replace
 
+from ves_twin.diagnosis.build_up.exchanged import exchanged
 from ves_twin.diagnosis.build_up.paired import loss
-from ves_twin.diagnosis.build_up.proof import Bench, Proof, prove
+from ves_twin.diagnosis.build_up.proof import Bench, Proof
 from ves_twin.diagnosis.build_up.stand_ins import SIGNIFICANT
 
 INEFFECTIVE = 0.1
@@ -23,16 +24,8 @@ def simpler(proof: Proof) -> Proof:
     told = proof
     for n in proof.proved:
         for other in _fewer(told, n):
-            names = [other if k == n else k for k in told.proved]
-            bench = told.bench
-            new = other not in told.dropped  # the others were put to proof
-            gone = told.tested - len(names)
-            more = gone + new
-            tried = prove(bench.regression, bench.held, names, more, bench.errors)
-            told = replace(told, tested=tried.tested)
-            if set(tried.proved) == set(names):
-                dropped = {k: p for k, p in told.dropped.items() if k != other}
-                told = replace(tried, dropped={**dropped, **tried.dropped})
+            told = exchanged(told, n, other)
+            if other in told.proved:
                 break
     return told
 

@@ -18,6 +18,9 @@ from ves_twin.machines.mjcf.joint_units import joint_units
 SINGLE = (int(mujoco.mjtJoint.mjJNT_HINGE), int(mujoco.mjtJoint.mjJNT_SLIDE))
 """Joints that effects of joints are made for."""
 
+ARM = 3
+"""Joints in a row from which on the body at their end is that of an arm."""
+
 SOFTEST = 1e-3
 """Of the typical effort over the typical travel: a stated spring is not taken for a softer one."""
 
@@ -41,12 +44,22 @@ def place_of(effect: Effect, told: RigDescription, model: mujoco.MjModel) -> Pla
         if on.axis and axis not in tuple("xyz"):
             raise InvalidInputError(f"target of {kind}", target, "a body and an axis, as tool.x")
         _known("body", name, {model.body(i).name for i in range(1, model.nbody)})
-        return Place(element, target, mass=float(model.body_mass[model.body(name).id]))
+        at = model.body(name).id
+        return Place(element, target, mass=float(model.body_mass[at]), carries=_carries(model, at))
     if element is Element.ACTUATOR:
         return _actuator(effect, told, model)
     if element is Element.TENDON:
         return _tendon(target, told, model)
     return _joint(effect.parts[0], told, model)
+
+
+def _carries(model: mujoco.MjModel, body: int) -> bool:
+    """Whether no body is behind one, and ARM joints or more before it."""
+    joints, at = 0, body
+    while at:
+        joints += int(model.body_jntnum[at])
+        at = int(model.body_parentid[at])
+    return joints >= ARM and body not in model.body_parentid
 
 
 def anywhere(effect: Effect) -> Anywhere:

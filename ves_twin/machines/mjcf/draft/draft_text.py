@@ -146,7 +146,7 @@ def _signal(group: list[Match], mode: Chosen) -> str:
     if compared(first, mode):
         keys["noise"] = f"{max(mode.noise[m.column][0] for m in group):.2g}"
         reasons.append(f"noise: {mode.noise[first.column][1]}")
-    if first.electrical:
+    if first.electrical and "noise" in keys:
         reasons.append(
             "another scale changes noise by its factor; tolerances.gain says how well you know it"
         )
