@@ -219,7 +219,7 @@ def _text(found: Diagnosis, folder: Path) -> str:
         numbers = "".join(f"{e:10.3g}" for e in (error.before_si, tuned, error.after_si))
         lines.append(f"  {name:<18}{numbers}   {error.unit}")
     if verdict.gain is not None and verdict.gain.errors:
-        lines += ["", "  held out            before     after   (nothing tuned there; the gain"]
+        lines += ["", "  held out             tuned     after   (all fitted elsewhere; the gain"]
         lines += [f"{'':41}allows for what is new in each recording)"]
         for name, (before, after) in verdict.gain.errors.items():
             unit = verdict.residuals[name].unit

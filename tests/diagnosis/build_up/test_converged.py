@@ -6,8 +6,10 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 import pytest
+from linear import Linear, recorded, seen
 
 from ves_twin.diagnosis.build_up.converged import _descended, converged
+from ves_twin.diagnosis.build_up.proof import STRAINED
 from ves_twin.diagnosis.evidence import Evidence
 from ves_twin.diagnosis.forward import Excitation
 from ves_twin.diagnosis.forward_wrapper import ForwardWrapper
@@ -210,3 +212,15 @@ def test_steps_to_where_a_plant_fails_are_shortened(valve):
     found = _descended(evidence, start)
     assert max(asked) > 4.6
     assert found[where] == pytest.approx(hidden[where], rel=0.05)
+
+
+def test_a_tolerance_does_no_cause_s_work_in_a_full_fit():
+    """A mass ten sd off is no tolerance: what is known to 5 % may be 25 % off at most."""
+    plant = Linear(kinds=("viscous",))
+    one = seen(plant, recorded(plant, {"mass": 1.5, "viscous@a:size": 0.6}, 5, error=0.01))
+    runs = one.runs
+    cause = next(h for h in plant.hypotheses if h.label == "viscous@a")
+    evidence = Evidence(runs, one.measured, whitening_declared(runs))
+    fit = converged(evidence, (cause,), runs.origin, runs.origin)
+    (mass,) = runs.nuisances
+    assert fit.shift[mass] == pytest.approx(STRAINED * runs.sd[mass])

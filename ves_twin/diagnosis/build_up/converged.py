@@ -7,11 +7,11 @@ from scipy.linalg import cho_factor, cho_solve
 from scipy.optimize import least_squares
 
 from ves_twin.core.types import FloatArray, SingleArray
+from ves_twin.diagnosis.build_up.proof import STRAINED
 from ves_twin.diagnosis.evidence import Evidence
 from ves_twin.diagnosis.forward import Hypothesis
 from ves_twin.diagnosis.linearise import linearise
 from ves_twin.diagnosis.refine import WORTH, Fit, refine
-from ves_twin.diagnosis.search import FARTHEST
 
 AGAIN = 5
 """Times that all columns are computed anew: a resonance with a cubic spring settles in four."""
@@ -48,12 +48,12 @@ def converged(
     """
     runs = evidence.runs
     local = linearise(runs, np.where(runs.sd > 0.0, point, 0.0))
-    fit = refine(evidence, causes, shift, local, 1)
+    fit = refine(evidence, causes, shift, local, 1, farthest=STRAINED)
     for _ in range(AGAIN):
         if runs.budget.skips(BETTER):
             return fit
         before, local = fit.chi2, linearise(runs, fit.shift)
-        fit = refine(evidence, causes, fit.shift, local, 0, fit.step_share)
+        fit = refine(evidence, causes, fit.shift, local, 0, fit.step_share, STRAINED)
         if before - fit.chi2 < WORTH * before:
             break
     if not causes or not np.isfinite(fit.chi2) or runs.budget.skips(BETTER):
@@ -61,7 +61,8 @@ def converged(
     there = _descended(evidence, fit)
     if there is None:
         return fit
-    other = refine(evidence, causes, there, linearise(runs, there), 0, fit.step_share)
+    at = (there, linearise(runs, there), 0, fit.step_share, STRAINED)
+    other = refine(evidence, causes, *at)
     return min(fit, other, key=lambda one: one.chi2)
 
 
@@ -78,7 +79,7 @@ def _descended(evidence: Evidence, fit: Fit) -> FloatArray | None:
     mine = np.flatnonzero(~np.isin(runs.nuisances, free))
     others = runs.nuisances[mine]
     sd = np.append(runs.sd[others], 1.0)
-    ends = np.clip([runs.low[others], runs.high[others]] / sd[:-1], -FARTHEST, FARTHEST)
+    ends = np.clip([runs.low[others], runs.high[others]] / sd[:-1], -STRAINED, STRAINED)
     ends = np.append(ends, [[-np.inf], [np.inf]], axis=1)
     here = np.append(fit.shift[others], fit.step_share) / sd
     columns = evidence.whitening.apply(fit.local.columns[[*mine, len(runs.nuisances)]]).T

@@ -8,6 +8,7 @@ import numpy as np
 
 from ves_twin.core.types import FloatArray
 from ves_twin.diagnosis.build_up.converged import converged
+from ves_twin.diagnosis.build_up.proof import STRAINED
 from ves_twin.diagnosis.build_up.regression import Regression
 from ves_twin.diagnosis.evidence import Evidence
 from ves_twin.diagnosis.refine import Fit, refine
@@ -52,7 +53,8 @@ def in_full(
     fit = min(fits, key=lambda one: one.chi2)
     if not probed:
         return fit
-    return refine(evidence, causes, fit.shift, fit.local, 0, fit.step_share, probed=True)
+    end = (fit.shift, fit.local, 0, fit.step_share)
+    return refine(evidence, causes, *end, farthest=STRAINED, probed=True)
 
 
 def _likeliest(evidence: Evidence, starts: Sequence[FloatArray]) -> FloatArray:

@@ -148,7 +148,12 @@ def _beyond(verdict: Verdict) -> str:
     left = figures.misfit if figures.misfit_after is None else figures.misfit_after
     times = left / max(figures.misfit_threshold, 1e-30)
     if times > 1.0:
-        return f"What is left is {times:.2g} times the most that machines in order leave."
+        text = f"What is left is {times:.2g} times the most that machines in order leave"
+        shares = {n: e.after_si / e.spread for n, e in verdict.residuals.items() if e.spread > 0.0}
+        if not shares:
+            return f"{text}."
+        most = max(shares, key=lambda name: shares[name])
+        return f"{text}: {shares[most]:.2g} of the spread of {most}, less of any other channel."
     return "No cause fits well enough to be accepted."
 
 

@@ -68,7 +68,9 @@ def draft_text(
         "[signals]",
     ]
     lines = [*head, *_signals(check, mode)]
-    lines += ["", "[typical.joint]", *_joints(log, check, model)]
+    fitted = any(match.electrical for match in check.found)
+    why = "   # efforts by the fitted scale: they change with it" if fitted else ""
+    lines += ["", f"[typical.joint]{why}", *_joints(log, check, model)]
     spans = list(_spans(log, check))
     lines += ["", "[typical.signal]", *spans] if spans else []
     if mode.mode is Mode.CONTROL:
