@@ -26,6 +26,8 @@ def new_text(found: NewMachine, model: Path, logs: Sequence[Path]) -> str:
     shares = ", ".join(f"{share:.0%} of {name}" for name, share in draft.explained.items())
     lines += [f"  as it is  the model explains {shares}"] if shares else []
     held = f" --alternate {draft.stretch:g}" if draft.stretch else ""
-    held = f" --held-out {logs[1]}" if len(logs) > 1 else held
-    lines += [f"  next      ves-twin diagnose {logs[0]}{held} --plant {found.path}"]
+    *fitted, last = [str(log) for log in logs]
+    held = f" --held-out {last}" if fitted else held
+    given = " ".join(fitted or [last])
+    lines += [f"  next      ves-twin diagnose {given}{held} --plant {found.path}"]
     return "\n".join(lines)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 from scipy.linalg import cho_factor, cho_solve
-from scipy.optimize import least_squares
+from scipy.optimize import OptimizeResult, least_squares
 
 from ves_twin.core.types import FloatArray, SingleArray
 from ves_twin.diagnosis.build_up.proof import STRAINED
@@ -117,9 +117,13 @@ def _descended(evidence: Evidence, fit: Fit) -> FloatArray | None:
         base, *found = map(beside, runs.many([at(sizes), *map(at, sizes + np.diag(reach))]))
         return np.nan_to_num(np.stack(found, axis=1) - base[:, None]) / reach
 
+    def going(intermediate_result: OptimizeResult) -> None:
+        """Ends the steps where the runs are spent; what was reached is told."""
+        if runs.budget.skips(BETTER):
+            raise StopIteration
+
     least = 0.5 * (1.0 - WORTH) * fit.chi2
+    ends_at = {"ftol": WORTH, "xtol": None, "gtol": None, "max_nfev": STEPS, "callback": going}
     bounds = (low / unit, high / unit)
-    found = least_squares(
-        left, begin / unit, slopes, bounds, ftol=WORTH, xtol=None, gtol=None, max_nfev=STEPS
-    )
+    found = least_squares(left, begin / unit, slopes, bounds, **ends_at)
     return runs.depart(fit.shift, free, found.x * unit) if found.cost < least else None

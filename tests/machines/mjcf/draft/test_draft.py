@@ -152,6 +152,19 @@ def test_a_joint_whose_motor_has_no_column_is_imposed_where_others_are_predicted
     assert found.explained["x.position"] > 0.8
 
 
+def test_volts_of_a_model_that_takes_volts_stay_as_they_are(tmp_path, swing, write):
+    """A gear that is not one says that the command is no effort; a constant would go in twice."""
+    model = tmp_path / "volts.xml"
+    model.write_text(swing[0].read_text().replace("<motor ", '<motor gear="0.04" '))
+    volts = {("u_V" if n == "tau" else n): v for n, v in swing[1].items()}
+    for factor, told in ((25.0 * 1.02, 1.0), (25.0 * 12.0, pytest.approx(1.0 / 12.0, rel=0.1))):
+        scaled = volts | {"u_V": factor * volts["u_V"]}
+        _, rig = drafted(model, write(scaled))
+        assert scales(rig)["drive.effort"] == told
+        assert rig.description.tolerances["gain"] == (0.01 if told == 1.0 else 0.2)
+        model.with_name("my.toml").unlink()
+
+
 def test_an_arm_that_drifts_open_loop_has_its_motion_given_though_it_is_noisy(arm, columns, write):
     rng = np.random.default_rng(4)
     noisy = {f"q{i}": columns[f"q{i}"] + 0.003 * rng.standard_normal(1600) for i in (1, 2, 3)}

@@ -240,6 +240,12 @@ class _Judge:
             fit = self.fit(match, motion)
             if match.electrical and fit.gain > TELLS:
                 scale = 1.0 / fit.slope
+                if match.spot.unit == "1" and 1.0 / FAR < scale < FAR:
+                    said.append(
+                        f"{match.column} is taken as the command of {match.spot.label} as the model"
+                        f" has it; {scale:.3g} times it would fit best"
+                    )
+                    continue
                 found[i] = replace(match, scale=float(f"{scale:.3g}"))
                 unit = f"{match.spot.unit} per {match.unit}"
                 turned = ", turned (or its joint's position counts the other way)" * (scale < 0.0)

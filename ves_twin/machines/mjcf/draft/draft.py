@@ -166,7 +166,7 @@ def _guesses(check: Checked, mode: Chosen) -> tuple[Guess, ...]:
         if not used(match, mode):
             continue
         unit = match.unit if match.told else f"{match.unit}?"
-        if match.electrical:
+        if match.fitted:
             unit = (
                 f"{match.unit}, fitted: {abs(match.scale):.3g} {match.spot.unit} per {match.unit}"
             )

@@ -68,7 +68,7 @@ def draft_text(
         "[signals]",
     ]
     lines = [*head, *_signals(check, mode)]
-    fitted = any(match.electrical for match in check.found)
+    fitted = any(match.fitted for match in check.found)
     why = "   # efforts by the fitted scale: they change with it" if fitted else ""
     lines += ["", f"[typical.joint]{why}", *_joints(log, check, model)]
     spans = list(_spans(log, check))
@@ -148,7 +148,7 @@ def _signal(group: list[Match], mode: Chosen) -> str:
     if compared(first, mode):
         keys["noise"] = f"{max(mode.noise[m.column][0] for m in group):.2g}"
         reasons.append(f"noise: {mode.noise[first.column][1]}")
-    if first.electrical and "noise" in keys:
+    if first.fitted and "noise" in keys:
         reasons.append(
             "another scale changes noise by its factor; tolerances.gain says how well you know it"
         )
@@ -219,7 +219,7 @@ def _tolerances(model: mujoco.MjModel, check: Checked) -> str:
         for attribute, (share, field) in SHARES.items()
         if np.any(np.asarray(getattr(model, field)) != 0.0)
     }
-    if any(match.electrical for match in check.found):
+    if any(match.fitted for match in check.found):
         there["gain"] = FITTED
     return "{ " + ", ".join(f'{name} = "{share}"' for name, share in there.items()) + " }"
 

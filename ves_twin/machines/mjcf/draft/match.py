@@ -55,6 +55,11 @@ class Match:
         return effort and self.told and self.unit in ELECTRICAL and self.spot.unit != self.unit
 
     @property
+    def fitted(self) -> bool:
+        """Whether that constant is one that the log gave, and no model's own command."""
+        return self.electrical and not (self.spot.unit == "1" and self.scale == 1.0)
+
+    @property
     def factor(self) -> float:
         """What the column is multiplied with to give the spot's number in SI."""
         if self.electrical or LAB_UNITS.get(self.unit, self.unit) != self.spot.unit:
