@@ -2,7 +2,7 @@
 
 import re
 
-PROGRESS = re.compile(r"compiling the inner loop|.*, \d+ %, .* so far")
+PROGRESS = re.compile(r"compiling the inner loop|.*, [^,]+ so far\b")
 """A line of `ves_twin.cli.progress`: they come after a second, so that clocks decide."""
 
 
