@@ -17,6 +17,14 @@ def impatient(monkeypatch):
     monkeypatch.setattr(progress, "PAUSE", 0.01)
 
 
+@pytest.fixture
+def now(monkeypatch):
+    """A clock that a test sets [s]."""
+    time_now = [100.0]
+    monkeypatch.setattr(progress.time, "monotonic", lambda: time_now[0])
+    return time_now
+
+
 def _lines_with(word, capsys):
     """What was printed, once a line has a word; a slow machine has 30 s for it."""
     told = ""
@@ -41,9 +49,7 @@ def test_a_stage_without_news_is_told_all_the_same(impatient, capsys):
         assert "compare, 0 %, 0 s so far" in _lines_with("compare", capsys)
 
 
-def test_a_stage_whose_end_nobody_knows_tells_its_own_time(monkeypatch):
-    now = [100.0]
-    monkeypatch.setattr(progress.time, "monotonic", lambda: now[0])
+def test_a_stage_whose_end_nobody_knows_tells_its_own_time(now):
     bar = RunProgress("diagnose", 1.0, unit="share")
     bar.share(0.7, "signatures")
     now[0] = 110.0
@@ -60,9 +66,7 @@ def test_quick_work_prints_no_line(capsys, monkeypatch):
     assert capsys.readouterr().err == ""
 
 
-def test_another_stage_begins_its_own_time(monkeypatch):
-    now = [100.0]
-    monkeypatch.setattr(progress.time, "monotonic", lambda: now[0])
+def test_another_stage_begins_its_own_time(now):
     bar = RunProgress("plan", 1.0, unit="share")
     bar.share(0.5, "first")
     now[0] = 160.0
