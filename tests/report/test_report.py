@@ -27,7 +27,7 @@ from ves_twin.diagnosis.settings import Settings
 from ves_twin.diagnosis.verdict import Estimate, Kind
 from ves_twin.diagnosis.whitening import whitening_declared
 from ves_twin.report.diagnosis.answer import headline, next_step, tone
-from ves_twin.report.diagnosis.basis import gain_words, taken_words
+from ves_twin.report.diagnosis.basis import basis_sentences, gain_words, taken_words
 from ves_twin.report.diagnosis.credibility import Pedigree, credibility
 from ves_twin.report.diagnosis.limits import limit_sentences
 from ves_twin.report.diagnosis.page import diagnosis_page
@@ -643,3 +643,21 @@ def test_flaws_that_repeat_unfold_behind_the_first_of_each_sort(friction):
     assert "<details>" in told.rpartition("recording 2: 5 rows repeat")[2]
     assert rest.partition("</details>")[0].count("rows repeat") == 58
     assert "failed: repeats, saturation." in page
+
+
+def test_a_step_that_puts_a_channel_off_is_told_with_a_finer_one(proven):
+    """Where its error is half of what is left; not where more than that is left anyway."""
+    name, error = next(iter(proven.residuals.items()))
+
+    def told(step):
+        return replace(proven, residuals={name: replace(error, step_si=step)})
+
+    coarse, fine = told(3.0 * error.after_si), told(0.4 * error.after_si)
+    said = " ".join(basis_sentences(coarse))
+    assert f"the model's step puts {name}" in said
+    assert "3 times what is left of it" in said
+    assert "Take a step 4 times smaller" in next_step(coarse)
+    assert "Take a step 2 times smaller" in next_step(told(0.6 * error.after_si))
+    assert not any(text.startswith("Step:") for text in basis_sentences(fine))
+    assert next_step(fine) == next_step(proven)
+    assert "smaller" not in next_step(replace(coarse, verdict=Kind.NOTHING))

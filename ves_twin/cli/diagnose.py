@@ -182,6 +182,7 @@ def _plant_sentence(found: Diagnosis) -> str:
 def _text(found: Diagnosis, folder: Path) -> str:
     from ves_twin.report.diagnosis.answer import confidence_sentence, next_step, verdict_sentence
     from ves_twin.report.diagnosis.basis import gain_words, rests_on
+    from ves_twin.report.diagnosis.coarse_step import coarse_sentence
     from ves_twin.report.diagnosis.law import law_sentences
     from ves_twin.report.diagnosis.proved import (
         inseparable_sentences,
@@ -198,6 +199,7 @@ def _text(found: Diagnosis, folder: Path) -> str:
         f"how sure  {confidence_sentence(verdict)}",
         f"next      {next_step(verdict)}",
         f"rests on  {rests_on(verdict.basis)}",
+        *(f"          {text}" for text in filter(None, [coarse_sentence(verdict)])),
     ]
     for cause in () if verdict.proved else verdict.causes:
         for name, size in cause.largest.items():

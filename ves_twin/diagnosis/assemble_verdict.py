@@ -131,7 +131,7 @@ def assemble_verdict(
         statistics=statistics,
         causes=causes,
         alternatives=alternatives,
-        residuals=_residuals(exhibit),
+        residuals=_residuals(findings, exhibit),
         gain=findings.gain,
         forecast=findings.forecast,
         tuned=_tuned(findings),
@@ -322,9 +322,11 @@ def _tuned(findings: Findings) -> dict[str, Estimate]:
     return estimates
 
 
-def _residuals(exhibit: ReportTraces) -> dict[str, ChannelError]:
+def _residuals(findings: Findings, exhibit: ReportTraces) -> dict[str, ChannelError]:
     """Before: the model as it is. After: with commissioning errors, and the causes, fitted."""
-    found = {}
+    found, fitted = {}, findings.fitted
+    fit = fitted.best if fitted else findings.first.commissioning
+    local = fit.local if fit else findings.first.screen.bank.base
     for c, channel in enumerate(exhibit.channels):
         traces = exhibit.traces
         found[channel.name] = ChannelError(
@@ -335,6 +337,7 @@ def _residuals(exhibit: ReportTraces) -> dict[str, ChannelError]:
             unit=channel.unit,
             spread=_rms([t.measured[:, c] - np.nanmean(t.measured[:, c]) for t in traces]),
             tolerances_si=_rms([t.measured[:, c] - t.tolerances[:, c] for t in traces]),
+            step_si=_rms([local.step_error[:, c]]),
         )
     return found
 

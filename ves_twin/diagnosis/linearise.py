@@ -46,6 +46,11 @@ class Linearisation:
     columns: SingleArray
     bends: FloatArray
 
+    @property
+    def step_error(self) -> SingleArray:
+        """What a first-order integrator's step puts the prediction off by (rows, c)."""
+        return np.asarray(2.0 / STEP_SD * self.columns[-1], np.float32)
+
 
 def linearise(
     runs: Runs,

@@ -123,7 +123,8 @@ class ChannelError:
     """Rms error of a channel before and after, in noise sigma (whitened) and in its unit.
 
     `spread` is the sd of what was measured, in that unit; `tolerances_si` what the model leaves
-    with its tolerances fitted and no cause, which then equals `after_si`.
+    with its tolerances fitted and no cause, which then equals `after_si`. `step_si` is what the
+    model's step puts it off by, to first order: twice what halving it changes.
     """
 
     before: float
@@ -133,6 +134,7 @@ class ChannelError:
     unit: str
     spread: float = 0.0
     tolerances_si: float | None = None
+    step_si: float = 0.0
 
 
 @dataclass(frozen=True)

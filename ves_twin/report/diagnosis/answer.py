@@ -7,6 +7,7 @@ from ves_twin.diagnosis.disagreement import disagree
 from ves_twin.diagnosis.rivals import Standing
 from ves_twin.diagnosis.verdict import Cause, Estimate, Kind, Verdict
 from ves_twin.report.diagnosis.basis import gain_words, taken_share
+from ves_twin.report.diagnosis.coarse_step import finer
 from ves_twin.report.diagnosis.law import worth_sentence
 from ves_twin.report.diagnosis.limits import next_sentences
 from ves_twin.report.diagnosis.words import (
@@ -69,6 +70,8 @@ def confidence_sentence(verdict: Verdict) -> str:
 
 def next_step(verdict: Verdict) -> str:
     """What to do next: the first thing that would make it surer, else what to do about it."""
+    if verdict.verdict is not Kind.NOTHING and finer(verdict):
+        return finer(verdict)
     if tone(verdict) == "good":
         return "Nothing to do. Smaller faults need a longer recording or more channels."
     if tone(verdict) == "bad":

@@ -6,6 +6,7 @@ from ves_twin.core.quantity import shares
 from ves_twin.diagnosis.gain import Gain
 from ves_twin.diagnosis.tolerances import FEWEST
 from ves_twin.diagnosis.verdict import Basis, Kind, Verdict
+from ves_twin.report.diagnosis.coarse_step import coarse_sentence
 
 NEARLY_ALL = 0.99
 """Share from which more digits tell nobody anything."""
@@ -151,6 +152,7 @@ def basis_sentences(verdict: Verdict) -> tuple[str, ...]:
         held.get(basis.held_out, f"Held-out recordings: {basis.held_out}."),
         *_repeats(basis),
         *_left_out(basis),
+        *filter(None, [coarse_sentence(verdict)]),
     )
 
 

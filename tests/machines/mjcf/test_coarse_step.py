@@ -1,0 +1,71 @@
+"""What halving a model's step changes tells how far the step puts its prediction off."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from ves_twin.diagnosis.forward import Excitation
+from ves_twin.diagnosis.linearise import linearise
+from ves_twin.diagnosis.runs import Runs
+from ves_twin.machines.mjcf.forward import MjcfForward
+from ves_twin.machines.mjcf.machine import Rig
+
+SWING = """
+<mujoco model="swing">
+  <option timestep="{step}" integrator="implicitfast"><flag contact="disable"/></option>
+  <worldbody>
+    <body>
+      <joint name="hinge" axis="0 1 0" damping="0.02"/>
+      <geom type="capsule" fromto="0 0 0 0 0 -0.3" size="0.02" mass="0.5"/>
+    </body>
+  </worldbody>
+  <actuator><motor name="motor" joint="hinge"/></actuator>
+</mujoco>
+"""
+
+FILE = """
+schema = 1
+kind = "rig"
+name = "swing"
+model = "swing.xml"
+clock = { column = "time" }
+drive = { mode = "control" }
+effects = [{ kind = "viscous_friction", on = ["hinge"] }]
+[signals]
+angle = { columns = ["angle"], unit = "rad", joint = "hinge", noise = 0.001 }
+torque = { columns = ["torque"], unit = "N*m", actuator = "motor" }
+[typical.joint]
+hinge = { effort = 0.5, speed = 3.0, travel = 0.5 }
+[start]
+hinge = { position = 0.0, speed = 0.0 }
+"""
+
+FINE = 1e-5
+"""Step [s] whose error is nothing beside that of those that are tried."""
+
+
+@pytest.fixture
+def forward(tmp_path):
+    """The swing with a given step [s]."""
+
+    def of(step):
+        (tmp_path / "swing.xml").write_text(SWING.format(step=step))
+        (tmp_path / "swing.toml").write_text(FILE)
+        return MjcfForward.of(Rig.load(str(tmp_path / "swing.toml")))
+
+    return of
+
+
+@pytest.mark.parametrize("step", [0.01, 0.002])
+def test_it_is_what_a_fine_step_changes_to_first_order(forward, step):
+    time = np.arange(0.0, 4.0, 0.02)
+    torque = 0.2 * np.sin(2.0 * np.pi * 0.4 * time)[:, None]
+    programme = Excitation("swing", time, {"torque": torque})
+    runs = Runs(forward(step), (programme,), (0,))
+    told = linearise(runs, runs.origin).step_error
+    fine = Runs(forward(FINE), (programme,), (0,))
+    true = fine.one(fine.origin) - runs.one(runs.origin)
+    bent = 2.0 * step / 0.02  # of second order, beside this motion's fastest change of 20 ms
+    assert np.linalg.norm(told - true) < bent * np.linalg.norm(true)
+    assert np.linalg.norm(true) > 0.0
