@@ -661,3 +661,15 @@ def test_a_step_that_puts_a_channel_off_is_told_with_a_finer_one(proven):
     assert not any(text.startswith("Step:") for text in basis_sentences(fine))
     assert next_step(fine) == next_step(proven)
     assert "smaller" not in next_step(replace(coarse, verdict=Kind.NOTHING))
+
+
+def test_an_unknown_that_leaves_little_tells_what_noise_would_accept_it(proven):
+    name, error = next(iter(proven.residuals.items()))
+
+    def told(share):
+        little = replace(error, spread=1.0, after_si=share)
+        return next_step(replace(proven, verdict=Kind.UNKNOWN, causes=(), residuals={name: little}))
+
+    assert "At most 8 % of a channel's spread is left" in told(0.08)
+    assert f"declare twice what is left as noise in the machine's file ({name}: 0.16" in told(0.08)
+    assert "noise" not in told(0.3)
