@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import mujoco
 import numpy as np
 import pytest
 
@@ -10,6 +11,7 @@ from ves_twin.diagnosis.linearise import linearise
 from ves_twin.diagnosis.runs import Runs
 from ves_twin.machines.mjcf.forward import MjcfForward
 from ves_twin.machines.mjcf.machine import Rig
+from ves_twin.machines.new_machine import new_machine
 
 SWING = """
 <mujoco model="swing">
@@ -44,6 +46,9 @@ hinge = { position = 0.0, speed = 0.0 }
 FINE = 1e-5
 """Step [s] whose error is nothing beside that of those that are tried."""
 
+NOISE = 0.001
+"""Of the angle [rad]."""
+
 
 @pytest.fixture
 def forward(tmp_path):
@@ -69,3 +74,23 @@ def test_it_is_what_a_fine_step_changes_to_first_order(forward, step):
     bent = 2.0 * step / 0.02  # of second order, beside this motion's fastest change of 20 ms
     assert np.linalg.norm(told - true) < bent * np.linalg.norm(true)
     assert np.linalg.norm(true) > 0.0
+
+
+def test_a_draft_tells_a_step_that_is_coarse_for_its_log(tmp_path):
+    model = mujoco.MjModel.from_xml_string(SWING.format(step=FINE))
+    data, rows, rng = mujoco.MjData(model), [], np.random.default_rng(4)
+    for time in np.arange(0.0, 4.0, 0.02):
+        data.ctrl[0] = 0.2 * np.sin(2.0 * np.pi * 0.4 * time)
+        rows.append([time, data.qpos[0] + NOISE * rng.standard_normal(), data.ctrl[0]])
+        mujoco.mj_step(model, data, round(0.02 / FINE))
+    log = tmp_path / "log.csv"
+    head = "time_s,hinge_rad,motor_Nm"
+    np.savetxt(log, rows, "%.9g", ",", header=head, comments="")
+
+    def said(step):
+        (tmp_path / "swing.xml").write_text(SWING.format(step=step))
+        look = new_machine(tmp_path / "swing.xml", [log], tmp_path / f"{step}.toml").draft.look
+        return [text for text in look if "timestep" in text]
+
+    assert any(text.startswith("the model's step of 0.02 s puts hinge") for text in said(0.02))
+    assert not said(0.0001)

@@ -12,6 +12,7 @@ from tempfile import TemporaryDirectory
 import numpy as np
 
 from ves_twin.core.errors import InvalidInputError
+from ves_twin.core.quantity import quantity
 from ves_twin.core.recording.recording import Recording
 from ves_twin.diagnosis.forward import Excitation
 from ves_twin.machines.mjcf.columns import read_rig_recording
@@ -39,6 +40,10 @@ STRETCH = 2.0
 
 LONGEST = 10.0
 """Stretch of a log that is predicted to say how near the model is [s]."""
+
+COARSE = 3.0
+"""Error of the model's step, in noise of one row, that is told: a rotary pendulum with 13 had
+intervals far too narrow about sizes that were off."""
 
 
 @dataclass(frozen=True)
@@ -104,7 +109,9 @@ def draft(model: Path, logs: Sequence[Path], out: Path, rate: float | None = Non
         return text, _rig(text, given, out)
 
     text, rig = written(mode)
-    explained = dict(check.explained) if mode.mode is Mode.MOTION else _predicted(rig, logs[0])
+    explained, coarse = dict(check.explained), list[str]()
+    if mode.mode is not Mode.MOTION:
+        explained, coarse = _predicted(rig, logs[0])
     if mode.either and min(explained.values()) < HALF:
         least = min(explained, key=lambda name: explained[name])
         why = f"open loop the model explains {explained[least]:.0%} of {least}"
@@ -115,7 +122,8 @@ def draft(model: Path, logs: Sequence[Path], out: Path, rate: float | None = Non
     left = dict(matches.left)
     left |= {c: "says what was asked for" for c in matches.setpoints}
     left |= {m.column: "is a speed" for m in check.found if not used(m, mode)}
-    look = (*given.notes, *log.notes, *check.findings)
+    coarse = coarse if mode.mode is not Mode.MOTION else []
+    look = (*given.notes, *log.notes, *check.findings, *coarse)
     words = f"{mode.mode}: {mode.why}"
     stretch = _stretch(mode, log)
     return Draft(text, given.text, _guesses(check, mode), left, look, words, explained, stretch)
@@ -143,20 +151,33 @@ def _rig(text: str, given: GivenModel, out: Path) -> Rig:
     return rig
 
 
-def _predicted(rig: Rig, log: Path) -> dict[str, float]:
-    """Signal -> share of its power that the model, fed with the log's commands, explains."""
+def _predicted(rig: Rig, log: Path) -> tuple[dict[str, float], list[str]]:
+    """Of the model, fed with the log's commands: what it explains, and what its step spoils.
+
+    Returns:
+        Signal -> share of its power; a sentence for each channel that the step puts far off.
+    """
     recording = read_rig_recording(log, rig)
     rows = recording.time - recording.time[0] <= LONGEST
     signals = {name: values[rows] for name, values in recording.signals.items()}
     forward, short = MjcfForward.of(rig), Recording(recording.time[rows], signals, recording.info)
-    found = forward.simulate(Excitation.of(short, forward.drive), {})
+    fed = Excitation.of(short, forward.drive)
+    found, finer = (forward.simulate(fed, {}, refined) for refined in (False, True))
     shares: dict[str, list[float]] = {}
-    for column, channel in zip(found.T, forward.channels, strict=True):
+    coarse = []
+    for column, half, channel in zip(found.T, finer.T, forward.channels, strict=True):
+        off = 2.0 * float(np.sqrt(np.mean((half - column) ** 2)))  # to first order
+        if off > COARSE * channel.sd > 0.0:
+            coarse.append(
+                f"the model's step of {rig.model.opt.timestep:.3g} s puts {channel.name}"
+                f" {quantity(off, channel.unit, 2)} off (rms), {off / channel.sd:.2g} times its"
+                " noise: give the model a smaller timestep"
+            )
         y = short[channel.signal][:, channel.column]
         rest, power = y - column, float(np.sum((y - y.mean()) ** 2)) or 1.0
         share = 1.0 - float(rest @ rest) / power if np.all(np.isfinite(rest)) else 0.0
         shares.setdefault(channel.signal, []).append(share)
-    return {name: max(min(found), 0.0) for name, found in shares.items()}
+    return {name: max(min(found), 0.0) for name, found in shares.items()}, coarse
 
 
 def _guesses(check: Checked, mode: Chosen) -> tuple[Guess, ...]:
