@@ -1,5 +1,7 @@
 """Bad input of a diagnosis: clear words, and never a confident wrong name."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from toy import PERIOD, SD, Toy, programme, record
@@ -255,3 +257,26 @@ def test_a_turned_column_is_told_with_the_offset_beside():
     turned = preprocess.preprocess(Toy(), [with_out(data, data["out"] * [-0.5, 1.0] + [0.7, 0.0])])
     with pytest.raises(InvalidInputError, match=r"-0\.50\d times it, and 0\.69 beside"):
         check_likeness(turned, turned.runs.one(turned.runs.origin))
+
+
+def test_a_column_that_drifts_the_other_way_is_no_turned_one():
+    """A slope of a table turns the way of a sled on air round, and not the sensor of it."""
+    data = record(np.random.default_rng(1))
+    seen = preprocess.preprocess(Toy(), [data])
+    way = np.linspace(0.0, 5.0, len(seen.measured))[:, None] ** 2 * [1.0, 0.0]
+    nominal = seen.runs.one(seen.runs.origin)
+    drifted = replace(seen, measured=(seen.measured - way).astype(np.float32))
+    check_likeness(drifted, (nominal + way).astype(np.float32))
+    turned = replace(seen, measured=((seen.measured * [-1.0, 1.0]) - way).astype(np.float32))
+    with pytest.raises(InvalidInputError, match="the other sign"):
+        check_likeness(turned, (nominal + way).astype(np.float32))
+
+
+def test_what_looks_odd_in_one_of_three_recordings_alone_is_let_through():
+    data = record(np.random.default_rng(1))
+    turned = with_out(data, data["out"] * [-0.5, 1.0])
+    few = preprocess.preprocess(Toy(), [data, data, turned])
+    check_likeness(few, few.runs.one(few.runs.origin))
+    most = preprocess.preprocess(Toy(), [data, turned, turned])
+    with pytest.raises(InvalidInputError, match="the other sign"):
+        check_likeness(most, most.runs.one(most.runs.origin))

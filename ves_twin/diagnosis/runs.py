@@ -14,6 +14,7 @@ from ves_twin.core.types import BoolArray, FloatArray, IntArray, SingleArray
 from ves_twin.core.workers import Workers
 from ves_twin.diagnosis.forward import Excitation, Forward, Hypothesis, Parameter
 from ves_twin.diagnosis.grid import AnalysisGrid
+from ves_twin.diagnosis.last_runs import LastRuns
 
 Progress = Callable[[float, str], None]
 """Called with the share done, 0 to 1, and what is being done."""
@@ -51,6 +52,7 @@ class Runs:
     columns: tuple[int, ...]
     workers: Workers = field(default_factory=Workers, compare=False)
     holes: tuple[BoolArray, ...] = ()
+    _last: LastRuns = field(default_factory=LastRuns, init=False, compare=False, repr=False)
 
     @cached_property
     def coordinates(self) -> tuple[Coordinate, ...]:
@@ -134,16 +136,26 @@ class Runs:
 
     def one(self, shift: FloatArray, refined: bool = False) -> SingleArray:
         """Prediction (rows, channels) at a vector of departures."""
-        stacks = []
-        for k, (programme, grid) in enumerate(zip(self.programmes, self.grids, strict=True)):
-            values = {
-                axis.parameter.name: axis.parameter.nominal + float(shift[i])
-                for i, axis in enumerate(self.coordinates)
-                if axis.recording in (-1, k)
-            }
-            rows = self.forward.simulate(programme, values, refined)
-            stacks.append(grid.reduce(rows[:, list(self.columns)]))
-        return np.concatenate(stacks)
+        return np.concatenate([self._of(k, shift, refined) for k in range(len(self.programmes))])
+
+    def _of(self, recording: int, shift: FloatArray, refined: bool) -> SingleArray:
+        """Of one recording; as it was where none of its own departures has changed since."""
+        own = [i for i, axis in enumerate(self.coordinates) if axis.recording in (-1, recording)]
+        key = (recording, refined, shift[own].tobytes())
+        several = len(self.programmes) > 1
+        if several and (there := self._last.get(key)) is not None:
+            return there
+        values = {
+            self.coordinates[i].parameter.name: self.coordinates[i].parameter.nominal
+            + float(shift[i])
+            for i in own
+        }
+        programme, grid = self.programmes[recording], self.grids[recording]
+        rows = self.forward.simulate(programme, values, refined)
+        found = grid.reduce(rows[:, list(self.columns)])
+        if several:
+            self._last.keep(key, found)
+        return found
 
     def many(
         self, shifts: Sequence[FloatArray], progress: Progress = silent, what: str = ""

@@ -91,6 +91,7 @@ def diagnose(
     _check_held_out(prepared.material)
     if alternate is not None:
         prepared = prepared.split(alternate)
+    prepared = prepared.in_pieces()
     machine, material = prepared.machine, prepared.material
     measured = [one.recording for one in material.measured]
     offered: list[Excitation] = []

@@ -101,6 +101,26 @@ class Prepared:
             self, material=replace(self.material, measured=tuple(fitted), held_out=tuple(held))
         )
 
+    def in_pieces(self) -> Prepared:
+        """Recordings as they are simulated; see `Machine.pieces`.
+
+        Of a machine that is in order its first piece alone: each recording counts as one machine.
+        """
+
+        def cut(given: Sequence[Named]) -> tuple[Named, ...]:
+            pairs = ((one, self.machine.pieces(one.recording)) for one in given)
+            return tuple(replace(one, recording=piece) for one, parts in pairs for piece in parts)
+
+        told = self.material
+        first = [self.machine.pieces(one.recording)[0] for one in told.commissioning]
+        material = replace(
+            told.with_sort("commissioning", first),
+            measured=cut(told.measured),
+            held_out=cut(told.held_out),
+            baseline=cut(told.baseline),
+        )
+        return replace(self, material=material)
+
 
 class Machine(ABC):
     """What compare, diagnose, trend and plan need of a machine, and nothing else they ask."""
@@ -182,6 +202,14 @@ class Machine(ABC):
             InvalidInputError: fewer than two stretches, or a machine whose recordings cannot be
                 cut, since a stretch does not say how it begins.
         """
+
+    def pieces(self, recording: Recording) -> Sequence[Recording]:
+        """Parts of a recording that are simulated each from a start of its own; one: all of it.
+
+        Raises:
+            InvalidInputError: a machine of which no row tells how a part begins.
+        """
+        return (recording,)
 
     @abstractmethod
     def extended(self, verdict: Verdict) -> Machine | None:

@@ -144,10 +144,11 @@ def _friction(told: RigDescription, model: mujoco.MjModel) -> None:
 
 
 def _starts(told: RigDescription, model: mujoco.MjModel) -> None:
-    positions = {c.joint for c in told.compare.values() if c.of == "position"}
+    measured = {*(c.joint for c in told.compare.values()), *told.drive.joints}
     for joint, start in told.start.items():
-        if start.position == "measured" and joint not in {*positions, *told.drive.joints}:
-            raise InvalidInputError(f"start.{joint}", "measured", "a signal of its position")
+        if start.position == "measured" and joint not in measured:
+            expected = "a signal of its position, or of its speed"
+            raise InvalidInputError(f"start.{joint}", "measured", expected)
         place, speed = joint_units(model, joint)
         if start.position not in ("measured", "recorded"):
             to_si(start.position, place, f"start.{joint}.position")

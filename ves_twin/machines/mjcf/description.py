@@ -114,6 +114,8 @@ class Drive(Part):
 
     In mode CONTROL simulation begins `lead` after the first row: rows before it tell commands that
     a delay, or a filter, still lets through then. A measured start is read there.
+
+    A diagnosis simulates pieces of `horizon`, each from its measured start; 0: whole recordings.
     """
 
     mode: Mode
@@ -124,6 +126,7 @@ class Drive(Part):
     imposed: tuple[str, ...] = ()
     locked: tuple[str, ...] = ()
     lead: Annotated[Seconds, Field(ge=0)] = 0.0
+    horizon: Annotated[Seconds, Field(ge=0)] = 0.0
 
     @property
     def imposed_signals(self) -> dict[str, str]:
@@ -138,6 +141,8 @@ class Drive(Part):
             raise ValueError("drive: mode 'control' needs drive.actuators or drive.imposed")
         if self.mode is not Mode.CONTROL and self.lead:
             raise ValueError(f"drive.lead: {self.lead:g} s in mode {self.mode}; mode 'control'")
+        if self.mode is Mode.MOTION and self.horizon:
+            raise ValueError(f"drive.horizon: {self.horizon:g} s in mode motion; what is simulated")
         return self
 
 

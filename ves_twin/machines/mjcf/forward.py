@@ -21,7 +21,7 @@ from ves_twin.machines.mjcf.law_places import law_places
 from ves_twin.machines.mjcf.machine import Rig
 from ves_twin.machines.mjcf.missing import missing_efforts
 from ves_twin.machines.mjcf.places import driven_joint
-from ves_twin.machines.mjcf.started import start_signal
+from ves_twin.machines.mjcf.started import read_from, signal_of, start_signal
 from ves_twin.machines.mjcf.stepping import motion_of_drive
 from ves_twin.machines.mjcf.work import Work
 
@@ -75,15 +75,13 @@ class MjcfForward:
         if self.mode is Mode.MOTION:
             return self.fed
         measured = [j for j, start in told.start.items() if start.position == "measured"]
-        positions = filter(None, map(self.position_of, measured))
+        positions = [read_from(told, joint)[0] for joint in measured]
         recorded = [start_signal(j) for j, s in told.start.items() if s.position == "recorded"]
         return tuple(dict.fromkeys([*self.fed, *positions, *recorded]))
 
     def position_of(self, joint: str) -> str:
         """The signal that a joint's position is read from; empty if there is none."""
-        told = self.rig.description
-        compared = (n for n, c in told.compare.items() if c.joint == joint and c.of == "position")
-        return next(compared, told.drive.joints.get(joint, ""))
+        return signal_of(self.rig.description, joint, "position")
 
     def joint_of(self, actuator: str) -> str:
         """The joint that an actuator drives; empty where it drives a tendon or a site."""

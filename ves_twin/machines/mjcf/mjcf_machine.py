@@ -35,6 +35,7 @@ from ves_twin.machines.mjcf.forward import MjcfForward
 from ves_twin.machines.mjcf.further import with_further
 from ves_twin.machines.mjcf.interleaved_split import alternate
 from ves_twin.machines.mjcf.machine import Rig
+from ves_twin.machines.mjcf.pieces import pieces
 from ves_twin.machines.mjcf.plausible import check_plausible
 from ves_twin.machines.mjcf.programmes import releases
 from ves_twin.machines.mjcf.read import read_recording
@@ -144,6 +145,10 @@ class MjcfMachine(Machine):
     def split(self, recording: Recording, length: float) -> tuple[list[Recording], list[Recording]]:
         """Stretches, or poses; the length of the file if zero."""
         return alternate(recording, length or self.rig.description.block)
+
+    def pieces(self, recording: Recording) -> tuple[Recording, ...]:
+        """Of the horizon of its file."""
+        return pieces(self.rig, recording)
 
     def drawing(self) -> Drawing | None:
         """By the joints whose positions are compared."""

@@ -15,7 +15,7 @@ from ves_twin.core.signals import Role, Signal
 from ves_twin.core.types import FloatArray
 from ves_twin.core.units import to_si
 from ves_twin.diagnosis.preprocess import MOST_SETTLING
-from ves_twin.machines.mjcf.description import Mode, Number, Start
+from ves_twin.machines.mjcf.description import Mode, Number, RigDescription, Start
 from ves_twin.machines.mjcf.joint_units import joint_units
 from ves_twin.machines.mjcf.machine import Rig
 
@@ -105,6 +105,21 @@ def first_state(column: FloatArray, period: float, corner: float) -> tuple[float
     time = period * np.arange(count)
     position, speed = polyfit(time, column[:count], min(3, count - 1))[:2]
     return float(position), float(speed)
+
+
+def signal_of(told: RigDescription, joint: str, of: str) -> str:
+    """The signal that tells a joint's position, or its speed; empty if there is none."""
+    compared = (name for name, c in told.compare.items() if (c.joint, c.of) == (joint, of))
+    return next(compared, told.drive.joints.get(joint, "") if of == "position" else "")
+
+
+def read_from(told: RigDescription, joint: str) -> tuple[str, bool]:
+    """The signal that a measured start is read from, and whether it is a speed.
+
+    Of a joint whose speed alone is measured, as of a wheel, the position is the model's.
+    """
+    place = signal_of(told, joint, "position")
+    return (place, False) if place else (signal_of(told, joint, "speed"), True)
 
 
 @dataclass(frozen=True)

@@ -20,7 +20,12 @@ from ves_twin.machines.mjcf.description import Controller, Mode
 from ves_twin.machines.mjcf.imposed import Imposed
 from ves_twin.machines.mjcf.joint_units import joint_units
 from ves_twin.machines.mjcf.law_loop import compiled_laws, lawful_rows, push
-from ves_twin.machines.mjcf.started import first_state, lead_rows, start_signal
+from ves_twin.machines.mjcf.started import (
+    first_state,
+    lead_rows,
+    read_from,
+    start_signal,
+)
 from ves_twin.machines.mjcf.work import Work, sensor_rows, variables
 
 CHECKED = 50
@@ -144,17 +149,12 @@ def _measured_start(work: Work, joint: str, first: int) -> tuple[float, float]:
         units, what = joint_units(work.model, joint), f"start.{joint}"
         at = to_si(start.position, units[0], f"{what}.position")
         return at, to_si(start.speed, units[1], f"{what}.speed")
-    signal, sign = position_signal(work, joint)
+    signal, is_speed = read_from(told, joint)
+    sign = told.compare[signal].sign if signal in told.compare else 1
     column = sign * work.programme.drive[signal][first:, 0]
+    if is_speed:
+        return float(work.model.qpos0[work.model.joint(joint).qposadr[0]]), float(column[0])
     return first_state(column, work.programme.period, told.drive.smoothing)
-
-
-def position_signal(work: Work, joint: str) -> tuple[str, int]:
-    """The signal that measures a joint's position, and its sign."""
-    for name, compared in work.rig.description.compare.items():
-        if compared.joint == joint and compared.of == "position":
-            return name, compared.sign
-    return work.rig.description.drive.joints[joint], 1
 
 
 def _resisted(work: Work) -> bool:

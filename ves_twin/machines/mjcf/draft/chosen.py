@@ -47,6 +47,7 @@ class Chosen:
         noise: column -> sd of one row in SI, and how it was told.
         either: the motion could be given as well.
         imposed: joints that move as recorded in CONTROL, since no column tells what moves them.
+        horizon: pieces that are simulated from a start of their own [s]; 0: the whole log.
     """
 
     mode: Mode
@@ -56,6 +57,7 @@ class Chosen:
     noise: Mapping[str, tuple[float, str]]
     either: bool = False
     imposed: tuple[str, ...] = ()
+    horizon: float = 0.0
 
 
 def chosen(

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import os
 import tomllib
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
@@ -27,6 +27,7 @@ from ves_twin.machines.mjcf.draft.shape import by_shape
 from ves_twin.machines.mjcf.draft.spots import spots_of
 from ves_twin.machines.mjcf.forward import MjcfForward
 from ves_twin.machines.mjcf.machine import Rig
+from ves_twin.machines.mjcf.pieces import pieces
 
 HALF = 0.5
 """Share of a signal that a model must explain open loop for commands to be fed in: an arm that
@@ -38,8 +39,14 @@ ROWS = 150
 STRETCH = 2.0
 """Usual length of a stretch that is held out [s]."""
 
-LONGEST = 10.0
+LONGEST = 60.0
 """Stretch of a log that is predicted to say how near the model is [s]."""
+
+HORIZONS = (10.0, 5.0, 3.0, 2.0, 1.5)
+"""Pieces that are tried where the model runs away from a log [s], the longest first."""
+
+HELPS = 0.1
+"""Share of a signal's power that a horizon must explain more for it to be taken."""
 
 COARSE = 3.0
 """Error of the model's step, in noise of one row, that is told: a rotary pendulum with 13 had
@@ -117,6 +124,9 @@ def draft(model: Path, logs: Sequence[Path], out: Path, rate: float | None = Non
         why = f"open loop the model explains {explained[least]:.0%} of {least}"
         mode, explained = chosen(log, matches, check, given.model, why), dict(check.explained)
         text, rig = written(mode)
+    if mode.mode is Mode.CONTROL:
+        mode, explained = _in_pieces(mode, explained, lambda new: written(new)[1], logs[0])
+        text, rig = written(mode)
     for other in logs[1:]:
         read_rig_recording(other, rig)
     left = dict(matches.left)
@@ -127,6 +137,32 @@ def draft(model: Path, logs: Sequence[Path], out: Path, rate: float | None = Non
     words = f"{mode.mode}: {mode.why}"
     stretch = _stretch(mode, log)
     return Draft(text, given.text, _guesses(check, mode), left, look, words, explained, stretch)
+
+
+def _in_pieces(
+    mode: Chosen, explained: dict[str, float], written: Callable[[Chosen], Rig], log: Path
+) -> tuple[Chosen, dict[str, float]]:
+    """With the longest horizon over which the model explains HALF, or that which explains most.
+
+    Where a whole log is explained so far, or no horizon helps, or no row tells a joint's start,
+    all stays as it is.
+    """
+    least = min(explained, key=lambda name: explained[name])
+    why = f"{mode.why}; over the whole log the model explains {explained[least]:.0%} of {least}"
+    if explained[least] >= HALF:
+        return mode, explained
+    best, found = explained[least] + HELPS, (mode, explained)
+    for horizon in (h for h in HORIZONS if h * mode.rate >= ROWS):
+        short = replace(mode, horizon=horizon, why=why)
+        try:
+            shares, _ = _predicted(written(short), log)
+        except InvalidInputError:  # a joint whose start no row tells
+            break
+        if min(shares.values()) > best:
+            best, found = min(shares.values()), (short, shares)
+        if best >= HALF:
+            break
+    return found
 
 
 def _stretch(mode: Chosen, log: LogColumns) -> float:
@@ -161,8 +197,11 @@ def _predicted(rig: Rig, log: Path) -> tuple[dict[str, float], list[str]]:
     rows = recording.time - recording.time[0] <= LONGEST
     signals = {name: values[rows] for name, values in recording.signals.items()}
     forward, short = MjcfForward.of(rig), Recording(recording.time[rows], signals, recording.info)
-    fed = Excitation.of(short, forward.drive)
-    found, finer = (forward.simulate(fed, {}, refined) for refined in (False, True))
+    fed = [Excitation.of(piece, forward.drive) for piece in pieces(rig, short)]
+    found, finer = (
+        np.concatenate([forward.simulate(one, {}, refined) for one in fed])
+        for refined in (False, True)
+    )
     shares: dict[str, list[float]] = {}
     coarse = []
     for column, half, channel in zip(found.T, finer.T, forward.channels, strict=True):
@@ -173,7 +212,7 @@ def _predicted(rig: Rig, log: Path) -> tuple[dict[str, float], list[str]]:
                 f" {quantity(off, channel.unit, 2)} off (rms), {off / channel.sd:.2g} times its"
                 " noise: give the model a smaller timestep"
             )
-        y = short[channel.signal][:, channel.column]
+        y = short[channel.signal][: len(column), channel.column]
         rest, power = y - column, float(np.sum((y - y.mean()) ** 2)) or 1.0
         share = 1.0 - float(rest @ rest) / power if np.all(np.isfinite(rest)) else 0.0
         shares.setdefault(channel.signal, []).append(share)

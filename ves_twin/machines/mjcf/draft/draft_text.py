@@ -104,6 +104,8 @@ def _drive(mode: Chosen) -> str:
     keys = {"mode": _quoted(mode.mode), "smoothing": f"{two_digits(mode.smoothing):g}"}
     if mode.imposed:
         keys["imposed"] = json.dumps(mode.imposed, ensure_ascii=False)
+    if mode.horizon:
+        keys["horizon"] = f"{mode.horizon:g}"
     text = ", ".join(f"{key} = {value}" for key, value in keys.items())
     return f"drive = {{ {text} }}   # {mode.why}"
 
@@ -191,8 +193,15 @@ def _spans(log: LogColumns, check: Checked) -> Iterator[str]:
 
 
 def _starts(check: Checked, mode: Chosen) -> Iterator[str]:
-    """Read off the first rows: position to its noise, speed to that behind the low-pass."""
+    """Read off the first rows: position to its noise, speed to that behind the low-pass.
+
+    Of a joint whose speed alone is recorded the speed to its noise.
+    """
+    placed = {m.spot.name for m in check.found if m.spot.quantity is Quantity.POSITION}
     for match in check.found:
+        if match.spot.quantity is Quantity.SPEED and match.spot.name not in placed:
+            sd = mode.noise[match.column][0]
+            yield f'{_key(match.spot.name)} = {{ position = "measured", speed_sd = {sd:.2g} }}'
         if match.spot.quantity is Quantity.POSITION and match.spot.name not in mode.imposed:
             sd = mode.noise[match.column][0]
             speed = 2.0 * np.pi * mode.smoothing * sd
