@@ -9,6 +9,9 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from ves_twin.machines.new_machine import NewMachine
 
+NOTHING = 0.05
+"""Share of every column's power below which columns, or the model, may be other ones."""
+
 
 def new_text(found: NewMachine, model: Path, logs: Sequence[Path]) -> str:
     """What was written, each column, what to look at, how near the model is, what to do next."""
@@ -29,5 +32,8 @@ def new_text(found: NewMachine, model: Path, logs: Sequence[Path]) -> str:
     *fitted, last = [str(log) for log in logs]
     held = f" --held-out {last}" if fitted else held
     given = " ".join(fitted or [last])
-    lines += [f"  next      ves-twin diagnose {given}{held} --plant {found.path}"]
+    first = ""
+    if draft.explained and max(draft.explained.values()) < NOTHING:
+        first = "look whether each column is what it is taken for: the model explains none; then "
+    lines += [f"  next      {first}ves-twin diagnose {given}{held} --plant {found.path}"]
     return "\n".join(lines)

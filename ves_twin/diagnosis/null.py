@@ -38,6 +38,9 @@ AFFORDABLE = 0.1
 """Share of the time of a diagnosis that simulated rigs may take: thresholds of linear ones are the
 same but for BENDS."""
 
+LINEAR = "simulated rigs in order (thresholds are of linear ones)"
+"""What is left out where they would take too long."""
+
 TAIL_FROM = 0.75
 """Share of the sample below the tail that is extrapolated."""
 
@@ -161,13 +164,19 @@ class _NullStudy:
 def _in_time(
     study: _NullStudy, seeds: list[np.random.SeedSequence], progress: Progress
 ) -> list[tuple[float, float]] | None:
-    """Simulated rigs; None where all of them would take more than AFFORDABLE of the time."""
-    budget, drawn = study.bank.base.runs.budget, list[tuple[float, float]]()
-    begun = budget.spent
-    for one in _draws(study, seeds, progress):
+    """Simulated rigs; None where all of them would take more than AFFORDABLE of the time.
+
+    The first one tells: batches of several processes come back when most of the time is gone.
+    """
+    budget, workers = study.bank.base.runs.budget, study.bank.base.runs.workers
+    begun, drawn = budget.spent, study.batch(seeds[:1])
+    if (budget.spent - begun) * len(seeds) > AFFORDABLE * workers.count:
+        budget.leave_out(LINEAR)
+        return None
+    for one in _draws(study, seeds[1:], progress):
         drawn.append(one)
-        if len(drawn) > 1 and (budget.spent - begun) * len(seeds) > AFFORDABLE * len(drawn):
-            budget.leave_out("simulated rigs in order (thresholds are of linear ones)")
+        if (budget.spent - begun) * len(seeds) > AFFORDABLE * len(drawn):
+            budget.leave_out(LINEAR)
             return None
     return drawn
 

@@ -13,7 +13,7 @@ from ves_twin.core.types import FloatArray
 from ves_twin.machines.mjcf.draft.log_columns import LogColumns
 from ves_twin.machines.mjcf.draft.match import Match, Matches
 from ves_twin.machines.mjcf.draft.motion import Motion, band_of, motion_of
-from ves_twin.machines.mjcf.draft.spots import Quantity
+from ves_twin.machines.mjcf.draft.spots import Quantity, is_servo
 from ves_twin.machines.mjcf.inverse import smoothed
 
 GAINED = 0.15
@@ -162,7 +162,8 @@ class _Judge:
         said: list[str] = []
         best = self.score(found)
         for _ in range(2 * len(found)):
-            tried = [(self.score(new), new, words) for new, words in _changes(found)]
+            driven = {m.spot.joint for m in self.driving(found)}
+            tried = [(self.score(new), new, words) for new, words in _changes(found, driven)]
             if not tried:
                 break
             score, new, words = max(tried, key=lambda one: one[0])
@@ -190,8 +191,9 @@ class _Judge:
         return total
 
     def driving(self, found: list[Match]) -> list[Match]:
-        """Efforts that act on one joint."""
-        return [m for m in found if m.spot.quantity is Quantity.EFFORT and m.spot.joint]
+        """Efforts that act on one joint; what a servo is told is none."""
+        efforts = (m for m in found if m.spot.quantity is Quantity.EFFORT and m.spot.joint)
+        return [m for m in efforts if not is_servo(self.model, self.model.actuator(m.spot.name).id)]
 
     def pushed(self, found: list[Match]) -> set[int]:
         """Degrees of freedom of joints whose motors no column tells."""
@@ -280,8 +282,11 @@ class _Judge:
         return shares
 
 
-def _changes(found: list[Match]) -> Iterator[tuple[list[Match], str]]:
-    """Ways in which columns may be meant otherwise, each with words for it."""
+def _changes(found: list[Match], driven: set[str]) -> Iterator[tuple[list[Match], str]]:
+    """Ways in which columns may be meant otherwise, each with words for it.
+
+    Positions are exchanged where an effort tells the one joint from the other.
+    """
     positions = [m for m in found if m.spot.quantity is Quantity.POSITION]
 
     def other(old: Match, new: Match) -> list[Match]:
@@ -306,7 +311,8 @@ def _changes(found: list[Match]) -> Iterator[tuple[list[Match], str]]:
             yield other(match, replace(match, unit="rad")), words
     efforts = [m for m in found if m.spot.quantity is Quantity.EFFORT]
     for one, two in (*combinations(positions, 2), *combinations(efforts, 2)):
-        if (one.spot.unit, one.unit) == (two.spot.unit, two.unit):
+        told = one in efforts or {one.spot.name, two.spot.name} & driven
+        if told and (one.spot.unit, one.unit) == (two.spot.unit, two.unit):
             a, b = _exchanged(one, two)
             both = [a if m is one else b if m is two else m for m in found]
             yield both, f"{one.column} and {two.column} look swapped: taken the other way round"

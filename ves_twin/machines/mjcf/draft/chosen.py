@@ -98,7 +98,7 @@ def chosen(
         noise[m.column] = (abs(m.factor) * sd, how)
     driven = {m.spot.joint for m in efforts if _is_plain(m, model)}
     single = {model.joint(i).name for i in single_joints(model)}
-    unknown = _moved_by(model) & single - driven
+    unknown = _moved_by(model) & single - {m.spot.joint for m in efforts}
     told = {m.spot.name for m in positions}
     imposed = tuple(sorted(unknown & told))
     if check.motion is None or driven | unknown != single or model.nv != len(single) or not driven:

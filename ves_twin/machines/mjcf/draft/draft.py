@@ -203,20 +203,30 @@ def _predicted(rig: Rig, log: Path) -> tuple[dict[str, float], list[str]]:
         for refined in (False, True)
     )
     shares: dict[str, list[float]] = {}
-    coarse = []
+    coarse: dict[str, tuple[float, str]] = {}
     for column, half, channel in zip(found.T, finer.T, forward.channels, strict=True):
         off = 2.0 * float(np.sqrt(np.mean((half - column) ** 2)))  # to first order
         if off > COARSE * channel.sd > 0.0:
-            coarse.append(
-                f"the model's step of {rig.model.opt.timestep:.3g} s puts {channel.name}"
-                f" {quantity(off, channel.unit, 2)} off (rms), {off / channel.sd:.2g} times its"
-                " noise: give the model a smaller timestep"
-            )
+            coarse[channel.name] = off / channel.sd, quantity(off, channel.unit, 2)
         y = short[channel.signal][: len(column), channel.column]
         rest, power = y - column, float(np.sum((y - y.mean()) ** 2)) or 1.0
         share = 1.0 - float(rest @ rest) / power if np.all(np.isfinite(rest)) else 0.0
         shares.setdefault(channel.signal, []).append(share)
-    return {name: max(min(found), 0.0) for name, found in shares.items()}, coarse
+    step = float(rig.model.opt.timestep)
+    return {name: max(min(found), 0.0) for name, found in shares.items()}, _coarse(coarse, step)
+
+
+def _coarse(found: dict[str, tuple[float, str]], step: float) -> list[str]:
+    """That a step [s] is coarse for channels, which it puts off by so many noises; the worst."""
+    if not found:
+        return []
+    worst = max(found, key=lambda name: found[name][0])
+    times, off = found[worst]
+    more = f", {len(found) - 1} more by more than {COARSE:g}" if len(found) > 1 else ""
+    return [
+        f"the model's step of {step:.3g} s puts {worst} {off} off (rms), {times:.2g} times its"
+        f" noise{more}: give the model a smaller timestep"
+    ]
 
 
 def _guesses(check: Checked, mode: Chosen) -> tuple[Guess, ...]:

@@ -121,6 +121,7 @@ def _likeness(log: LogColumns, column: str, spot: Spot, spots: Sequence[Spot]) -
     stem = re.sub(r"\d+", "#", bare_name(column))
     family = [c for c in log.values if re.sub(r"\d+", "#", bare_name(c)) == stem]
     zero = any(re.findall(r"\d+", bare_name(c))[-1:] == ["0"] for c in family)
+    zero = zero and not any(re.findall(r"\d+", s.name)[-1:] == ["0"] for s in rivals)
     return likeness(column, log.units.get(column, ""), spot, len(rivals) == 1, zero)
 
 

@@ -53,6 +53,14 @@ ARTICLE = {q: f"{'an' if q.value[0] == 'e' else 'a'} {q.value}" for q in Quantit
 UNIT, KIND, WORD, NUMBER, ONLY = 2.0, 2.0, 2.0, 2.0, 1.0
 """Weight of each piece of evidence: any two of them are worth a match."""
 
+SERVED = ("1", "m", "rad")
+"""Units of the commands of what is no motor."""
+
+AXES, AXIS = frozenset("xyz"), 1.0
+"""Letters of axes in the names of joints, and the weight of one that is shared."""
+
+NUMBER_OF_NAME = re.compile(r"(\d+)\D*$")
+
 CONSTANT = 1.5
 """Weight of an electrical unit where the spot has another: a column in the spot's own unit is
 nearer, and a supply's voltage is in volts, too."""
@@ -96,7 +104,7 @@ def likeness(column: str, unit: str, spot: Spot, only: bool, zero: bool) -> Like
     evidence += _of_kind(words, bool(unit), wish, spot) + _of_words(words, spot)
     numbers = [int(w) for w in words_of(bare_name(column)) if w.isdigit()]
     if numbers and not only:
-        same = numbers[-1] + int(zero) == spot.number
+        same = numbers[-1] + int(zero) == _number(words, spot)
         evidence.append((NUMBER, f"number {numbers[-1]}") if same else (WRONG_NUMBER, ""))
     if only:
         evidence.append((ONLY, f"the only {spot.quantity.value} of the model in {spot.unit}"))
@@ -119,18 +127,29 @@ def _ruled_out(words: frozenset[str], wish: bool, spot: Spot) -> bool:
 def _of_kind(words: frozenset[str], told: bool, wish: bool, spot: Spot) -> list[tuple[float, str]]:
     """Words of a quantity; where a unit decides, a word of another one does not count against."""
     named = {quantity for quantity, known in KIND_WORDS.items() if known & words}
-    if spot.quantity is Quantity.EFFORT and spot.unit == "1" and wish:
+    if spot.quantity is Quantity.EFFORT and spot.unit in SERVED and wish:
         return [(KIND, "asked for, as the command of a servo")]
+    if spot.quantity is Quantity.SENSOR and spot.unit == "rad/s" and Quantity.SPEED in named:
+        return [(KIND, "name of a rate")]
     if spot.quantity in named and not (told and len(named) > 1):
         return [(KIND, f"name of {ARTICLE[spot.quantity]}")]
     return [] if not named or told or spot.quantity in named else [(WRONG_KIND, "")]
 
 
 def _of_words(words: frozenset[str], spot: Spot) -> list[tuple[float, str]]:
-    """Words that the column shares with the spot; single letters are axes of sensors."""
-    short = 1 if spot.quantity is Quantity.SENSOR else 2
-    shared = {w for w in spot.words & words if len(w) >= short and not w.isdigit()}
-    return [(WORD, f"shares '{max(sorted(shared), key=len)}' with {spot.label}")] if shared else []
+    """Words that the column shares with the spot; single letters are axes, of sensors words."""
+    shared = {w for w in spot.words & words if not w.isdigit()}
+    long = {w for w in shared if len(w) > 1 or spot.quantity is Quantity.SENSOR}
+    found = [(WORD, f"shares '{max(sorted(long), key=len)}' with {spot.label}")] if long else []
+    axes = shared & AXES - long
+    return [*found, *((AXIS, f"axis {axis}") for axis in sorted(axes))]
+
+
+def _number(words: frozenset[str], spot: Spot) -> int:
+    """The one that a column of a spot has: that of its name where they share the name."""
+    own = NUMBER_OF_NAME.search(spot.name)
+    shared = words & {w for w in words_of(spot.name) if not w.isdigit()}
+    return int(own[1]) if own and shared else spot.number
 
 
 def is_setpoint(column: str) -> bool:
@@ -143,7 +162,7 @@ def _unit_fits(unit: str, spot: Spot) -> bool:
     if not unit:
         return True
     if spot.quantity is Quantity.EFFORT and unit in ELECTRICAL:
-        return True
+        return spot.unit not in ("m", "rad")
     if spot.quantity is Quantity.EFFORT and spot.unit == "1":
         return unit in EFFORTS
     return LAB_UNITS.get(unit, unit) == spot.unit

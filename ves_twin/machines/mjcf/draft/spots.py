@@ -25,6 +25,9 @@ SENSOR_UNITS = {
 }
 """Kinds of MuJoCo sensors that no joint or actuator stands for -> unit."""
 
+TURNING, TURNS = ("GYRO", "FRAMEANGVEL"), (("roll",), ("pitch",), ("yaw",))
+"""Kinds of sensors of three rates, and what else these are called."""
+
 STANDS_FOR = {"JOINTPOS", "JOINTVEL", "ACTUATORFRC", "JOINTACTFRC"}
 """Sensors whose number a joint or an actuator has, too; their names count as names of that."""
 
@@ -45,7 +48,8 @@ class Spot:
     Attributes:
         quantity: what it is.
         name: of the joint, actuator or sensor.
-        unit: SI; "1" where an actuator's command is no effort.
+        unit: SI; of an actuator that of its command, "1" where that is neither an effort nor a
+            position.
         words: that a column's name may share with it, lower case.
         number: its place among those of its quantity from 1, or that of its name.
         joint: that an actuator drives; empty where it drives none.
@@ -84,12 +88,18 @@ def spots_of(model: mujoco.MjModel) -> tuple[Spot, ...]:
         if kind in STANDS_FOR or not sensor.name:
             continue
         width = int(model.sensor_dim[i])
+        turns = TURNS if kind in TURNING else ((), (), ())
         found += [
             Spot(
                 Quantity.SENSOR,
                 sensor.name,
                 SENSOR_UNITS.get(kind, "1"),
-                frozenset({*words_of(sensor.name), *(("xyz"[axis],) if width == 3 else ())}),
+                frozenset(
+                    {
+                        *words_of(sensor.name),
+                        *(("xyz"[axis], *turns[axis]) if width == 3 else ()),
+                    }
+                ),
                 axis + 1,
                 axis=axis,
                 width=width,
@@ -110,6 +120,16 @@ def is_motor(model: mujoco.MjModel, actuator: int) -> bool:
     plain = int(mujoco.mjtBias.mjBIAS_NONE), int(mujoco.mjtDyn.mjDYN_NONE)
     kinds = int(model.actuator_biastype[actuator]), int(model.actuator_dyntype[actuator])
     return kinds == plain and int(model.actuator_trntype[actuator]) == ON_JOINT
+
+
+def is_servo(model: mujoco.MjModel, actuator: int) -> bool:
+    """Whether a command is the position that one joint is pulled to."""
+    affine = int(model.actuator_biastype[actuator]) == int(mujoco.mjtBias.mjBIAS_AFFINE)
+    pulled = float(model.actuator_gainprm[actuator, 0]) == -float(
+        model.actuator_biasprm[actuator, 1]
+    )
+    on_joint = int(model.actuator_trntype[actuator]) == ON_JOINT
+    return affine and pulled and on_joint and float(model.actuator_gear[actuator, 0]) == 1.0
 
 
 def words_of(name: str) -> tuple[str, ...]:
@@ -143,8 +163,11 @@ def _actuators(model: mujoco.MjModel, extra: dict[tuple[str, int], set[str]]) ->
             at = int(model.actuator_trnid[i, 0])
             joint = model.joint(at).name
             gain = model.actuator_gear[i, 0] * model.actuator_gainprm[i, 0]
+            hinge = int(model.jnt_type[at]) == HINGE
             if is_motor(model, i) and gain == 1.0:
-                unit = "N*m" if int(model.jnt_type[at]) == HINGE else "N"
+                unit = "N*m" if hinge else "N"
+            elif is_servo(model, i):
+                unit = "rad" if hinge else "m"
         words = {*words_of(model.actuator(i).name), *words_of(joint)}
         words |= extra.get((Quantity.EFFORT, i), set())
         name = model.actuator(i).name
@@ -165,7 +188,14 @@ def _stand_ins(model: mujoco.MjModel) -> dict[tuple[str, int], set[str]]:
 
 
 def _numbers(names: Sequence[str]) -> list[int]:
-    """The number at the end of each name where all have one of their own, else their places."""
+    """The number at the end of each name where none of its kind has the same, else its place.
+
+    Names are of a kind that are the same but for numbers: slide1 and slide2, not cardan1a.
+    """
     ends = [re.search(r"(\d+)\D*$", name) for name in names]
-    told = [int(end[1]) for end in ends if end]
-    return told if len(set(told)) == len(names) else list(range(1, len(names) + 1))
+    kinds = [re.sub(r"\d+", "#", name) for name in names]
+    told = [(kind, int(end[1]) if end else 0) for kind, end in zip(kinds, ends, strict=True)]
+    return [
+        number if end and told.count((kind, number)) == 1 else place
+        for place, (end, (kind, number)) in enumerate(zip(ends, told, strict=True), 1)
+    ]
