@@ -106,7 +106,13 @@ def _widths(told: RigDescription, model: mujoco.MjModel) -> None:
     """Columns and noise of each signal: what the model does not have would shift all behind it."""
     wanted = {}
     for joint, signal in told.drive.joints.items():
-        free = int(model.jnt_type[model.joint(joint).id]) == FREE
+        kind = int(model.jnt_type[model.joint(joint).id])
+        if kind == BALL:
+            expected = (
+                "a hinge, a slide or a free joint: three hinges (yaw, pitch, roll) turn as it"
+            )
+            raise InvalidInputError(f"drive.joints.{joint}", "a ball joint", expected)
+        free = kind == FREE
         wanted[signal] = (7, f"free joint {joint}") if free else (1, f"joint {joint}")
     for actuator, signal in told.drive.actuators.items():
         wanted[signal] = 1, f"actuator {actuator}"

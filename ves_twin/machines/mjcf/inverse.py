@@ -192,6 +192,8 @@ def _states(motion: _Motion) -> tuple[FloatArray, FloatArray, FloatArray]:
         at, dof = int(model.joint(joint).qposadr[0]), int(model.joint(joint).dofadr[0])
         if joint not in motion.positions:  # a free joint: MuJoCo has the scalar part first
             q[:, at : at + 7] = programme.drive[signal][:, [0, 1, 2, 6, 3, 4, 5]]
+            if not programme.poses:
+                _float(model, joint, programme.period, told.drive.smoothing, (q, v, a))
             continue
         q[:, at] = motion.positions[joint]
         if not programme.poses:
@@ -200,6 +202,32 @@ def _states(motion: _Motion) -> tuple[FloatArray, FloatArray, FloatArray]:
             v[:, dof] = np.gradient(smooth, programme.period)
             a[:, dof] = np.gradient(v[:, dof], programme.period)
     return q, v, a
+
+
+def _float(
+    model: mujoco.MjModel,
+    joint: str,
+    period: float,
+    corner: float,
+    states: tuple[FloatArray, FloatArray, FloatArray],
+) -> None:
+    """Smooth the pose of a free joint in q (n, nq), and write its rates into v and a (n, nv).
+
+    Velocities are MuJoCo's: linear in the world, angular in the body.
+    """
+    q, v, a = states
+    at, dof = int(model.joint(joint).qposadr[0]), int(model.joint(joint).dofadr[0])
+    turn = q[:, at + 3 : at + 7]
+    turn[1:] *= np.cumprod(np.where(np.sum(turn[1:] * turn[:-1], axis=1) < 0.0, -1.0, 1.0))[:, None]
+    for column in range(at, at + 7):
+        q[:, column] = smoothed(q[:, column], period, corner)
+    turn /= np.linalg.norm(turn, axis=1, keepdims=True)
+    rate = np.zeros(model.nv)
+    for k in range(len(q)):
+        before, after = max(k - 1, 0), min(k + 1, len(q) - 1)
+        mujoco.mj_differentiatePos(model, rate, (after - before) * period, q[before], q[after])
+        v[k, dof : dof + 6] = rate[dof : dof + 6]
+    a[:, dof : dof + 6] = np.gradient(v[:, dof : dof + 6], period, axis=0)
 
 
 def smoothed(column: FloatArray, period: float, corner: float) -> FloatArray:
