@@ -1,6 +1,9 @@
 """Workers: order, share done, failures."""
 
+import subprocess
+import sys
 import time
+from pathlib import Path
 
 import pytest
 
@@ -33,3 +36,38 @@ def test_jobs_come_as_they_end_each_with_its_number(count, order):
         assert all(result == jobs[n] for n, result in found)
         with pytest.raises(ValueError, match="invalid literal"):
             list(workers.as_done(int, ["1", "x"]))
+
+
+BEGUN = """
+import os, sys, time
+from ves_twin.core.workers import Workers
+if __name__ == "__main__":
+    with Workers(2) as workers:
+        list(workers.map(abs, [1, 2, 3]))
+        print(*[process.pid for process in workers._pool._processes.values()], flush=True)
+        time.sleep(60)
+"""
+
+
+@pytest.mark.slow
+def test_processes_end_with_the_one_that_began_them_even_if_it_is_killed(tmp_path):
+    script = tmp_path / "begun.py"
+    script.write_text(BEGUN)
+    parent = subprocess.Popen([sys.executable, str(script)], stdout=subprocess.PIPE, text=True)
+    pids = [int(word) for word in parent.stdout.readline().split()]
+    assert len(pids) == 2
+    parent.kill()
+    parent.wait()
+    parent.stdout.close()
+    until = time.monotonic() + 20.0
+    while any(_lives(pid) for pid in pids) and time.monotonic() < until:
+        time.sleep(0.05)
+    assert not any(_lives(pid) for pid in pids)
+
+
+def _lives(pid: int) -> bool:
+    """Whether a process is there and no zombie."""
+    try:
+        return Path(f"/proc/{pid}/stat").read_text().split(")")[-1].split()[0] != "Z"
+    except FileNotFoundError:
+        return False

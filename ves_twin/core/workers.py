@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import multiprocessing
 import os
+import threading
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import ProcessPoolExecutor, as_completed
 from contextlib import contextmanager
+from multiprocessing.connection import wait
 from typing import TypeVar
 
 from ves_twin.core.budget import Budget
@@ -73,7 +75,7 @@ class Workers:
     def _started(self) -> ProcessPoolExecutor:
         if self._pool is None:
             context = multiprocessing.get_context("spawn")
-            self._pool = ProcessPoolExecutor(self.count, mp_context=context)
+            self._pool = ProcessPoolExecutor(self.count, context, initializer=_end_with_parent)
         return self._pool
 
     def collect(
@@ -88,6 +90,18 @@ class Workers:
             results.append(result)
             progress(len(results) / len(jobs))
         return results
+
+
+def _end_with_parent() -> None:
+    """End this process when the one that began it is gone: killed, it tells nobody."""
+    parent = multiprocessing.parent_process()
+
+    def watch() -> None:
+        if parent is not None:
+            wait([parent.sentinel])
+            os._exit(1)
+
+    threading.Thread(target=watch, daemon=True).start()
 
 
 @contextmanager

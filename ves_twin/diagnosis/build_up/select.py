@@ -55,12 +55,13 @@ class Selector:
         Args:
             begin: trials to begin with.
         """
-        now = self._grown(list(begin))
-        while True:
+        now, budget = self._grown(list(begin)), self.regression.half.runs.budget
+        while not budget.skips("others in the place of chosen causes"):
             other = self._exchanged(now) or self._grown(now.chosen)
             if other.evidence <= now.evidence + CLEAR:
-                return now.chosen
+                break
             now = other
+        return now.chosen
 
     def best(self) -> list[list[int]]:
         """The best single trial, and the best two together, of all.
@@ -104,6 +105,8 @@ class Selector:
             return gains.of(n) - regression.price(now.fit.samples, trials[n].width)
 
         for n in now.chosen:
+            if regression.half.runs.budget.over:
+                break
             without = regression.solve([k for k in now.chosen if k != n], now.fit.whitening)
             gains = regression.gains(without, [*rest, n])
             lost = worth(gains, n)
