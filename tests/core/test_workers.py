@@ -1,5 +1,6 @@
 """Workers: order, share done, failures."""
 
+import os
 import subprocess
 import sys
 import time
@@ -7,6 +8,7 @@ from pathlib import Path
 
 import pytest
 
+from ves_twin.core.errors import VesTwinError
 from ves_twin.core.workers import Workers
 
 
@@ -71,3 +73,16 @@ def _lives(pid: int) -> bool:
         return Path(f"/proc/{pid}/stat").read_text().split(")")[-1].split()[0] != "Z"
     except FileNotFoundError:
         return False
+
+
+def gone(number: int) -> int:
+    os._exit(9)
+
+
+@pytest.mark.slow
+def test_a_process_that_is_killed_is_told_in_one_line():
+    with Workers(2) as workers:
+        with pytest.raises(VesTwinError, match="one of the 2 processes"):
+            list(workers.map(gone, [1, 2]))
+        with pytest.raises(VesTwinError, match="one of the 2 processes"):
+            list(workers.as_done(gone, [1, 2]))

@@ -7,11 +7,13 @@ import os
 import threading
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import ProcessPoolExecutor, as_completed
+from concurrent.futures.process import BrokenProcessPool
 from contextlib import contextmanager
 from multiprocessing.connection import wait
 from typing import TypeVar
 
 from ves_twin.core.budget import Budget
+from ves_twin.core.errors import VesTwinError
 
 Job = TypeVar("Job")
 Result = TypeVar("Result")
@@ -52,11 +54,14 @@ class Workers:
             function: travels to the processes with each chunk.
             jobs: its arguments.
             chunk: jobs that travel together.
+
+        Raises:
+            VesTwinError: a process was killed.
         """
         if self.count == 1 or len(jobs) < 2:
             yield from map(function, jobs)
             return
-        with single_threads():
+        with single_threads(), self._whole():
             yield from self._started.map(function, jobs, chunksize=chunk)
 
     def as_done(
@@ -66,10 +71,21 @@ class Workers:
         if self.count == 1 or len(jobs) < 2:
             yield from ((n, function(job)) for n, job in enumerate(jobs))
             return
-        with single_threads():
+        with single_threads(), self._whole():
             waiting = {self._started.submit(function, job): n for n, job in enumerate(jobs)}
             for future in as_completed(waiting):
                 yield waiting[future], future.result()
+
+    @contextmanager
+    def _whole(self) -> Iterator[None]:
+        """Raise VesTwinError where a process is killed, in place of what the pool says."""
+        try:
+            yield
+        except BrokenProcessPool:
+            raise VesTwinError(
+                f"one of the {self.count} processes that share the work was killed, for want of"
+                " memory most often"
+            ) from None
 
     @property
     def _started(self) -> ProcessPoolExecutor:
