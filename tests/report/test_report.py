@@ -652,12 +652,14 @@ def test_a_step_that_puts_a_channel_off_is_told_with_a_finer_one(proven):
     def told(step):
         return replace(proven, residuals={name: replace(error, step_si=step)})
 
-    coarse, fine = told(3.0 * error.after_si), told(0.4 * error.after_si)
+    coarse, fine = told(5.0 * error.after_si), told(0.4 * error.after_si)
     said = " ".join(basis_sentences(coarse))
     assert f"the model's step puts {name}" in said
-    assert "3 times what is left of it" in said
+    assert "5 times what is left of it" in said
     assert "Take a step 4 times smaller" in next_step(coarse)
-    assert "Take a step 2 times smaller" in next_step(told(0.6 * error.after_si))
+    some = told(0.6 * error.after_si)
+    assert any(text.startswith("Step:") for text in basis_sentences(some))
+    assert next_step(some) == next_step(proven)  # more is left by something else
     assert not any(text.startswith("Step:") for text in basis_sentences(fine))
     assert next_step(fine) == next_step(proven)
     assert "smaller" not in next_step(replace(coarse, verdict=Kind.NOTHING))

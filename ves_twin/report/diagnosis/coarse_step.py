@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from math import ceil
-
 from ves_twin.core.quantity import digits, quantity
 from ves_twin.diagnosis.verdict import Verdict
 
@@ -11,9 +9,12 @@ COARSE = 0.5
 """Error of the step, of what is left of a channel, from which it is told: below, it adds an eighth
 to what is left at most."""
 
+SPOILS = 3.0
+"""The same, from which a finer step is the first thing to do: what else is left is smaller."""
+
 SMALLER = 4
-"""Times smaller a step needs to be at most: the fit allows for its error in a straight line, and
-what bends falls as the square of the step."""
+"""Times smaller that a step is to be: the fit allows for its error in a straight line, and what
+bends falls as the square of the step."""
 
 
 def coarse(verdict: Verdict) -> dict[str, float]:
@@ -42,9 +43,7 @@ def coarse_sentence(verdict: Verdict) -> str:
 
 
 def finer(verdict: Verdict) -> str:
-    """Which step to take; empty where the present one will do."""
-    found = coarse(verdict)
-    if not found:
+    """Which step to take; empty where something else is to be done first."""
+    if max(coarse(verdict).values(), default=0.0) < SPOILS:
         return ""
-    times = min(ceil(max(found.values()) / COARSE), SMALLER)
-    return f"Take a step {times} times smaller (timestep in the model's file) and diagnose again."
+    return f"Take a step {SMALLER} times smaller (timestep in the model's file) and diagnose again."
