@@ -115,6 +115,16 @@ class Narrow(Linear):
         )
 
 
+class Known(Linear):
+    """Viscous friction that the model has to 0.05."""
+
+    @property
+    def parameters(self):
+        return tuple(
+            replace(p, sd=0.05) if p.name.startswith("viscous") else p for p in super().parameters
+        )
+
+
 def motion(seed: int) -> Excitation:
     rng = np.random.default_rng(seed)
     t = PERIOD * np.arange(ROWS)

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from linear import KINDS, Linear, Narrow, drawn, halves
+from linear import KINDS, Known, Linear, Narrow, drawn, halves
 
 from ves_twin.diagnosis.build_up.select import Selector
 
@@ -66,3 +66,12 @@ def test_what_a_trial_takes_is_told_within_its_range():
         taken[plant] = regression.gains(regression.fit([]), [at]).of(at)
     share = 0.1 / 0.6
     assert taken[Narrow] / taken[Linear] == pytest.approx(2.0 * share - share**2, rel=0.15)
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_a_cause_is_chosen_in_the_place_of_its_own_tolerance_many_sd_off(seed):
+    """Both have one column: the tolerance of 0.05 leaves as little at 12 sd as the cause at 0.6."""
+    hidden = {"viscous@a:size": 0.6, "coulomb@b:size": 0.8}
+    regression = halves(Known(("viscous", "coulomb", "offset")), hidden, 60 + seed).regression
+    found = {regression.trials[n].cause.label for n in Selector(regression).run()}
+    assert found == {"viscous@a", "coulomb@b"}

@@ -173,10 +173,15 @@ class Selector:
         return [best], regression.fit([*chosen, best], fit.whitening)
 
     def _evidence(self, fit: LinearFit, width: int) -> float:
-        """Log evidence of a fit by its discrepancy's size, less the price of what was added."""
+        """Log evidence of a fit by its discrepancy's size, less the price of what was added.
+
+        And less what amplitudes cost in their prior sd: a tolerance ten sd off leaves as little as
+        a cause in its place (a leg's friction, doubled, that the model knows to 10 %).
+        """
         rows = fit.samples / len(fit.whitening.mixing[0])
         _, size = np.linalg.slogdet(fit.whitening.mixing[0])
-        return float(rows * size - 0.5 * self.regression.price(fit.samples, width))
+        cost = float(fit.shares @ fit.shares) + self.regression.price(fit.samples, width)
+        return float(rows * size - 0.5 * cost)
 
     def _pair(self, gains: Gains, rest: list[int]) -> tuple[int, int] | None:
         """The two trials of different causes that take most together."""
