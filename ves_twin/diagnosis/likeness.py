@@ -80,8 +80,8 @@ def _oddities(seen: Dataset, nominal: SingleArray, rows: slice) -> Iterator[tupl
         if swapped and left[i, i] > WORSE * left[i, other]:
             text = f"a column that moves as {channels[other].name} should"
             yield own.name, text, "its own; columns look swapped"
-        elif max(match[i, i], bare[i, i]) < -CLEAR and abs(np.log(spread[i] / should[i])) < np.log(
-            TURNED
+        elif (
+            max(match[i, i], bare[i, i]) < -CLEAR and 1.0 / TURNED < spread[i] / should[i] < TURNED
         ):
             came = _turned(seen.measured[rows][:, i], nominal[rows][:, i], own.unit)
             yield own.name, came, "the other sign"

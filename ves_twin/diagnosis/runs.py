@@ -63,6 +63,12 @@ class Runs:
             axes += [Coordinate(parameter, k) for k in copies]
         return tuple(axes)
 
+    @cached_property
+    def _own(self) -> list[IntArray]:
+        """Coordinates that each recording feels."""
+        owners = np.array([axis.recording for axis in self.coordinates])
+        return [np.flatnonzero((owners == -1) | (owners == k)) for k in range(len(self.programmes))]
+
     @property
     def budget(self) -> Budget:
         """Time that is left."""
@@ -140,16 +146,13 @@ class Runs:
 
     def _of(self, recording: int, shift: FloatArray, refined: bool) -> SingleArray:
         """Of one recording; as it was where none of its own departures has changed since."""
-        own = [i for i, axis in enumerate(self.coordinates) if axis.recording in (-1, recording)]
+        own = self._own[recording]
         key = (recording, refined, shift[own].tobytes())
         several = len(self.programmes) > 1
         if several and (there := self._last.get(key)) is not None:
             return there
-        values = {
-            self.coordinates[i].parameter.name: self.coordinates[i].parameter.nominal
-            + float(shift[i])
-            for i in own
-        }
+        parts = ((self.coordinates[i].parameter, float(shift[i])) for i in own)
+        values = {parameter.name: parameter.nominal + move for parameter, move in parts}
         programme, grid = self.programmes[recording], self.grids[recording]
         rows = self.forward.simulate(programme, values, refined)
         found = grid.reduce(rows[:, list(self.columns)])

@@ -131,6 +131,15 @@ def test_a_joint_whose_start_no_row_tells_is_named(tmp_path):
         pieces(Rig.load(str(path)), recording_of(1000))
 
 
+def test_a_joint_that_floats_begins_as_the_model_has_it_so_that_pieces_are_refused(tmp_path):
+    path = rig_in(tmp_path, ", horizon = 2")
+    plate = '<body name="plate" pos="0 0 1"><freejoint name="plate"/><geom size="0.1"/></body>'
+    model = ROCKER.replace("</worldbody>", f"{plate}</worldbody>")
+    (tmp_path / "rocker.xml").write_text(model)
+    with pytest.raises(InvalidInputError, match="plate, of which no row tells the start"):
+        pieces(Rig.load(str(path)), recording_of(1000))
+
+
 def test_a_horizon_where_motion_is_fed_in_is_refused(tmp_path):
     path = rig_in(tmp_path, ", horizon = 2")
     path.write_text(path.read_text().replace('mode = "control"', 'mode = "motion"'))

@@ -193,7 +193,7 @@ def _states(motion: _Motion) -> tuple[FloatArray, FloatArray, FloatArray]:
         if joint not in motion.positions:  # a free joint: MuJoCo has the scalar part first
             q[:, at : at + 7] = programme.drive[signal][:, [0, 1, 2, 6, 3, 4, 5]]
             if not programme.poses:
-                _float(model, joint, programme.period, told.drive.smoothing, (q, v, a))
+                _move_free(model, joint, programme.period, told.drive.smoothing, (q, v, a))
             continue
         q[:, at] = motion.positions[joint]
         if not programme.poses:
@@ -204,7 +204,7 @@ def _states(motion: _Motion) -> tuple[FloatArray, FloatArray, FloatArray]:
     return q, v, a
 
 
-def _float(
+def _move_free(
     model: mujoco.MjModel,
     joint: str,
     period: float,

@@ -5,13 +5,13 @@ from __future__ import annotations
 from dataclasses import replace
 from itertools import pairwise
 
-import mujoco
 import numpy as np
 
 from ves_twin.core.errors import InvalidInputError
 from ves_twin.core.recording.recording import POSES, Recording
 from ves_twin.machines.mjcf.description import Mode
 from ves_twin.machines.mjcf.machine import Rig
+from ves_twin.machines.mjcf.places import SINGLE
 from ves_twin.machines.mjcf.started import lead_rows
 
 MEASURED = "measured"
@@ -62,9 +62,11 @@ def _check_starts(rig: Rig) -> None:
     still = {*drive.imposed, *drive.locked}
     for i in range(rig.model.njnt):
         joint = rig.model.joint(i)
-        free = joint.name not in still and joint.type[0] != mujoco.mjtJoint.mjJNT_FREE
         told = starts.get(joint.name)
-        if free and (told is None or told.position != MEASURED):
-            came = "a horizon, and a start that no row tells"
-            expected = f'start.{joint.name} = {{ position = "measured", ... }}, or no drive.horizon'
-            raise InvalidInputError("drive.horizon", came, expected)
+        if joint.name in still or (told is not None and told.position == MEASURED):
+            continue
+        came = f"a horizon, and joint {joint.name or i}, of which no row tells the start"
+        expected = f'start.{joint.name} = {{ position = "measured", ... }}, or no drive.horizon'
+        if int(joint.type[0]) not in SINGLE:
+            expected = "joints that turn or slide, or no drive.horizon"
+        raise InvalidInputError("drive.horizon", came, expected)

@@ -20,12 +20,7 @@ from ves_twin.machines.mjcf.description import Controller, Mode
 from ves_twin.machines.mjcf.imposed import Imposed
 from ves_twin.machines.mjcf.joint_units import joint_units
 from ves_twin.machines.mjcf.law_loop import compiled_laws, lawful_rows, push
-from ves_twin.machines.mjcf.started import (
-    first_state,
-    lead_rows,
-    read_from,
-    start_signal,
-)
+from ves_twin.machines.mjcf.started import first_state, lead_rows, read_from, start_signal
 from ves_twin.machines.mjcf.work import Work, sensor_rows, variables
 
 CHECKED = 50

@@ -108,59 +108,65 @@ def draft(model: Path, logs: Sequence[Path], out: Path, rate: float | None = Non
     spots = spots_of(given.model)
     matches = by_shape(log, matched(log, spots), spots)
     check = checked(log, matches, given.model)
-    mode = chosen(log, matches, check, given.model)
     file = out.with_suffix(".xml").name if given.text else os.path.relpath(model, out.parent)
 
-    def written(mode: Chosen) -> tuple[str, Rig]:
+    def version(mode: Chosen) -> _Version:
         text = draft_text(out.stem, model, file, log, matches, check, mode, given.model)
-        return text, _rig(text, given, out)
+        rig = _rig(text, given, out)
+        if mode.mode is Mode.MOTION:
+            return _Version(mode, text, rig, dict(check.explained), [])
+        return _Version(mode, text, rig, *_predicted(rig, logs[0]))
 
-    text, rig = written(mode)
-    explained, coarse = dict(check.explained), list[str]()
-    if mode.mode is not Mode.MOTION:
-        explained, coarse = _predicted(rig, logs[0])
-    if mode.either and min(explained.values()) < HALF:
-        least = min(explained, key=lambda name: explained[name])
-        why = f"open loop the model explains {explained[least]:.0%} of {least}"
-        mode, explained = chosen(log, matches, check, given.model, why), dict(check.explained)
-        text, rig = written(mode)
-    if mode.mode is Mode.CONTROL:
-        mode, explained = _in_pieces(mode, explained, lambda new: written(new)[1], logs[0])
-        text, rig = written(mode)
+    now = version(chosen(log, matches, check, given.model))
+    if now.mode.either and now.explained[now.least] < HALF:
+        why = f"open loop the model explains {now.explained[now.least]:.0%} of {now.least}"
+        now = version(chosen(log, matches, check, given.model, why))
+    if now.mode.mode is Mode.CONTROL:
+        now = _in_pieces(now, version)
     for other in logs[1:]:
-        read_rig_recording(other, rig)
+        read_rig_recording(other, now.rig)
     left = dict(matches.left)
     left |= {c: "says what was asked for" for c in matches.setpoints}
-    left |= {m.column: "is a speed" for m in check.found if not used(m, mode)}
-    coarse = coarse if mode.mode is not Mode.MOTION else []
-    look = (*given.notes, *log.notes, *check.findings, *coarse)
-    words = f"{mode.mode}: {mode.why}"
-    stretch = _stretch(mode, log)
-    return Draft(text, given.text, _guesses(check, mode), left, look, words, explained, stretch)
+    left |= {m.column: "is a speed" for m in check.found if not used(m, now.mode)}
+    look = (*given.notes, *log.notes, *check.findings, *now.coarse)
+    words, stretch = f"{now.mode.mode}: {now.mode.why}", _stretch(now.mode, log)
+    guesses = _guesses(check, now.mode)
+    return Draft(now.text, given.text, guesses, left, look, words, now.explained, stretch)
 
 
-def _in_pieces(
-    mode: Chosen, explained: dict[str, float], written: Callable[[Chosen], Rig], log: Path
-) -> tuple[Chosen, dict[str, float]]:
+@dataclass(frozen=True)
+class _Version:
+    """A draft in one mode, with what it explains and what its step spoils."""
+
+    mode: Chosen
+    text: str
+    rig: Rig
+    explained: dict[str, float]
+    coarse: list[str]
+
+    @property
+    def least(self) -> str:
+        """What it explains least of."""
+        return min(self.explained, key=lambda name: self.explained[name])
+
+
+def _in_pieces(whole: _Version, version: Callable[[Chosen], _Version]) -> _Version:
     """With the longest horizon over which the model explains HALF, or that which explains most.
 
     Where a whole log is explained so far, or no horizon helps, or no row tells a joint's start,
     all stays as it is.
     """
-    least = min(explained, key=lambda name: explained[name])
-    why = f"{mode.why}; over the whole log the model explains {explained[least]:.0%} of {least}"
-    if explained[least] >= HALF:
-        return mode, explained
-    best, found = explained[least] + HELPS, (mode, explained)
-    for horizon in (h for h in HORIZONS if h * mode.rate >= ROWS):
-        short = replace(mode, horizon=horizon, why=why)
+    mode, share = whole.mode, whole.explained[whole.least]
+    why = f"{mode.why}; over the whole log the model explains {share:.0%} of {whole.least}"
+    best, found = share + HELPS, whole
+    for horizon in (h for h in HORIZONS if h * mode.rate >= ROWS and share < HALF):
         try:
-            shares, _ = _predicted(written(short), log)
+            cut = version(replace(mode, horizon=horizon, why=why))
         except InvalidInputError:  # a joint whose start no row tells
             break
-        if min(shares.values()) > best:
-            best, found = min(shares.values()), (short, shares)
-        if best >= HALF:
+        if cut.explained[cut.least] > best:
+            best, found = cut.explained[cut.least], cut
+        if found.explained[found.least] >= HALF:
             break
     return found
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 from ves_twin.data.unit_names import bare_name, spelled
 from ves_twin.machines.mjcf.description import LAB_UNITS
-from ves_twin.machines.mjcf.draft.spots import Quantity, Spot, words_of
+from ves_twin.machines.mjcf.draft.spots import Quantity, Spot, own_number, words_of
 
 POSITION = (
     "q qm qg pos position angle angles ang theta th phi psi alpha x y z s stroke disp displacement"
@@ -58,8 +58,6 @@ SERVED = ("1", "m", "rad")
 
 AXES, AXIS = frozenset("xyz"), 1.0
 """Letters of axes in the names of joints, and the weight of one that is shared."""
-
-NUMBER_OF_NAME = re.compile(r"(\d+)\D*$")
 
 CONSTANT = 1.5
 """Weight of an electrical unit where the spot has another: a column in the spot's own unit is
@@ -147,9 +145,9 @@ def _of_words(words: frozenset[str], spot: Spot) -> list[tuple[float, str]]:
 
 def _number(words: frozenset[str], spot: Spot) -> int:
     """The one that a column of a spot has: that of its name where they share the name."""
-    own = NUMBER_OF_NAME.search(spot.name)
+    own = own_number(spot.name)
     shared = words & {w for w in words_of(spot.name) if not w.isdigit()}
-    return int(own[1]) if own and shared else spot.number
+    return own if own is not None and shared else spot.number
 
 
 def is_setpoint(column: str) -> bool:

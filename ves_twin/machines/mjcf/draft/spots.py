@@ -138,6 +138,12 @@ def words_of(name: str) -> tuple[str, ...]:
     return tuple(part.lower() for part in parts)
 
 
+def own_number(name: str) -> int | None:
+    """The last number in a name; None if it has none."""
+    numbers = re.findall(r"\d+", name)
+    return int(numbers[-1]) if numbers else None
+
+
 def _joints(model: mujoco.MjModel, extra: dict[tuple[str, int], set[str]]) -> list[Spot]:
     joints = single_joints(model)
     numbers = _numbers([model.joint(i).name for i in joints])
@@ -192,10 +198,8 @@ def _numbers(names: Sequence[str]) -> list[int]:
 
     Names are of a kind that are the same but for numbers: slide1 and slide2, not cardan1a.
     """
-    ends = [re.search(r"(\d+)\D*$", name) for name in names]
-    kinds = [re.sub(r"\d+", "#", name) for name in names]
-    told = [(kind, int(end[1]) if end else 0) for kind, end in zip(kinds, ends, strict=True)]
+    told = [(re.sub(r"\d+", "#", name), own_number(name)) for name in names]
     return [
-        number if end and told.count((kind, number)) == 1 else place
-        for place, (end, (kind, number)) in enumerate(zip(ends, told, strict=True), 1)
+        own if own is not None and told.count((kind, own)) == 1 else place
+        for place, (kind, own) in enumerate(told, 1)
     ]
