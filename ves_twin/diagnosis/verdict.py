@@ -144,7 +144,8 @@ class Basis:
     `recordings` is "external" where every one, held-out ones too, comes from a log of a machine,
     "unknown" otherwise: a simulated one, or one that does not say where it comes from.
     `baseline_differs` is the largest difference of the baseline's inputs from those of the record,
-    of their range. `left_out` names what there was no time for.
+    of their range. `left_out` names what there was no time for. `pieces` is how many the measured
+    recordings were cut into, each simulated from its own start; 0: they were whole.
     """
 
     noise: str
@@ -154,6 +155,7 @@ class Basis:
     recordings: str = "unknown"
     baseline_differs: float | None = None
     left_out: tuple[str, ...] = ()
+    pieces: int = 0
 
 
 @dataclass(frozen=True)

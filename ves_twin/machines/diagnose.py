@@ -91,7 +91,7 @@ def diagnose(
     _check_held_out(prepared.material)
     if alternate is not None:
         prepared = prepared.split(alternate)
-    prepared = prepared.in_pieces()
+    whole, prepared = len(prepared.material.measured), prepared.in_pieces()
     machine, material = prepared.machine, prepared.material
     measured = [one.recording for one in material.measured]
     offered: list[Excitation] = []
@@ -114,7 +114,8 @@ def diagnose(
     )
     causes = tuple(cause.shortened for cause in verdict.causes)
     near = tuple(cause.shortened for cause in verdict.nearest)
-    basis = replace(verdict.basis, recordings=_origin(given))
+    cut = len(measured) if len(measured) > whole else 0
+    basis = replace(verdict.basis, recordings=_origin(given), pieces=cut)
     verdict = replace(verdict, causes=causes, nearest=near, quality=prepared.flaws, basis=basis)
     return _concluded(verdict, machine, offered)
 

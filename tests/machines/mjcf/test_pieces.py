@@ -15,6 +15,7 @@ from ves_twin.machines.machine import Material, Named
 from ves_twin.machines.mjcf.machine import Rig
 from ves_twin.machines.mjcf.pieces import pieces
 from ves_twin.machines.new_machine import new_machine
+from ves_twin.report.diagnosis.basis import rests_on
 
 ROCKER = """
 <mujoco model="rocker">
@@ -176,3 +177,4 @@ def test_in_pieces_a_hidden_friction_of_a_machine_that_falls_over_is_found(tmp_p
     assert level.value == pytest.approx(FRICTION, rel=0.05)
     assert told.gain is not None
     assert told.gain.share > 0.9
+    assert "simulated in 6 pieces, each from its own start" in rests_on(told.basis)

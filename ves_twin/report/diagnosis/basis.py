@@ -39,7 +39,7 @@ def rests_on(basis: Basis) -> str:
     there = _listed([GIVEN[key] for key in keys if key in GIVEN])
     absent = " or ".join(MISSING[key] for key in keys if key in MISSING)
     said = f"{there}; {absent} was not given." if absent else f"{there}."
-    return " ".join([said, *_left_out(basis)])
+    return " ".join([said, *_pieces(basis), *_left_out(basis)])
 
 
 def _listed(names: list[str]) -> str:
@@ -151,9 +151,17 @@ def basis_sentences(verdict: Verdict) -> tuple[str, ...]:
         tolerances.get(basis.tolerances, f"Tolerances: {basis.tolerances}."),
         held.get(basis.held_out, f"Held-out recordings: {basis.held_out}."),
         *_repeats(basis),
+        *_pieces(basis),
         *_left_out(basis),
         *filter(None, [coarse_sentence(verdict)]),
     )
+
+
+def _pieces(basis: Basis) -> tuple[str, ...]:
+    """That recordings were cut, which every error and gain is told of."""
+    if not basis.pieces:
+        return ()
+    return (f"What was fitted was simulated in {basis.pieces} pieces, each from its own start.",)
 
 
 def _left_out(basis: Basis) -> tuple[str, ...]:
