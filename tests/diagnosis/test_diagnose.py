@@ -259,7 +259,8 @@ def test_the_verdict_is_plain_json(settings, tmp_path):
     assert content["verdict"] == "named"
     cause = content["causes"][0]
     assert (cause["effect"], cause["target"], cause["firm"]) == ("friction", "plant", True)
-    assert set(cause["parameters"]["friction.size"]) == {"value", "low", "high", "unit", "nominal"}
+    keys = {"value", "low", "high", "unit", "nominal", "at_limit"}
+    assert set(cause["parameters"]["friction.size"]) == keys
     assert content["residuals"]["out.1"]["before"] > 1.2 > content["residuals"]["out.1"]["after"]
 
 

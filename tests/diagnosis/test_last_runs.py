@@ -44,3 +44,18 @@ def test_only_the_last_few_are_kept():
     assert kept.get((0, False, bytes([0]))) is None
     assert kept.get((0, False, bytes([KEPT]))) is not None
     assert kept.get((1, False, bytes([KEPT]))) is None
+
+
+def test_columns_about_a_point_are_simulated_once():
+    """Both starts of a fit, and the next choice of causes, begin where the last one did."""
+    runs = preprocess(Counted(), [record(np.random.default_rng(3))]).runs
+    point = runs.origin + 0.01
+    first = linearise(runs, point)
+    Counted.calls = 0
+    np.testing.assert_array_equal(linearise(runs, point).columns, first.columns)
+    assert Counted.calls == 0
+    linearise(runs, 2.0 * point)
+    assert Counted.calls > len(runs.nuisances)
+    Counted.calls = 0
+    linearise(runs, point, forward_step=0.5)  # other columns: of one side
+    assert Counted.calls > len(runs.nuisances)

@@ -202,3 +202,17 @@ def test_a_fit_begins_at_the_step_share_it_is_given(case):
     found = refine(evidence, (), runs.origin, local, step_share=0.3)
     # the toy has no step: its column is zero and the prior alone pulls the share back
     assert found.step_share == pytest.approx(0.0, abs=1e-6)
+
+
+def test_a_fit_tells_which_nuisances_an_end_of_what_is_allowed_holds(case):
+    """The first one is eight sd off and may go three; what needs little is held by nothing."""
+    fed, runs, evidence, local, *_ = case
+    names = [runs.coordinates[i].parameter.name for i in runs.nuisances]
+    clean = Toy().simulate(fed, {})
+    off = np.zeros_like(clean)
+    off += 8.0 * 0.02 * fed.drive["drive.u"][:, :1] * [0.3, 1.0]
+    far = replace(evidence, measured=(clean + off).astype(np.float32))
+    held = refine(far, (), runs.origin, local, farthest=3.0)
+    assert [names[list(runs.nuisances).index(i)] for i in held.held] == [NUISANCES[0].name]
+    assert len(refine(far, (), runs.origin, local).held) == 0
+    assert len(refine(evidence, (), runs.origin, local, farthest=3.0).held) == 0

@@ -33,7 +33,7 @@ from ves_twin.report.diagnosis.limits import limit_sentences
 from ves_twin.report.diagnosis.page import diagnosis_page
 from ves_twin.report.diagnosis.pictures import answer_figure
 from ves_twin.report.diagnosis.proved import near_sentence
-from ves_twin.report.diagnosis.words import spoken
+from ves_twin.report.diagnosis.words import interval_words, spoken
 from ves_twin.report.rerun.diagnosis import (
     diagnosis_blueprint,
     onset_of,
@@ -491,6 +491,24 @@ def test_numbers_of_the_model_that_the_fit_moved_are_told_beside_what_they_alone
     assert "tolerances alone" in page
     for error in proven.residuals.values():
         assert error.after_si <= error.tolerances_si <= error.before_si
+
+
+def test_a_number_that_its_limit_holds_is_told_first_and_without_an_interval(proven):
+    """Held at 5 sd it stands for a cause that was not found: noise alone says nothing of it."""
+    sure = Estimate(3e-4, 2.9e-4, 3.1e-4, "1", 1e-4)
+    stuck = Estimate(600.0, 596.0, 604.0, "N s/m", 400.0, at_limit=True)
+    tuned = {"inertia@hub:value": sure, "viscous_friction@slide3:damping": stuck}
+    verdict = replace(proof_of(proven, firm=True), tuned=tuned)
+    told = headline(verdict)
+    assert "At the limit of its tolerance, so that it stands for something else" in told
+    assert "viscous friction at slide3 600 N s/m (model 400 N s/m)" in told
+    assert "inertia" not in told
+    assert told.count("stands for") == 1
+    page = diagnosis_page(verdict)
+    assert "held at its limit" in page
+    assert interval_words(stuck) not in page
+    assert "limit of its tolerance" in headline(replace(proven, tuned=tuned, verdict=Kind.UNKNOWN))
+    assert "limit of its tolerance" not in headline(replace(verdict, tuned={"inertia@hub:x": sure}))
 
 
 def test_what_ends_its_range_is_not_counted_as_proved(proven):

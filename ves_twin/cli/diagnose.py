@@ -127,6 +127,7 @@ def _write(found: Diagnosis, folder: Path, names: str) -> None:
     from ves_twin.machines.machine import SCENARIO, SETPOINTS
     from ves_twin.report.diagnosis.law import draw_law
     from ves_twin.report.diagnosis.page import diagnosis_page
+    from ves_twin.report.diagnosis.strained import strained_sentence
     from ves_twin.report.page import write_page
     from ves_twin.report.picture import save_picture
     from ves_twin.report.rerun.diagnosis import write_diagnosis_rrd
@@ -147,7 +148,7 @@ def _write(found: Diagnosis, folder: Path, names: str) -> None:
     law = found.verdict.law
     if law is not None and law.shape == "table":
         save_picture(draw_law(law), folder / LAW_PICTURE)
-    note = f"Extended by ves-twin diagnose: {found.verdict.words}"
+    note = f"Extended by ves-twin diagnose: {found.verdict.words}{strained_sentence(found.verdict)}"
     if found.extended is not None and found.refused:
         path = folder / "plant.candidate.toml"
         found.extended.save(path, f"{note}\nOnly a candidate: {found.refused}.")

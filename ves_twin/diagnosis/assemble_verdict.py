@@ -317,7 +317,7 @@ def _tuned(findings: Findings) -> dict[str, Estimate]:
             z * float(np.sqrt(fit.posterior[n, n])),
         )
         estimates[parameter.name] = Estimate(
-            value, value - reach, value + reach, parameter.unit, parameter.nominal
+            value, value - reach, value + reach, parameter.unit, parameter.nominal, i in fit.held
         )
     return estimates
 

@@ -1,4 +1,4 @@
-"""LastRuns: the last few predictions of each recording, for moves that change another one alone."""
+"""LastRuns: the last few predictions of each recording, and columns, for whoever asks again."""
 
 from __future__ import annotations
 
@@ -14,13 +14,18 @@ Key = tuple[int, bool, bytes]
 
 
 class LastRuns:
-    """Predictions by what they are of; a copy in another process begins empty."""
+    """Predictions by what they are of; a copy in another process begins empty.
 
-    def __init__(self) -> None:
+    Args:
+        kept: of each recording.
+    """
+
+    def __init__(self, kept: int = KEPT) -> None:
+        self._kept = kept
         self._found: dict[int, OrderedDict[Key, SingleArray]] = {}
 
-    def __reduce__(self) -> tuple[type[LastRuns], tuple[()]]:
-        return LastRuns, ()
+    def __reduce__(self) -> tuple[type[LastRuns], tuple[int]]:
+        return LastRuns, (self._kept,)
 
     def get(self, key: Key) -> SingleArray | None:
         """As it was kept, and kept on; None if it was not."""
@@ -33,5 +38,5 @@ class LastRuns:
         """In place of the one of this recording that was asked for longest ago."""
         there = self._found.setdefault(key[0], OrderedDict())
         there[key] = rows
-        if len(there) > KEPT:
+        if len(there) > self._kept:
             there.popitem(last=False)

@@ -72,10 +72,28 @@ def linearise(
     Returns:
         Columns in the order of the coordinates; last (f(h/2) - f(h)) times STEP_SD.
     """
-    where, spreads = (runs.nuisances, runs.sd[runs.nuisances]) if axes is None else axes
+    usual = axes is None and forward_step is None
+    where = (runs.nuisances, runs.sd[runs.nuisances]) if axes is None else axes
+
+    def compute() -> SingleArray:
+        return _differences(runs, point, progress, where, forward_step)
+
+    found = runs.columns_at(point, compute) if usual else compute()
+    columns = found[1:]
+    return Linearisation(runs, point, found[0], columns, GUESS * _sizes(runs, columns))
+
+
+def _differences(
+    runs: Runs,
+    point: FloatArray,
+    progress: Progress,
+    axes: tuple[IntArray, FloatArray],
+    forward_step: float | None,
+) -> SingleArray:
+    """The prediction at a point, the columns of axes, and of the step (k + 2, rows, c)."""
     straight = _straight(runs)
     shifts, sides = [point], []
-    for i, sd in zip(where, spreads, strict=True):
+    for i, sd in zip(*axes, strict=True):
         step = sd * (1.0 if forward_step is None else forward_step)
         ends = [runs.depart(point, np.array([i]), point[i] + move) for move in (step, -step)]
         moved = [end for end in ends if end[i] != point[i]]
@@ -86,12 +104,10 @@ def linearise(
     stacks = runs.many(shifts, progress, "commissioning tolerances")
     columns = [
         _slope(stacks, shifts, side, int(i), float(sd))
-        for side, i, sd in zip(sides, where, spreads, strict=True)
+        for side, i, sd in zip(sides, *axes, strict=True)
     ]
-    prediction = stacks[0]
-    columns.append(np.float32(STEP_SD) * (runs.one(point, refined=True) - prediction))
-    found = np.stack(columns)
-    return Linearisation(runs, point, prediction, found, GUESS * _sizes(runs, found))
+    finer = np.float32(STEP_SD) * (runs.one(point, refined=True) - stacks[0])
+    return np.stack([stacks[0], *columns, finer])
 
 
 def _straight(runs: Runs) -> frozenset[int]:

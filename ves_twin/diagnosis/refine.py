@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -56,6 +56,7 @@ class Fit:
         local: linearisation that was used last.
         prediction: channels at that point (rows, c), without the discretisation share.
         columns: of the causes, to go on with; None where they would be computed anew.
+        held: nuisances that an end of what is allowed holds: coordinates.
     """
 
     causes: tuple[Hypothesis, ...]
@@ -71,6 +72,7 @@ class Fit:
     local: Linearisation
     prediction: SingleArray
     columns: CauseColumns | None = None
+    held: IntArray = field(default_factory=lambda: np.zeros(0, int))
 
     @property
     def pull(self) -> float:
@@ -175,6 +177,7 @@ def _fit(causes: tuple[Hypothesis, ...], search: Search, point: Point, jacobian:
         local=replace(search.local, columns=search.turned),
         prediction=point.prediction,
         columns=_kept(search) if np.isfinite(point.chi2) else None,
+        held=search.held(point.shift),
     )
 
 

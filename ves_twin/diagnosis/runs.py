@@ -20,6 +20,10 @@ Progress = Callable[[float, str], None]
 """Called with the share done, 0 to 1, and what is being done."""
 
 
+POINTS = 2
+"""Points whose columns are kept: where a choice of causes was made, and where its fit ended."""
+
+
 def silent(share: float, what: str) -> None:
     """Progress that tells nobody."""
 
@@ -53,6 +57,9 @@ class Runs:
     workers: Workers = field(default_factory=Workers, compare=False)
     holes: tuple[BoolArray, ...] = ()
     _last: LastRuns = field(default_factory=LastRuns, init=False, compare=False, repr=False)
+    _columns: LastRuns = field(
+        default_factory=lambda: LastRuns(POINTS), init=False, compare=False, repr=False
+    )
 
     @cached_property
     def coordinates(self) -> tuple[Coordinate, ...]:
@@ -158,6 +165,18 @@ class Runs:
         found = grid.reduce(rows[:, list(self.columns)])
         if several:
             self._last.keep(key, found)
+        return found
+
+    def columns_at(self, point: FloatArray, compute: Callable[[], SingleArray]) -> SingleArray:
+        """Columns about a point (k, rows, channels), as they were if they were asked for before.
+
+        Several starts of one fit, and several choices of causes, begin at one point.
+        """
+        key = (0, False, point.tobytes())
+        found = self._columns.get(key)
+        if found is None:
+            found = compute()
+            self._columns.keep(key, found)
         return found
 
     def many(

@@ -13,6 +13,10 @@ from ves_twin.diagnosis.linearise import GUESS, Linearisation
 ITERATIONS = 40
 """Steps at most from one linearisation."""
 
+NEAR_END = 1e-3
+"""Share of what a number may move by within which of an end it is held there: as a clipped step
+leaves it, or one that crept up to it."""
+
 FARTHEST = 30.0
 """Nuisances are held within this many commissioning sd: a search that leaves them is lost."""
 
@@ -181,10 +185,10 @@ class Search:
 
     def jacobian(self, point: Point) -> FloatArray:
         """Columns at a point: free parameters over a quarter of their size, nuisances as given."""
-        raw = []
-        for n, i in enumerate(self.free):
-            ends = self._ends(point.shift, int(i))
-            stacks = [self.runs.one(end) for end in ends]
+        raw, every = [], [self._ends(point.shift, int(i)) for i in self.free]
+        rows = self.runs.many([end for ends in every for end in ends])
+        for n, (i, ends) in enumerate(zip(self.free, every, strict=True)):
+            stacks = list(rows[2 * n : 2 * n + 2])
             for side, stack in enumerate(stacks):
                 if not np.all(np.isfinite(stack)):  # the plant fails there: from the other side
                     ends[side], stacks[side] = point.shift, point.prediction
@@ -193,6 +197,13 @@ class Search:
         self.raw = np.array(raw, np.float32).reshape(-1, *point.prediction.shape)
         self.about = point.shift[self.free]
         return self._with_causes()
+
+    def held(self, shift: FloatArray) -> IntArray:
+        """Nuisances that moved to an end of what is allowed, which holds them: coordinates."""
+        near = NEAR_END * (self.high - self.low)
+        at_end = (shift <= self.low + near) | (shift >= self.high - near)
+        moved = np.abs(shift) > near
+        return np.asarray(self.nuisances[(at_end & moved)[self.nuisances]])
 
     @property
     def of_causes(self) -> CauseColumns:

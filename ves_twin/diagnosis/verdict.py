@@ -60,7 +60,9 @@ class Estimate:
     """A parameter's value and interval; the interval is of the fault's share of the departure.
 
     `nominal` is where the departure counts from: the model's value, so that value - nominal holds
-    the commissioning error too; with a baseline, what this rig had then.
+    the commissioning error too; with a baseline, what this rig had then. `at_limit`: an end of its
+    range, or of 5 sd of its tolerance, holds it there; it stands for something else, and the
+    interval counts noise alone.
     """
 
     value: float
@@ -68,6 +70,7 @@ class Estimate:
     high: float
     unit: str
     nominal: float
+    at_limit: bool = False
 
     @property
     def words(self) -> str:

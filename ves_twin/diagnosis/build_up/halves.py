@@ -61,8 +61,10 @@ def halves_at(
     there = carried_point(runs, held.runs, point)
     same = held.runs.programmes is runs.programmes
     known = dict(enumerate(columns))
-    mine = _half(fitted, point, trials, known, present, same, progress)
-    yours = _half(held, there, trials, known if same else {}, present, same, progress)
+    about = linearise(runs, point)
+    mine = _half(fitted, about, trials, known, present, same, progress)
+    about = about if same else linearise(held.runs, there)
+    yours = _half(held, about, trials, known if same else {}, present, same, progress)
     return Halves(Regression(mine, trials), yours, held.measured)
 
 
@@ -95,7 +97,7 @@ def carried_point(runs: Runs, other: Runs, point: FloatArray) -> FloatArray:
 
 def _half(
     seen: Dataset,
-    point: FloatArray,
+    local: Linearisation,
     trials: Sequence[Trial],
     known: dict[int, SingleArray],
     present: Sequence[Trial],
@@ -103,8 +105,7 @@ def _half(
     progress: Progress,
 ) -> Half:
     """What is to be explained: measured less predicted, with what is at work put back."""
-    runs = seen.runs
-    local = linearise(runs, point)
+    runs, point = seen.runs, local.point
     target = np.asarray(seen.measured - local.prediction, float)
     columns = TrialColumns(runs, point, trials, local.prediction, progress, known)
     at_work = [n for n, trial in enumerate(trials) if trial in present]

@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from ves_twin.core.quantity import percent, quantity
+from ves_twin.core.quantity import percent
 from ves_twin.diagnosis.disagreement import disagree
-from ves_twin.diagnosis.rivals import Standing
-from ves_twin.diagnosis.verdict import Cause, Estimate, Kind, Verdict
+from ves_twin.diagnosis.verdict import Cause, Kind, Verdict
 from ves_twin.report.diagnosis.basis import gain_words, taken_share
 from ves_twin.report.diagnosis.coarse_step import finer
 from ves_twin.report.diagnosis.law import worth_sentence
 from ves_twin.report.diagnosis.limits import next_sentences
+from ves_twin.report.diagnosis.strained import strained_sentence
 from ves_twin.report.diagnosis.words import (
     TOLD,
     capital,
@@ -22,9 +22,6 @@ from ves_twin.report.diagnosis.words import (
 
 STRANGER = 0.5
 """Share of a channel's own spread that stays unexplained where the model is hardly this machine."""
-
-STRANGEST = 2
-"""Numbers of the model that are told where tolerances do not hold: what moved by most."""
 
 
 def headline(verdict: Verdict) -> str:
@@ -43,7 +40,8 @@ def verdict_sentence(verdict: Verdict) -> str:
         case _ if verdict.proved:
             return _proved(verdict)
         case Kind.AMBIGUOUS | Kind.PARTIAL:
-            return verdict.naming([name_of(cause) for cause in verdict.causes])
+            named = verdict.naming([name_of(cause) for cause in verdict.causes])
+            return named + strained_sentence(verdict)
         case _:
             return verdict.naming(names, _begin(verdict))
 
@@ -142,7 +140,7 @@ def _unknown(verdict: Verdict) -> str:
             "Something is wrong that no cause in the library explains, and the recording hardly"
             f" looks like one of this machine: most of {names} stays unexplained."
         )
-    return "Something is wrong that no cause in the library explains."
+    return "Something is wrong that no cause in the library explains." + strained_sentence(verdict)
 
 
 def _beyond(verdict: Verdict) -> str:
@@ -178,30 +176,6 @@ def _proved(verdict: Verdict) -> str:
     if verdict.law is not None and verdict.law.part and verdict.law.claimed:
         said += f" Of what they leave, a law takes a part: {verdict.law.words}."
     return said
-
-
-def moved(verdict: Verdict) -> list[tuple[str, Estimate]]:
-    """The model's own numbers that the fit moved, those that it moved most surely first."""
-
-    def off(one: Estimate) -> float:
-        return abs(one.value - one.nominal) / max(one.high - one.low, 1e-30)
-
-    return sorted(verdict.tuned.items(), key=lambda item: -off(item[1]))
-
-
-def strained_sentence(verdict: Verdict) -> str:
-    """Which of the model's own numbers had to leave their tolerances beside; else empty."""
-    best = next((rival for rival in verdict.rivals if rival.standing is Standing.KEPT), None)
-    limit = verdict.statistics.naming_limit
-    if best is None or best.pull is None or limit is None or best.pull <= limit:
-        return ""
-
-    told = [
-        f"{spoken(name.rpartition(':')[0])} {quantity(one.value, one.unit)}"
-        f" (model {quantity(one.nominal, one.unit)})"
-        for name, one in moved(verdict)[:STRANGEST]
-    ]
-    return f" Tolerances are strained, by up to {best.pull:.0f} sd: {', '.join(told)}."
 
 
 def _begin(verdict: Verdict) -> str:

@@ -11,7 +11,6 @@ from ves_twin.diagnosis.rivals import Rival
 from ves_twin.diagnosis.verdict import MANY, Cause, Kind, Verdict
 from ves_twin.report.diagnosis.answer import (
     confidence_sentence,
-    moved,
     nearest_sentence,
     next_step,
     tone,
@@ -35,6 +34,7 @@ from ves_twin.report.diagnosis.pictures import (
     trace_figure,
 )
 from ves_twin.report.diagnosis.proved import proved_parts
+from ves_twin.report.diagnosis.strained import moved, moved_words
 from ves_twin.report.diagnosis.words import (
     alone_sentences,
     ambiguity_sentences,
@@ -221,7 +221,11 @@ def _levels(verdict: Verdict) -> list[Html]:
 
 def _moved(verdict: Verdict) -> list[Html]:
     """The model's own numbers that were fitted beside: a fault may hide in a wide tolerance."""
-    away = [item for item in moved(verdict) if not item[1].low <= item[1].nominal <= item[1].high]
+    away = [
+        (name, one)
+        for name, one in moved(verdict)
+        if one.at_limit or not one.low <= one.nominal <= one.high
+    ]
     if not away:
         return []
     rows = [
@@ -229,13 +233,14 @@ def _moved(verdict: Verdict) -> list[Html]:
             spoken(name.rpartition(":")[0]) + (f", {name.rpartition(':')[2]}"),
             quantity(one.nominal, one.unit),
             quantity(one.value, one.unit),
-            interval_words(one),
+            moved_words(one),
         )
         for name, one in away
     ]
     said = (
         "Numbers of the model that were fitted beside, as their tolerances let them move. What a"
-        " wide tolerance lets move is not called a fault."
+        " wide tolerance lets move is not called a fault. What is held at its limit stands for"
+        " something else, or its tolerance is declared too narrowly."
     )
     shown = table(("number", "model", "fitted", "interval"), rows)
     if len(rows) > 2 * SHOWN:

@@ -1,0 +1,54 @@
+"""strained_sentence: which of the model's own numbers had to leave their tolerances beside."""
+
+from __future__ import annotations
+
+from ves_twin.core.quantity import quantity
+from ves_twin.diagnosis.rivals import Standing
+from ves_twin.diagnosis.verdict import Estimate, Verdict
+from ves_twin.report.diagnosis.words import TOLD, interval_words, spoken
+
+STRANGEST = 2
+"""Numbers of the model that are told where tolerances do not hold: what moved by most."""
+
+
+def moved(verdict: Verdict) -> list[tuple[str, Estimate]]:
+    """The model's own numbers that the fit moved: those held at a limit first, then the surest."""
+
+    def order(item: tuple[str, Estimate]) -> tuple[bool, float]:
+        one = item[1]
+        return not one.at_limit, -abs(one.value - one.nominal) / max(one.high - one.low, 1e-30)
+
+    return sorted(verdict.tuned.items(), key=order)
+
+
+def held(verdict: Verdict) -> list[str]:
+    """The model's own numbers that their limit holds, each as "friction at hub 4 N (model 3 N)"."""
+    return [_told(name, one) for name, one in moved(verdict) if one.at_limit]
+
+
+def strained_sentence(verdict: Verdict) -> str:
+    """Which numbers a limit holds, or had to leave their tolerances; else empty."""
+    at_limit = held(verdict)
+    if at_limit:
+        more = f" and {len(at_limit) - TOLD} more" if len(at_limit) > TOLD else ""
+        each = "it stands" if len(at_limit) == 1 else "each stands"
+        return (
+            f" At the limit of its tolerance, so that {each} for something else or is declared too"
+            f" narrowly: {', '.join(at_limit[:TOLD])}{more}."
+        )
+    best = next((rival for rival in verdict.rivals if rival.standing is Standing.KEPT), None)
+    limit = verdict.statistics.naming_limit
+    if best is None or best.pull is None or limit is None or best.pull <= limit:
+        return ""
+    told = [_told(name, one) for name, one in moved(verdict)[:STRANGEST]]
+    return f" Tolerances are strained, by up to {best.pull:.0f} sd: {', '.join(told)}."
+
+
+def moved_words(one: Estimate) -> str:
+    """How well a number that the fit moved is known."""
+    return "held at its limit" if one.at_limit else interval_words(one)
+
+
+def _told(name: str, one: Estimate) -> str:
+    value, model = quantity(one.value, one.unit), quantity(one.nominal, one.unit)
+    return f"{spoken(name.rpartition(':')[0])} {value} (model {model})"
