@@ -8,6 +8,8 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
+from ves_twin.core.budget import Budget
+from ves_twin.core.workers import Workers
 from ves_twin.diagnosis.build_up import best_proved as best_proved_module
 from ves_twin.diagnosis.build_up import in_full as in_full_module
 from ves_twin.diagnosis.build_up import proof as proof_module
@@ -192,6 +194,24 @@ def test_of_two_choices_the_one_that_predicts_held_out_rows_better_is_kept(
     found = builder.best()
     assert causes(found) == {"actuator_gain", "actuator_deadband"}
     assert len(found.known) == 3
+
+
+@pytest.mark.parametrize("first", [True, False])
+def test_where_there_is_time_for_one_choice_the_more_promising_one_is_fitted(
+    forward, monkeypatch, first
+):
+    both = (lambda *_: ("gain", "deadband"), lambda *_: ("asymmetry",))
+    choose(monkeypatch, *(both if first else both[::-1]))
+    builder = builder_of(forward)
+    spent = iter([0.0])
+    workers = Workers(1, Budget(1.0, lambda: next(spent, 3600.0)))
+    fitted = replace(builder.fitted, runs=replace(builder.fitted.runs, workers=workers))
+    late = replace(builder, fitted=fitted)
+    origin = fitted.runs.origin
+    (found,) = late.offers(late.halves(origin, ()), origin)
+    assert causes(found) == {"actuator_gain", "actuator_deadband"}
+    left_out = {True: "plain squares", False: "one-step prediction errors"}[first]
+    assert f"causes chosen by {left_out}" in workers.budget.left_out
 
 
 def test_a_rejected_cause_makes_room_for_the_one_that_it_stood_for(forward, monkeypatch):

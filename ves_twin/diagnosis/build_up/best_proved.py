@@ -1,4 +1,4 @@
-"""best_proved: of some choices of causes the one of which what is proved predicts best."""
+"""best_proved, most_promising: of some choices of causes the one that is proved to predict best."""
 
 from __future__ import annotations
 
@@ -29,13 +29,28 @@ def best_proved(
     Returns:
         Its trials, and the labels with those of that choice; none where nothing is proved.
     """
+    best = _best(halves, sets, known)
+    return best[1:] if best else ([], known)
+
+
+def most_promising(halves: Halves, sets: Sequence[Sequence[int]], known: frozenset[str]) -> int:
+    """The same set by its number; the first one where nothing is proved of any."""
+    best = _best(halves, sets, known)
+    return best[0] if best else 0
+
+
+def _best(
+    halves: Halves, sets: Sequence[Sequence[int]], known: frozenset[str]
+) -> tuple[int, list[int], frozenset[str]] | None:
+    """Its number, what is proved of it, and the labels with its own; None where nothing is."""
     regression, held = halves.regression, halves.held
-    found, left = list[tuple[list[int], frozenset[str]]](), list[FloatArray]()
-    for chosen in dict.fromkeys(tuple(some) for some in sets if some):
+    found, left = list[tuple[int, list[int], frozenset[str]]](), list[FloatArray]()
+    numbers = {tuple(some): n for n, some in reversed(list(enumerate(sets))) if some}
+    for chosen, number in sorted(numbers.items(), key=lambda item: item[1]):
         labels = frozenset(regression.trials[n].cause.label for n in chosen)
         proof = prove(regression, held, chosen, more=len(known - labels))
         if proof.proved:
             fit = regression.solve(proof.proved, proof.bench.fit.whitening)
-            found.append((list(proof.proved), known | labels))
+            found.append((number, list(proof.proved), known | labels))
             left.append(replace(proof.bench, fit=fit).residual(proof.proved))
-    return found[least_left(held, regression.quietest, left)] if found else ([], known)
+    return found[least_left(held, regression.quietest, left)] if found else None

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 
 from ves_twin.core.types import FloatArray
-from ves_twin.diagnosis.build_up.best_proved import best_proved
+from ves_twin.diagnosis.build_up.best_proved import best_proved, most_promising
 from ves_twin.diagnosis.build_up.discrepancy import discrepancy
 from ves_twin.diagnosis.build_up.halves import Halves, halves_at
 from ves_twin.diagnosis.build_up.in_full import in_full
@@ -23,6 +23,9 @@ from ves_twin.diagnosis.preprocess import Dataset
 from ves_twin.diagnosis.refine import Fit, bare_residual
 
 Way = type[Selector] | type[PlainSelector]
+
+NAMES: Mapping[Way, str] = {Selector: "one-step prediction errors", PlainSelector: "plain squares"}
+"""What ways of choosing are called where one is left out."""
 
 ROUNDS = 3
 """Times that columns are computed anew where a choice of causes, fitted in full, has moved them."""
@@ -84,7 +87,8 @@ class Builder:
 
         Neither serves all: whitening in time hides what acts slowly (a double pendulum's
         frictions, an excavator's valve), and plain squares have few independent rows (TX40). Of
-        the choices that plain squares make on their way the best is offered, too.
+        the choices that plain squares make on their way the best is offered, too. The choice that
+        promises more is fitted in full first: there may be no time for the other.
 
         Args:
             halves: linear about the point.
@@ -93,16 +97,19 @@ class Builder:
             known: labels of the causes that were put to proof before.
         """
         begin = _places(halves, present)
-        ahead = Selector(halves.regression).run(begin)
-        found = [self.offer(*self.settled(Selector, halves, ahead, point), known)]
-        if self.fitted.runs.budget.skips("causes chosen by plain squares"):
-            return found
-        self.desk.progress(0.0, "choosing causes")
         path = PlainSelector(halves.regression).path(begin)
-        known = found[-1].known
-        if set(path[-1]) != set(ahead):
-            plainly = self.settled(PlainSelector, halves, path[-1], point)
-            found.append(self.offer(*plainly, known))
+        ways: list[tuple[Way, list[int]]] = [
+            (Selector, Selector(halves.regression).run(begin)),
+            (PlainSelector, path[-1]),
+        ]
+        first = most_promising(halves, [chosen for _, chosen in ways], known)
+        found = list[Offer]()
+        for way, chosen in (ways[first], ways[1 - first]):
+            if found and set(chosen) == set(ways[first][1]):
+                break
+            if found and self.fitted.runs.budget.skips(f"causes chosen by {NAMES[way]}"):
+                return found
+            found.append(self.offer(*self.settled(way, halves, chosen, point), known))
             known = found[-1].known
         few, known = best_proved(halves, path, known)
         labels = frozenset(halves.regression.trials[n].cause.label for n in few)
