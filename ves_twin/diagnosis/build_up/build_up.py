@@ -75,7 +75,7 @@ def build_up(desk: FitContext, start: Explanation, fitted: Dataset, held: Datase
         return None
     desk.progress(0.0, "fitting what is proved, and its intervals")
     evidence = builder.evidence(proof.bench.fit.residual, memory=False)
-    proof, final = _at_work(halves, simpler(proof), point, evidence, held)
+    proof, final = _at_work(halves, simpler(proof), point, evidence, held, found.fit)
     proof, final = within_range(proof, final, point, evidence)
     before = in_full(halves.regression, (), point, evidence)
     there = held.runs.one(carried_point(fitted.runs, held.runs, final.shift))
@@ -93,11 +93,16 @@ def build_up(desk: FitContext, start: Explanation, fitted: Dataset, held: Datase
 
 
 def _at_work(
-    halves: Halves, proof: Proof, point: FloatArray, evidence: Evidence, held: Dataset
+    halves: Halves,
+    proof: Proof,
+    point: FloatArray,
+    evidence: Evidence,
+    held: Dataset,
+    known: Fit | None = None,
 ) -> tuple[Proof, Fit]:
     """What is proved and still takes something away where all of it is fitted in full."""
     while True:
-        fit = in_full(halves.regression, proof.proved, point, evidence, probed=True)
+        fit = in_full(halves.regression, proof.proved, point, evidence, probed=True, known=known)
         gone = idle(proof, evidence.runs, held, fit)
         if gone is None:
             return proof, fit

@@ -41,6 +41,10 @@ after two rounds; and by which a round may leave more than the one before (the s
 third round lost all frictions)."""
 
 
+ANEW = "causes chosen anew about their own fit"
+"""What is left out where the runs are spent."""
+
+
 @dataclass(frozen=True)
 class Builder:
     """A record between its halves.
@@ -128,8 +132,10 @@ class Builder:
 
         Columns are of finite sizes: a choice is made anew where its full fit has moved them.
         """
-        present, least = tuple[Trial, ...](), np.inf
+        kept, least, budget = chosen, np.inf, self.fitted.runs.budget
         for last in range(ROUNDS):
+            if budget.skips(ANEW):
+                break
             self.desk.progress(0.0, f"fitting {len(chosen)} causes together")
             regression = halves.regression
             evidence = self.evidence(regression.fit(chosen).residual)
@@ -139,17 +145,18 @@ class Builder:
             left = float(np.mean(np.log(rms)))
             if left > least + MOVED:  # columns that hide each other: what was before stays
                 break
+            if budget.skips(ANEW):  # columns of a whole library about that fit
+                break
             linear = regression.solve(chosen, evidence.whitening).residual
             off = regression.half.rms(residual - linear)
             least, point = left, fit.shift
             present = _present([regression.trials[n] for n in chosen], fit)
             halves = self.halves(point, present)
+            kept = _places(halves, present)
             if np.all(off <= MOVED * regression.half.rms(linear)) or last == ROUNDS - 1:
                 break
-            if self.fitted.runs.budget.skips("causes chosen anew about their own fit"):
-                break
-            chosen = way(halves.regression).run(_places(halves, present))
-        return halves, point, _places(halves, present)
+            chosen = way(halves.regression).run(kept)
+        return halves, point, kept
 
     def offer(
         self, halves: Halves, point: FloatArray, chosen: list[int], known: frozenset[str]

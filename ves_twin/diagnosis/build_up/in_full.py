@@ -11,6 +11,7 @@ from ves_twin.diagnosis.build_up.converged import converged
 from ves_twin.diagnosis.build_up.proof import STRAINED
 from ves_twin.diagnosis.build_up.regression import Regression
 from ves_twin.diagnosis.evidence import Evidence
+from ves_twin.diagnosis.forward import Hypothesis
 from ves_twin.diagnosis.refine import Fit, refine
 
 
@@ -20,6 +21,7 @@ def in_full(
     point: FloatArray,
     evidence: Evidence,
     probed: bool = False,
+    known: Fit | None = None,
 ) -> Fit:
     """Most probable sizes of chosen trials, from what the linear fit says.
 
@@ -32,7 +34,25 @@ def in_full(
         point: departures (coordinates,).
         evidence: of the fitted half.
         probed: whether intervals follow what the full forward leaves beside the fit.
+        known: an earlier fit, which is gone on from if it is of the same causes.
     """
+    causes = tuple(regression.trials[n].cause for n in chosen)
+    if known is None or known.causes != causes:
+        known = _begun(regression, chosen, point, evidence, causes)
+    if not probed:
+        return known
+    end = (known.shift, known.local, 0, known.step_share)
+    return refine(evidence, causes, *end, farthest=STRAINED, probed=True)
+
+
+def _begun(
+    regression: Regression,
+    chosen: Sequence[int],
+    point: FloatArray,
+    evidence: Evidence,
+    causes: tuple[Hypothesis, ...],
+) -> Fit:
+    """The better one of the fits from the likeliest start and from the sizes of bent columns."""
     runs = evidence.runs
     linear = regression.solve(chosen, evidence.whitening)
     full = np.where(runs.sd > 0.0, point, 0.0)
@@ -46,15 +66,10 @@ def in_full(
         here = point[where] if np.any(point[where]) else full[where]
         near = runs.depart(near, where, here)
         half = runs.depart(half, where, 0.5 * (here + full[where]))
-    causes = tuple(regression.trials[n].cause for n in chosen)
     starts = (_likeliest(evidence, (full, half, near)), told)
     different = {shift.tobytes(): shift for shift in starts}
     fits = [converged(evidence, causes, point, shift) for shift in different.values()]
-    fit = min(fits, key=lambda one: one.chi2)
-    if not probed:
-        return fit
-    end = (fit.shift, fit.local, 0, fit.step_share)
-    return refine(evidence, causes, *end, farthest=STRAINED, probed=True)
+    return min(fits, key=lambda one: one.chi2)
 
 
 def _likeliest(evidence: Evidence, starts: Sequence[FloatArray]) -> FloatArray:

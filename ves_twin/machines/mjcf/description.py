@@ -3,36 +3,24 @@
 from __future__ import annotations
 
 from enum import StrEnum
-from typing import Annotated, Literal, Self
+from typing import Annotated, Any, Literal, Self
 
 from pydantic import Field, model_validator
 
-from ves_twin.core.units import SI_UNITS, to_unit
 from ves_twin.data.import_map import Window
 from ves_twin.diagnosis.grid import RATE
 from ves_twin.effects.element import Element
 from ves_twin.effects.law_table import LawTable
-from ves_twin.scenario.fields import Hertz, Part, Seconds, named, si
+from ves_twin.machines.mjcf.column import Column, Number
+from ves_twin.scenario.fields import Hertz, Part, Seconds, si
 
 KIND = "rig"
 """What the file calls itself; a plant of VES II says nothing."""
 
 SCHEMA = 1
 
-LAB_UNITS = {
-    **dict.fromkeys(("mm", "cm", "um", "in"), "m"),
-    **dict.fromkeys(("deg", "mrad"), "rad"),
-    **dict.fromkeys(("mm/s", "cm/s"), "m/s"),
-    **dict.fromkeys(("deg/s", "mrad/s", "rpm"), "rad/s"),
-    **dict.fromkeys(("kN", "mN"), "N"),
-    **dict.fromkeys(("mN*m", "kN*m"), "N*m"),
-    **dict.fromkeys(("kPa", "MPa", "bar", "psi"), "Pa"),
-}
-"""Other units that a signal may have, which are converted -> SI unit."""
-
-Unit = Annotated[str, named("unit", sorted({*SI_UNITS, *LAB_UNITS}))]
-Number = float | str
-"""A number in SI, or a text with a unit; the place that reads it knows which."""
+CORNER = 1.25
+"""Corner of the positions' low-pass over the band: what is compared is not rounded off."""
 
 
 class Mode(StrEnum):
@@ -46,43 +34,6 @@ class Mode(StrEnum):
     MOTION = "motion"
     CONTROL = "control"
     REFERENCE = "reference"
-
-
-class Column(Part):
-    """A signal: columns of the file, and what makes them SI.
-
-    value = scale * column + offset, in the unit, then, for vectors given in the world, turned into
-    the frame of a signal that holds a quaternion x, y, z, w (sensor to world). A column may be a
-    formula of columns. Where the signal says `joint`, `actuator` or `sensor`, it needs no entry in
-    `compare` and none in `drive`: that mode and place decide whether it is fed in or compared.
-    """
-
-    columns: tuple[str, ...] = Field(min_length=1)
-    unit: Unit
-    scale: float = 1.0
-    offset: float = 0.0
-    noise: Number | tuple[Number, ...] = 0.0
-    into: str = ""
-    joint: str = ""
-    of: Literal["position", "speed"] = "position"
-    actuator: str = ""
-    sensor: str = ""
-    source: str = ""
-
-    @model_validator(mode="before")
-    @classmethod
-    def _in_si(cls, content: object) -> object:
-        """With the unit converted, so that all behind has SI alone; noise is told in SI or text."""
-        if not isinstance(content, dict):
-            return content
-        given, numbers = content.get("unit"), [content.get(k, 0.0) for k in ("scale", "offset")]
-        if not isinstance(given, str) or given not in LAB_UNITS or not all(map(_number, numbers)):
-            return content
-        si_unit = LAB_UNITS[given]
-        factor, zero = to_unit(given, si_unit, "unit")
-        scale, offset = content.get("scale", 1.0), content.get("offset", 0.0)
-        si = {"unit": si_unit, "scale": factor * scale, "offset": factor * offset + zero}
-        return {**content, **si}
 
 
 class Clock(Part):
@@ -329,6 +280,10 @@ class MultisineRange(Part):
 class RigDescription(Part):
     """The whole file, see docs/bring-your-own-rig.md.
 
+    `rate` is that of the analysis. Where positions are fed in and efforts compared, it follows from
+    `drive.smoothing` if the file says none: `smoothing` takes from the motion what it does not from
+    the efforts, and what is left of these above it would bend frictions.
+
     `tolerances` says how well all values of an attribute are known that have no sd of their own, as
     a share of them: `mass = "5 %"`.
     """
@@ -336,12 +291,12 @@ class RigDescription(Part):
     name: str
     model: str
     about: str = ""
-    rate: Annotated[Hertz, Field(gt=0)] = RATE
     clock: Clock
     window: Window = Window()
     signals: dict[str, Column]
     drive: Drive
     compare: dict[str, Compared] = Field(default_factory=dict)
+    rate: Annotated[Hertz, Field(gt=0, default_factory=lambda told: _analysis_rate(told))]
     controllers: dict[str, Controller] = Field(default_factory=dict)
     start: dict[str, Start] = Field(default_factory=dict)
     parameters: tuple[Setting, ...] = ()
@@ -391,9 +346,15 @@ class RigDescription(Part):
         return {**content, "compare": compare, "drive": drive}
 
 
+def _analysis_rate(told: dict[str, Any]) -> float:
+    """Of a file that says none, by the fields above it [Hz]."""
+    drive, compare = told.get("drive"), told.get("compare", {})
+    if drive is None:  # refused already
+        return RATE
+    fed = drive.mode is Mode.MOTION or drive.imposed
+    efforts = any(place.actuator for place in compare.values())
+    return min(RATE, 2.0 * drive.smoothing / CORNER) if fed and efforts else RATE
+
+
 def _table(value: object) -> bool:
     return isinstance(value, dict)
-
-
-def _number(value: object) -> bool:
-    return isinstance(value, int | float) and not isinstance(value, bool)

@@ -6,7 +6,8 @@ from typing import Annotated, Any, Self
 
 from pydantic import Field, field_validator, model_validator
 
-from ves_twin.machines.mjcf.description import Number, Start
+from ves_twin.machines.mjcf.column import Number
+from ves_twin.machines.mjcf.description import Start
 from ves_twin.scenario.experiment import StartState, Window
 from ves_twin.scenario.experiment_file import ExperimentFile
 from ves_twin.scenario.fields import Part, Seconds, named, si

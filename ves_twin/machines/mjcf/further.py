@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import replace
 
-from ves_twin.machines.mjcf.description import Column, Compared, Mode
+from ves_twin.machines.mjcf.column import Column
+from ves_twin.machines.mjcf.description import Compared, Mode
 from ves_twin.machines.mjcf.forward import MjcfForward
 from ves_twin.machines.mjcf.inputs import sizes_of
 from ves_twin.machines.mjcf.joint_units import joint_units

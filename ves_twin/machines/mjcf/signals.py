@@ -6,7 +6,7 @@ import numpy as np
 
 from ves_twin.core.signals import Role, Signal
 from ves_twin.core.types import FloatArray
-from ves_twin.machines.mjcf.description import Column
+from ves_twin.machines.mjcf.column import Column
 from ves_twin.machines.mjcf.machine import Rig
 from ves_twin.machines.mjcf.places import typical_span
 

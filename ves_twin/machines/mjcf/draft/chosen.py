@@ -9,7 +9,7 @@ import mujoco
 import numpy as np
 
 from ves_twin.core.errors import InvalidInputError
-from ves_twin.machines.mjcf.description import Mode
+from ves_twin.machines.mjcf.description import CORNER, Mode
 from ves_twin.machines.mjcf.draft.check import Checked
 from ves_twin.machines.mjcf.draft.estimates import noise_of, rest_of
 from ves_twin.machines.mjcf.draft.log_columns import LogColumns
@@ -23,9 +23,6 @@ of the efforts: reversals of friction are above it."""
 
 RATES = (20.0, 100.0)
 """Least and largest analysis rate [Hz]; the second is that of files that say none."""
-
-CORNER = 1.25
-"""Corner of the positions' low-pass over the band: what is compared is not rounded off."""
 
 ENOUGH = 115
 """Rows of the analysis that a log must leave: a diagnosis asks for 100, its low-pass takes 10."""

@@ -11,7 +11,8 @@ import mujoco
 import numpy as np
 
 from ves_twin.core.units import SI_UNITS
-from ves_twin.machines.mjcf.description import LAB_UNITS, Mode
+from ves_twin.machines.mjcf.column import LAB_UNITS
+from ves_twin.machines.mjcf.description import Mode
 from ves_twin.machines.mjcf.draft.check import Checked
 from ves_twin.machines.mjcf.draft.chosen import RATES, Chosen
 from ves_twin.machines.mjcf.draft.estimates import travel, two_digits, typical

@@ -11,7 +11,7 @@ from scipy.optimize import linear_sum_assignment
 
 from ves_twin.core.units import to_unit
 from ves_twin.data.unit_names import bare_name, spelled
-from ves_twin.machines.mjcf.description import LAB_UNITS
+from ves_twin.machines.mjcf.column import LAB_UNITS
 from ves_twin.machines.mjcf.draft.log_columns import LogColumns
 from ves_twin.machines.mjcf.draft.names import (
     ELECTRICAL,

@@ -6,7 +6,7 @@ import re
 from dataclasses import dataclass
 
 from ves_twin.data.unit_names import bare_name, spelled
-from ves_twin.machines.mjcf.description import LAB_UNITS
+from ves_twin.machines.mjcf.column import LAB_UNITS
 from ves_twin.machines.mjcf.draft.spots import Quantity, Spot, own_number, words_of
 
 POSITION = (
