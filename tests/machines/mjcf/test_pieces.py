@@ -178,3 +178,13 @@ def test_in_pieces_a_hidden_friction_of_a_machine_that_falls_over_is_found(tmp_p
     assert told.gain is not None
     assert told.gain.share > 0.9
     assert "simulated in 6 pieces, each from its own start" in rests_on(told.basis)
+
+
+def test_a_model_that_has_a_wrong_number_alone_is_no_reason_for_pieces(tmp_path):
+    """The same table hung up: it comes back from any start, and its log is predicted whole."""
+    log = logged(tmp_path, 1)
+    hung = ROCKER.replace('pos="0 0 0.005"', 'pos="0 0 -0.05"')
+    (tmp_path / "rocker.xml").write_text(hung)
+    draft = new_machine(tmp_path / "rocker.xml", [log], tmp_path / "my.toml").draft
+    assert draft.explained["tilt.position"] < 0.5
+    assert "horizon" not in draft.text

@@ -23,6 +23,7 @@ from ves_twin.machines.mjcf.draft.draft_text import compared, draft_text, signal
 from ves_twin.machines.mjcf.draft.given_model import GivenModel
 from ves_twin.machines.mjcf.draft.log_columns import LogColumns
 from ves_twin.machines.mjcf.draft.match import matched
+from ves_twin.machines.mjcf.draft.runs_away import runs_away
 from ves_twin.machines.mjcf.draft.shape import by_shape
 from ves_twin.machines.mjcf.draft.spots import spots_of
 from ves_twin.machines.mjcf.forward import MjcfForward
@@ -121,8 +122,10 @@ def draft(model: Path, logs: Sequence[Path], out: Path, rate: float | None = Non
     if now.mode.either and now.explained[now.least] < HALF:
         why = f"open loop the model explains {now.explained[now.least]:.0%} of {now.least}"
         now = version(chosen(log, matches, check, given.model, why))
-    if now.mode.mode is Mode.CONTROL:
-        now = _in_pieces(now, version)
+    if now.mode.mode is Mode.CONTROL and now.explained[now.least] < HALF:
+        recording = read_rig_recording(logs[0], now.rig)
+        if runs_away(MjcfForward.of(now.rig), recording):
+            now = _in_pieces(now, version)
     for other in logs[1:]:
         read_rig_recording(other, now.rig)
     left = dict(matches.left)
@@ -153,13 +156,12 @@ class _Version:
 def _in_pieces(whole: _Version, version: Callable[[Chosen], _Version]) -> _Version:
     """With the longest horizon over which the model explains HALF, or that which explains most.
 
-    Where a whole log is explained so far, or no horizon helps, or no row tells a joint's start,
-    all stays as it is.
+    Where no horizon helps, or no row tells a joint's start, all stays as it is.
     """
     mode, share = whole.mode, whole.explained[whole.least]
     why = f"{mode.why}; over the whole log the model explains {share:.0%} of {whole.least}"
     best, found = share + HELPS, whole
-    for horizon in (h for h in HORIZONS if h * mode.rate >= ROWS and share < HALF):
+    for horizon in (h for h in HORIZONS if h * mode.rate >= ROWS):
         try:
             cut = version(replace(mode, horizon=horizon, why=why))
         except InvalidInputError:  # a joint whose start no row tells
