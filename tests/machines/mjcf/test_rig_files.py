@@ -36,6 +36,7 @@ LOG = "t,f,m,set,x,a,fx,fy,fz\n" + "\n".join(
         ('kind = "backlash"', 'kind = "backlsh"', "did you mean 'backlash'"),
         ('kind = "backlash"', 'kind = "backlash"\nper_recording = true', "expected cause = false"),
         ('on = ["drive"]', 'on = ["drve"]', "did you mean 'drive'"),
+        ('"load.force.1"', '"load.force"', "a column behind the signal: load.force.1"),
         ('unit = "N*m"', 'unit = "Nm"', "unknown unit 'Nm'"),
         ('attribute = "mass"', 'attribute = "mas"', "did you mean 'mass'"),
         ('sd = "0.05 kg"', 'sd = "0.05 m"', "a finite quantity in kg"),

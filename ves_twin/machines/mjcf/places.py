@@ -187,7 +187,11 @@ def _signal(kind: str, target: str, on: Anywhere, told: RigDescription) -> Place
         groups = {signal.partition(".")[0] for signal in told.signals}
         _known("signal", target, {*told.signals, *groups})
         return Place(Element.SIGNAL, target, unit="s")
-    name = ".".join(parts[:-count] if count else parts)
+    if target in told.signals:
+        example = ".".join([target, *map(str, range(1, count + 1))])
+        expected = f"the number of a column behind the signal: {example}"
+        raise InvalidInputError(f"target of {kind}", target, expected)
+    name = ".".join(parts[:-count])
     _known("signal", name, told.signals)
     column = told.signals[name]
     for number in parts[len(parts) - count :]:
