@@ -250,6 +250,21 @@ def test_rows_without_a_measurement_change_no_proof():
     assert "coulomb@a:size" in names
 
 
+def test_a_cause_whose_held_out_simulation_breaks_off_is_not_proved_and_hinders_none():
+    """An air-bearing satellite: a mass centre with which it tips over in one recording alone."""
+    both = halves(PLANT, {"coulomb@a:size": 0.8, "viscous@b:size": 0.4}, 31)
+    labels = [trial.cause.label for trial in both.regression.trials]
+    good, bad = (labels.index(name) for name in ("coulomb@a", "viscous@b"))
+    for broken, left in (([bad], (good,)), ([good, bad], ())):
+        columns = both.held.columns
+        known = {n: np.full_like(columns[n], np.nan) for n in broken}
+        held = replace(both.held, columns=replace(columns, known={**columns.known, **known}))
+        proof = prove(both.regression, held, [good, bad])
+        assert proof.proved == left
+        assert all(proof.dropped[n] == 1.0 for n in broken)
+        assert not set(broken) & {k for found in stand_ins(proof).values() for k in found}
+
+
 def test_held_out_columns_are_simulated_for_chosen_trials_alone():
     one, two = (seen(PLANT, recorded(PLANT, {"coulomb@a:size": 0.8}, seed)) for seed in (1, 2))
     both = halves_at(one, two, one.runs.origin, PLANT.hypotheses)

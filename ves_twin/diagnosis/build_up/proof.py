@@ -248,12 +248,13 @@ def prove(
         errors: that are compared; those of ERRORS that show these trials best if None.
     """
     tested = len(chosen) + more
-    kept, dropped = list(chosen), dict[int, float]()
+    broken = held.columns.failed(chosen)
+    kept, dropped = [n for n in chosen if n not in broken], dict.fromkeys(broken, 1.0)
     back: list[int] | None = None
-    whole = replace(_sharpest(regression, chosen, (errors,) if errors else ERRORS), held=held)
+    whole = replace(_sharpest(regression, kept, (errors,) if errors else ERRORS), held=held)
     if not whole.whole.any():
         limit = FALSE_SHARE / max(tested, 1)
-        return Proof((), {}, dict.fromkeys(kept, 1.0), tested, limit, whole)
+        return Proof((), {}, dict.fromkeys(chosen, 1.0), tested, limit, whole)
     bench, found = whole, _each(whole, kept)
     null = more + _null([found[n].p for n in kept])
     while True:
@@ -264,7 +265,7 @@ def prove(
             kept.remove(worst)
             dropped[worst] = found[worst].p
         else:
-            back = list(dropped) if back is None else back
+            back = [n for n in dropped if n not in broken] if back is None else back
             again = _again(bench, kept, back, null)
             if again is None:
                 limit = FALSE_SHARE * max(len(kept), 1) / null

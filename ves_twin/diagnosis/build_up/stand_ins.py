@@ -56,4 +56,6 @@ def _likely(bench: Bench, rest: Sequence[int], others: Sequence[int]) -> list[in
     fit = bench.regression.solve(rest, bench.fit.whitening)
     gains = bench.regression.gains(fit, others)
     ranked = sorted(others, key=gains.of, reverse=True)[:TRIED]
-    return [n for n in ranked if gains.of(n) > LEAST]
+    likely = [n for n in ranked if gains.of(n) > LEAST]
+    failed = bench.held.columns.failed(likely)
+    return [n for n in likely if n not in failed]

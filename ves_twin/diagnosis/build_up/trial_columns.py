@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 
+import numpy as np
+
 from ves_twin.core.types import FloatArray, SingleArray
 from ves_twin.diagnosis.build_up.trials import Trial, columns_of
 from ves_twin.diagnosis.runs import Progress, Runs, silent
@@ -40,6 +42,11 @@ class TrialColumns:
             found = columns_of(self.runs, self.point, asked, self.progress, self.prediction)
             self.known.update(zip(new, found, strict=True))
         return [self.known[n] for n in numbers]
+
+    def failed(self, numbers: Sequence[int]) -> list[int]:
+        """Those with which a simulation of these recordings breaks off."""
+        found = self.of(numbers)
+        return [n for n, c in zip(numbers, found, strict=True) if not np.all(np.isfinite(c))]
 
     def __getitem__(self, number: int) -> SingleArray:
         return self.of([number])[0]

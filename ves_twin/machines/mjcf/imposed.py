@@ -11,6 +11,7 @@ from scipy.interpolate import CubicSpline
 
 from ves_twin.core.types import FloatArray, IntArray
 from ves_twin.machines.mjcf.inverse import efforts_along, smoothed
+from ves_twin.machines.mjcf.loops import assemble
 from ves_twin.machines.mjcf.places import driven_joint
 from ves_twin.machines.mjcf.work import Work
 
@@ -82,6 +83,7 @@ class Imposed:
         plain = replace(work, model=copy.copy(model))
         heavy = np.concatenate([dofs, still]).astype(np.int64)
         model.dof_armature[heavy] = inertia
+        model.dof_M0[heavy] += inertia  # of a lone part MuJoCo takes its inertia from there
         return Imposed(
             plain,
             np.concatenate([places, stands]).astype(np.int64),
@@ -92,6 +94,12 @@ class Imposed:
             np.hstack([begun, none]),
             inertia,
         )
+
+    def begin(self, data: mujoco.MjData, step: int) -> None:
+        """At the recorded place and speed, the bodies of loops where these close."""
+        if len(self.dofs):
+            self.move(data, step)
+            assemble(self.work.model, data, self.dofs)
 
     def move(self, data: mujoco.MjData, step: int) -> None:
         """Set place and speed of a step, and the effort that keeps the recorded acceleration."""

@@ -49,8 +49,9 @@ SORTS = ("measured", "held_out", "commissioning", "baseline")
 LONGEST = 600.0
 """Length of a design at most [s], as of a machine's own multisine."""
 
-WORTH_A_PROCESS = 0.3
-"""Time of one prediction [s] from which other processes, which take seconds to begin, pay."""
+WORTH_A_PROCESS = 0.1
+"""Time of one prediction [s] from which other processes pay: they take 3 s to begin, and a
+diagnosis makes hundreds of predictions."""
 
 
 @dataclass(frozen=True)

@@ -20,6 +20,7 @@ from ves_twin.machines.mjcf.description import Controller, Mode
 from ves_twin.machines.mjcf.imposed import Imposed
 from ves_twin.machines.mjcf.joint_units import joint_units
 from ves_twin.machines.mjcf.law_loop import compiled_laws, lawful_rows, push
+from ves_twin.machines.mjcf.loops import assemble
 from ves_twin.machines.mjcf.started import first_state, lead_rows, read_from, start_signal
 from ves_twin.machines.mjcf.work import Work, sensor_rows, variables
 
@@ -131,6 +132,8 @@ def _start(work: Work, first: int) -> mujoco.MjData:
         position, speed = _measured_start(work, joint, first)
         data.qpos[at.qposadr[0]] = position + work.values.get(f"start@{joint}:position", 0.0)
         data.qvel[at.dofadr[0]] = speed + work.values.get(f"start@{joint}:speed", 0.0)
+    begun = [int(work.model.joint(joint).dofadr[0]) for joint in work.rig.description.start]
+    assemble(work.model, data, np.array(begun, int))
     return data
 
 
@@ -262,6 +265,7 @@ def _stepped(
     speed, given, reach = np.zeros(1), np.zeros(1), _Reach(work)
     loaded = {e.parts[0] for e, _ in work.effects if type(e).carry is not Effect.carry}
     laws, own = compiled_laws(work.laws, model), np.zeros(model.nv)
+    imposed.begin(data, first * steps)
     for k in range(first, rows):
         imposed.move(data, k * steps)
         path[k, : model.nq], path[k, model.nq :] = data.qpos, data.qvel

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import mujoco
 import numpy as np
@@ -11,7 +11,8 @@ import numpy as np
 from ves_twin.core.errors import InvalidInputError
 from ves_twin.machines.mjcf.description import CORNER, Mode
 from ves_twin.machines.mjcf.draft.check import Checked
-from ves_twin.machines.mjcf.draft.estimates import noise_of, rest_of
+from ves_twin.machines.mjcf.draft.closed_chain import closed_chain
+from ves_twin.machines.mjcf.draft.estimates import noise_of, rest_of, travel
 from ves_twin.machines.mjcf.draft.log_columns import LogColumns
 from ves_twin.machines.mjcf.draft.match import Match, Matches
 from ves_twin.machines.mjcf.draft.motion import band_of
@@ -26,6 +27,9 @@ RATES = (20.0, 100.0)
 
 ENOUGH = 115
 """Rows of the analysis that a log must leave: a diagnosis asks for 100, its low-pass takes 10."""
+
+FIRST = 10
+"""Rows that tell where a log begins."""
 
 DROWNED = 0.05
 """Share of an effort that noise of positions may make once they are differentiated twice."""
@@ -45,6 +49,7 @@ class Chosen:
         either: the motion could be given as well.
         imposed: joints that move as recorded in CONTROL, since no column tells what moves them.
         horizon: pieces that are simulated from a start of their own [s]; 0: the whole log.
+        homes: column -> what is added to it, in its unit, to make it a position, and why.
     """
 
     mode: Mode
@@ -55,6 +60,7 @@ class Chosen:
     either: bool = False
     imposed: tuple[str, ...] = ()
     horizon: float = 0.0
+    homes: Mapping[str, tuple[float, str]] = field(default_factory=dict)
 
 
 def chosen(
@@ -98,6 +104,11 @@ def chosen(
     unknown = _moved_by(model) & single - {m.spot.joint for m in efforts}
     told = {m.spot.name for m in positions}
     imposed = tuple(sorted(unknown & told))
+    drives = [m for m in efforts if _is_plain(m, model) and m.spot.joint in told]
+    felt = closed_chain(model, [m.spot.joint for m in drives])
+    if felt:
+        moved_by = [m for m in positions if m.spot.name in felt]
+        return _of_loops(log, moved_by, drives, model, noise, felt)
     if check.motion is None or driven | unknown != single or model.nv != len(single) or not driven:
         free = sorted(single - driven)
         why = f"no effort is told at {', '.join(free)}" if free else "not every position is told"
@@ -130,6 +141,55 @@ def chosen(
     return Chosen(Mode.MOTION, closed or why, 2.0 * band, CORNER * band, noise)
 
 
+def _of_loops(
+    log: LogColumns,
+    positions: list[Match],
+    drives: list[Match],
+    model: mujoco.MjModel,
+    noise: dict[str, tuple[float, str]],
+    felt: Mapping[str, float],
+) -> Chosen:
+    """Of a parallel machine: its drives move as recorded, all else follows, efforts are compared.
+
+    The band is that of the efforts, or in which differentiated noise stays below DROWNED.
+    """
+    band = BAND * max(band_of(log.values[m.column], log.period, 0.99) for m in drives)
+    band = float(np.clip(band, 0.5 * RATES[0], min(0.5 * RATES[1], 0.25 / log.period)))
+    share = max(_induced(m, noise, drives, model, log, band, felt)[1] for m in positions)
+    band = max(min(band, band * (DROWNED / max(share, 1e-9)) ** 0.4), 0.5 * RATES[0])
+    of_joint = {
+        m.spot.name: _induced(m, noise, drives, model, log, band, felt)[0] for m in positions
+    }
+    for m in drives:
+        sd, how = noise[m.column]
+        noise[m.column] = (float(np.hypot(sd, of_joint[m.spot.joint])), how)
+    why = "the model's loops leave no motion but that of its drives, which have positions"
+    homes = {m.column: home for m in positions if (home := _home(m, model, log))}
+    names = tuple(m.spot.name for m in positions)
+    return Chosen(Mode.CONTROL, why, 2.0 * band, CORNER * band, noise, imposed=names, homes=homes)
+
+
+def _home(position: Match, model: mujoco.MjModel, log: LogColumns) -> tuple[float, str] | None:
+    """What makes a joint's position of a length that is told from elsewhere [its unit], and why.
+
+    The length that a sliding part has in the model, if the log begins near it; else where it
+    begins. None where the log begins near the joint's own zero.
+    """
+    values = position.factor * log.values[position.column]
+    joint, near = model.joint(position.spot.name), 2.0 * travel(values)
+    body, begin = int(joint.bodyid[0]), float(np.mean(values[:FIRST]))
+    zero = float(model.qpos0[int(joint.qposadr[0])])
+    if abs(begin - zero) < near:
+        return None
+    along = np.zeros(3)
+    mujoco.mju_rotVecQuat(along, joint.axis, model.body_quat[body])
+    length = abs(float(along @ model.body_pos[body]))
+    slides = int(joint.type[0]) == int(mujoco.mjtJoint.mjJNT_SLIDE)
+    if slides and abs(begin - length) < near:
+        return (zero - length) / position.factor, "offset: the length that the model has at home"
+    return (zero - begin) / position.factor, "offset: as if the log began where the model stands"
+
+
 def _is_plain(match: Match, model: mujoco.MjModel) -> bool:
     return bool(match.spot.joint) and is_motor(model, model.actuator(match.spot.name).id)
 
@@ -147,18 +207,20 @@ def _induced(
     model: mujoco.MjModel,
     log: LogColumns,
     band: float,
+    felt: Mapping[str, float] | None = None,
 ) -> tuple[float, float]:
     """Noise that a position makes in its joint's effort: of one row [SI], and as a share of it.
 
     White noise s of rows T apart, differentiated twice within a band f: s (2 pi)^2
-    sqrt(2 T f^5 / 5).
+    sqrt(2 T f^5 / 5). The joint moves the inertia of its branch, or that which is `felt` there.
     """
     (effort,) = (m for m in efforts if m.spot.joint == position.spot.name)
     sd, _ = noise[position.column]
     pull = sd * (2.0 * np.pi) ** 2 * np.sqrt(2.0 * log.period * band**5 / 5.0)
     actuator, joint = model.actuator(effort.spot.name), model.joint(position.spot.name)
     gain = abs(float(actuator.gear[0] * actuator.gainprm[0])) or 1.0
-    within = float(model.dof_M0[int(joint.dofadr[0])]) * pull / gain
+    inertia = model.dof_M0[int(joint.dofadr[0])] if felt is None else felt[position.spot.name]
+    within = float(inertia) * pull / gain
     size = float(np.std(effort.factor * log.values[effort.column]))
     return within * np.sqrt(0.5 / (log.period * band)), within / size
 

@@ -73,13 +73,18 @@ def draft_text(
         "[signals]",
     ]
     lines = [*head, *_signals(check, mode)]
+    needed = [m for m in check.found if m.spot.joint and m.spot.joint in mode.imposed]
+    lines += ["", "[compare]   # what drives must give; no drive is fed in"] if needed else []
+    lines += [
+        f"{_quoted(signal_name(m))} = {{ actuator = {_quoted(m.spot.name)} }}" for m in needed
+    ]
     fitted = any(match.fitted for match in check.found)
     why = "   # efforts by the fitted scale: they change with it" if fitted else ""
     lines += ["", f"[typical.joint]{why}", *_joints(log, check, model)]
     spans = list(_spans(log, check))
     lines += ["", "[typical.signal]", *spans] if spans else []
-    if mode.mode is Mode.CONTROL:
-        lines += ["", "[start]", *_starts(log, check, mode)]
+    starts = list(_starts(log, check, mode)) if mode.mode is Mode.CONTROL else []
+    lines += ["", "[start]", *starts] if starts else []
     return "\n".join(lines) + "\n"
 
 
@@ -92,6 +97,8 @@ def signal_name(match: Match) -> str:
 def compared(match: Match, mode: Chosen) -> bool:
     """Whether the mode predicts it."""
     if match.spot.quantity is Quantity.SENSOR:
+        return True
+    if match.spot.quantity is Quantity.EFFORT and match.spot.joint in mode.imposed:
         return True
     if match.spot.name in mode.imposed:
         return False
@@ -144,6 +151,8 @@ def _signal(group: list[Match], mode: Chosen) -> str:
     keys["unit"] = _quoted(first.unit if known and not first.electrical else first.spot.unit)
     if first.scale != 1.0:
         keys["scale"] = f"{first.scale:g}"
+    if first.column in mode.homes:
+        keys["offset"] = f"{mode.homes[first.column][0]:.7g}"
     if first.spot.quantity in (Quantity.POSITION, Quantity.SPEED):
         keys["joint"] = _quoted(first.spot.name)
         if first.spot.quantity is Quantity.SPEED:
@@ -151,7 +160,11 @@ def _signal(group: list[Match], mode: Chosen) -> str:
     else:
         kind = "actuator" if first.spot.quantity is Quantity.EFFORT else "sensor"
         keys[kind] = _quoted(first.spot.name)
+    if first.spot.joint and first.spot.joint in mode.imposed:
+        del keys["actuator"]  # [compare] says it: here it would be fed in
     reasons = list(first.reasons) + ([] if first.told else [f"unit {first.unit} is a guess"])
+    if first.column in mode.homes:
+        reasons.append(mode.homes[first.column][1])
     if compared(first, mode):
         keys["noise"] = f"{max(mode.noise[m.column][0] for m in group):.2g}"
         reasons.append(f"noise: {mode.noise[first.column][1]}")
