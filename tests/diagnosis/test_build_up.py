@@ -107,5 +107,8 @@ def test_a_diagnosis_without_time_ends_with_a_verdict_and_says_what_it_left_out(
     verdict = diagnose(PLANT, [measured(1)], held_out=[measured(2)], settings=hurried)
     assert verdict.verdict in (Kind.PARTIAL, Kind.UNKNOWN)
     assert "pairs of causes" in verdict.basis.left_out
+    assert "some sizes of single causes" in verdict.basis.left_out
+    unhurried = diagnose(PLANT, [measured(1)], settings=FOUR)
+    assert "some sizes of single causes" not in unhurried.basis.left_out
     assert verdict.statistics.effect_threshold > 0.0
     assert any("No time was left for" in text for text in basis_sentences(verdict))

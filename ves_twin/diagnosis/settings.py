@@ -30,7 +30,8 @@ class Settings:
         seed: of the null distribution.
         causes: that may be named together; beyond two only on held-out recordings.
         rate: of the analysis grid [Hz].
-        sparse: whether banks are built with fewer runs, as a machine of many parameters needs.
+        sparse: whether banks are built with fewer runs, and rough fits go on with what they have,
+            as a machine of many parameters needs.
         laws: whether a law is looked for where no cause explains the record, and the plant can
             have laws; None where runs are cheap.
         minutes: that a diagnosis may take, of processor time in one process, of the clock in
