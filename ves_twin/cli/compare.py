@@ -81,9 +81,9 @@ def _compare(arguments: argparse.Namespace) -> Comparison:
 def _text(comparison: Comparison, folder: Path) -> str:
     from ves_twin.data.quality.check import Grade
     from ves_twin.report.comparison.words import (
-        FED_IN,
         cost_sentence,
         envelope_sentence,
+        fed_words,
         gap_sentence,
         place_sentence,
         rests_on,
@@ -94,7 +94,7 @@ def _text(comparison: Comparison, folder: Path) -> str:
     lines = []
     for r in comparison.recordings:
         lines += [f"{r.name}: plant {r.plant} {r.plant_hash}, against the {r.basis.value}"]
-        lines += [f"  Fed in: {FED_IN[r.mode]}"]
+        lines += [f"  Fed in: {fed_words(r)}"]
         lines += [f"  {trust_sentence(r)}"]
         lines += [f"    {c.name}: {c.message}" for c in r.checks if c.grade is Grade.FAILED]
         lines += [f"  {gap_sentence(r)}"]

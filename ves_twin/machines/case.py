@@ -66,6 +66,11 @@ class Case(ABC):
         return self.recording.info.log == POSES
 
     @property
+    def imposed(self) -> tuple[str, ...]:
+        """Joints that move as recorded while others are integrated."""
+        return ()
+
+    @property
     @abstractmethod
     def machine(self) -> str:
         """Name of the machine."""

@@ -185,6 +185,7 @@ def _compared(
         slow_below=0.5 * one.rate,
         poses=one.poses,
         traces=Traces(one.offset + time, measured, expected),
+        imposed=one.imposed,
     )
 
 

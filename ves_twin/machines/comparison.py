@@ -72,6 +72,7 @@ class RecordingComparison:
         slow_below: highest frequency of the analysis grid [Hz].
         poses: whether rows are poses at rest and times their numbers.
         traces: the rows behind it.
+        imposed: joints that moved as recorded while others were integrated.
     """
 
     name: str
@@ -91,6 +92,7 @@ class RecordingComparison:
     slow_below: float
     poses: bool
     traces: Traces
+    imposed: tuple[str, ...] = ()
 
     @property
     def quality(self) -> Grade:
@@ -130,6 +132,7 @@ class RecordingComparison:
             "plant_hash": self.plant_hash,
             "made_by": self.made_by,
             "mode": self.mode,
+            "imposed": list(self.imposed),
             "slow_below": self.slow_below,
             "absent": list(self.absent),
             "notes": list(self.notes),

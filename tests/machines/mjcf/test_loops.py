@@ -8,9 +8,12 @@ import mujoco
 import numpy as np
 import pytest
 
+from ves_twin.machines.compare import compare
+from ves_twin.machines.load import open_machine
 from ves_twin.machines.mjcf.draft.closed_chain import closed_chain
 from ves_twin.machines.mjcf.draft.draft import draft
 from ves_twin.machines.mjcf.loops import CLOSED, assemble, dense_copy, loop_rows
+from ves_twin.report.comparison.words import fed_words
 
 CRANK, ROD, HOME, MASS = 0.1, 0.3, np.pi / 3.0, 2.0
 """Lengths [m], the crank's angle in the model [rad], the piston's mass [kg]."""
@@ -120,3 +123,7 @@ def test_a_draft_lets_the_drives_of_a_parallel_machine_move_and_compares_their_e
     if home < 1.0:  # what the model says; else where the log begins
         assert length.get("offset", 0.0) == pytest.approx(-1e3 * home, abs=1e-3)
     assert found.explained["drive.effort"] > 0.98
+    (tmp_path / "my.toml").write_text(found.text)
+    machine = open_machine(str(tmp_path / "my.toml"))
+    (one,) = compare([machine.read(str(log))], machine, patience=0.0).recordings
+    assert fed_words(one) == "piston moved as recorded, all else integrated"

@@ -70,6 +70,11 @@ class MjcfCase(Case):
         return self.forward.leaders
 
     @property
+    def imposed(self) -> tuple[str, ...]:
+        """Those of the machine's file."""
+        return self.forward.rig.description.drive.imposed
+
+    @property
     def rate(self) -> float:
         """Of the machine's file."""
         return self.forward.rig.description.rate

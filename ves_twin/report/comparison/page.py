@@ -16,11 +16,11 @@ from ves_twin.report.comparison.pictures import (
     residuals_figure,
 )
 from ves_twin.report.comparison.words import (
-    FED_IN,
     HELD_AGAINST,
     cost_sentence,
     envelope_sentence,
     excess_words,
+    fed_words,
     gap_sentence,
     place_sentence,
     rests_on,
@@ -66,7 +66,7 @@ def _answer(recording: RecordingComparison, name: str, several: bool) -> Html:
     )
     what = (
         f"{recording.name}: {span}{made}, against {HELD_AGAINST[recording.basis]};"
-        f" {FED_IN[recording.mode]}; plant {recording.plant} ({recording.plant_hash})."
+        f" {fed_words(recording)}; plant {recording.plant} ({recording.plant_hash})."
     )
     loud = bool(recording.beyond_noise)
     parts = [

@@ -34,6 +34,13 @@ FED_IN = {
 """How the simulation was fed, by mode."""
 
 
+def fed_words(recording: RecordingComparison) -> str:
+    """How the simulation was fed."""
+    if recording.imposed:
+        return f"{', '.join(recording.imposed)} moved as recorded, all else integrated"
+    return FED_IN[recording.mode]
+
+
 def trust_sentence(recording: RecordingComparison) -> str:
     """Whether the data can be trusted."""
     failed = [c for c in recording.checks if c.grade is Grade.FAILED]
