@@ -1,5 +1,7 @@
 """What is chosen for a proof: worth no less than what is hidden, and no cause in another's place."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from linear import KINDS, Known, Linear, Narrow, drawn, halves
@@ -42,6 +44,23 @@ def test_plain_errors_by_products_are_those_of_the_columns():
         left = regression._plainly(*regression.design(chosen))
         direct = float(np.sum(np.log(regression.half.rms(left))))
         assert regression.plain_error(chosen) == pytest.approx(direct, abs=1e-5)
+
+
+def test_what_trials_take_by_products_is_what_fits_of_their_columns_leave():
+    """Under one discrepancy: chi^2, amplitudes' priors in it, with a trial and without."""
+    regression = halves(PLANT, {"viscous@a:size": 0.6, "coulomb@b:size": 0.5}, 3).regression
+    fit = regression.fit([2])
+
+    def left(chosen):
+        found = replace(regression).solve(chosen, fit.whitening)  # another one, without products
+        whole = fit.whitening.apply(found.residual.astype(np.float32))
+        return found, float(whole @ whole + found.shares @ found.shares)
+
+    gains = regression.gains(fit, regression.rest([2]))
+    for n in (0, 5, 9):
+        apart, (found, after) = regression.solve([2, n], fit.whitening), left([2, n])
+        assert apart.shares == pytest.approx(found.shares, rel=1e-4, abs=1e-5)
+        assert gains.of(n) == pytest.approx(left([2])[1] - after, rel=1e-3, abs=1e-2)
 
 
 def test_a_cause_far_beyond_its_range_is_not_chosen_in_the_place_of_another():

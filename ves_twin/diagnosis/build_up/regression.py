@@ -11,6 +11,7 @@ import numpy as np
 
 from ves_twin.core.types import BoolArray, FloatArray, IntArray, SingleArray
 from ves_twin.diagnosis.build_up.discrepancy import discrepancy
+from ves_twin.diagnosis.build_up.products import Products
 from ves_twin.diagnosis.build_up.trial_columns import TrialColumns
 from ves_twin.diagnosis.build_up.trials import Trial
 from ves_twin.diagnosis.runs import Runs
@@ -219,10 +220,14 @@ class Regression:
     def solve(self, chosen: Sequence[int], whitening: Whitening) -> LinearFit:
         """Amplitudes under a given discrepancy."""
         columns, scale = self.design(chosen)
-        design = self.whitened(whitening, columns) * scale
-        target = whitening.apply(self.half.target.astype(np.float32))
-        hessian = design.T @ design + np.eye(len(scale))
-        gradient = design.T @ target
+        if self._under and self._under[0].whitening is whitening:
+            at = self._at(chosen)
+            hessian, gradient = self._under[0].of(at, at, scale, scale), self._under[0].cross[at]
+            hessian, gradient = hessian + np.eye(len(scale)), scale * gradient
+        else:
+            design = self.whitened(whitening, columns) * scale
+            hessian = design.T @ design + np.eye(len(scale))
+            gradient = design.T @ whitening.apply(self.half.target.astype(np.float32))
         shares = np.asarray(np.linalg.solve(hessian, gradient), float)
         residual = self.half.target - np.tensordot(shares * scale, columns, axes=1)
         samples = float(np.sum(whitening.freedom))
@@ -241,9 +246,8 @@ class Regression:
             prior: weight of the squares of amplitudes in their prior sd.
         """
         gram, cross, power = self._products
-        shared = np.arange(len(self.half.shared) + len(self.half.own))
-        at = np.concatenate([shared, *(self._columns[n] for n in chosen)]).astype(int)
-        scale = np.concatenate([np.ones(len(shared)), *(self.prior[n] for n in chosen)])
+        at, nuisances = self._at(chosen), len(self.half.nuisances)
+        scale = np.concatenate([np.ones(nuisances), *(self.prior[n] for n in chosen)])
         inner = gram[:, at[:, None], at] * np.outer(scale, scale)
         slope = cross[:, at] * scale
         weights = np.ones(len(power)) if weights is None else weights
@@ -319,19 +323,37 @@ class Regression:
 
     def gains(self, fit: LinearFit, others: Sequence[int]) -> Gains:
         """Chi^2 that each of other trials would take beside a fit, under its discrepancy."""
-        columns, scale = self.design(fit.chosen)
-        inside = self.whitened(fit.whitening, columns) * scale
-        fresh = np.concatenate(self.half.columns.of(others))
+        under = self._products_under(fit.whitening)
+        inside = self._at(fit.chosen)
+        outside = np.concatenate([self._columns[n] for n in others])
         weight = np.concatenate([self.prior[n] for n in others])
-        outside = self.whitened(fit.whitening, fresh) * weight
-        left = fit.whitening.apply(fit.residual.astype(np.float32))
-        cross = outside.T @ inside
-        gram = outside.T @ outside - cross @ np.linalg.solve(fit.hessian, cross.T)
-        slope = outside.T @ left  # the fit itself is at its optimum
+        cross = under.of(outside, inside, weight, fit.scale)
+        gram = under.of(outside, outside, weight, weight)
+        gram -= cross @ np.linalg.solve(fit.hessian, cross.T)
+        slope = weight * under.cross[outside] - cross @ fit.shares
         ends = np.cumsum([0, *(self.trials[n].width for n in others)])
         where = {n: np.arange(ends[k], ends[k + 1]) for k, n in enumerate(others)}
         low, high = (np.concatenate([self.limits[n][k] for n in others]) for k in (0, 1))
         return Gains(gram, slope, where, low, high)
+
+    def _at(self, chosen: Sequence[int]) -> IntArray:
+        """Where nuisances and chosen trials stand among all columns."""
+        nuisances = np.arange(len(self.half.nuisances))
+        return np.concatenate([nuisances, *(self._columns[n] for n in chosen)]).astype(int)
+
+    @cached_property
+    def _under(self) -> list[Products]:
+        """Products under the discrepancy that was asked for last; none at first."""
+        return []
+
+    def _products_under(self, whitening: Whitening) -> Products:
+        """Of all columns: an exchange tries many choices under one discrepancy."""
+        if not (self._under and self._under[0].whitening is whitening):
+            every = [self.half.nuisances, *self.half.columns.of(range(len(self.trials)))]
+            rows = whitening.apply(np.concatenate(every))
+            target = whitening.apply(self.half.target.astype(np.float32))
+            self._under[:] = [Products(whitening, rows @ rows.T, rows @ target)]
+        return self._under[0]
 
 
 @dataclass(frozen=True)
