@@ -9,11 +9,13 @@ import pytest
 from toy import QUICK, Toy, programme, record, shape
 
 from ves_twin.core.recording.recording import POSES
+from ves_twin.diagnosis.build_up.result import UNFINISHED
 from ves_twin.diagnosis.diagnose import diagnose
 from ves_twin.diagnosis.forward import Excitation, Hypothesis
 from ves_twin.diagnosis.runs import Runs
 from ves_twin.diagnosis.verdict import Kind
 from ves_twin.diagnosis.whitening import whitening_declared
+from ves_twin.report.diagnosis.answer import headline
 from ves_twin.report.diagnosis.basis import basis_sentences
 
 PLANT = Toy().without("ripple")
@@ -107,6 +109,9 @@ def test_a_diagnosis_without_time_ends_with_a_verdict_and_says_what_it_left_out(
     verdict = diagnose(PLANT, [measured(1)], held_out=[measured(2)], settings=hurried)
     assert verdict.verdict in (Kind.PARTIAL, Kind.UNKNOWN)
     assert "pairs of causes" in verdict.basis.left_out
+    assert verdict.proved
+    assert UNFINISHED in verdict.basis.left_out
+    assert "they may be far off" in headline(verdict)
     assert "some sizes of single causes" in verdict.basis.left_out
     unhurried = diagnose(PLANT, [measured(1)], settings=FOUR)
     assert "some sizes of single causes" not in unhurried.basis.left_out

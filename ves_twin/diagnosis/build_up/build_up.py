@@ -20,7 +20,7 @@ from ves_twin.diagnosis.build_up.offer import Offer
 from ves_twin.diagnosis.build_up.proof import Proof, prove
 from ves_twin.diagnosis.build_up.regression import Regression
 from ves_twin.diagnosis.build_up.report import report_of
-from ves_twin.diagnosis.build_up.result import BuildUp
+from ves_twin.diagnosis.build_up.result import UNFINISHED, BuildUp
 from ves_twin.diagnosis.build_up.select import Selector
 from ves_twin.diagnosis.build_up.simpler import simpler
 from ves_twin.diagnosis.build_up.sizes import half_widths
@@ -69,7 +69,8 @@ def build_up(desk: FitContext, start: Explanation, fitted: Dataset, held: Datase
     builder = Builder(desk, fitted, held)
     desk.progress(0.0, "building up")
     found = builder.best()
-    halves, point = found.halves, found.point
+    halves, point, budget = found.halves, found.point, builder.fitted.runs.budget
+    budget.stage(1.0)
     proof = _counted(found)
     if not proof.tested:
         return None
@@ -78,6 +79,8 @@ def build_up(desk: FitContext, start: Explanation, fitted: Dataset, held: Datase
     proof, final = _at_work(halves, simpler(proof), point, evidence, held, found.fit)
     proof, final = within_range(proof, final, point, evidence)
     before = in_full(halves.regression, (), point, evidence)
+    if budget.over:
+        budget.leave_out(UNFINISHED)
     there = held.runs.one(carried_point(fitted.runs, held.runs, final.shift))
     ends = (
         np.asarray(bare_residual(evidence, final), float),

@@ -9,6 +9,10 @@ TOGETHER = " + "
 """Between names of causes that only together do what another one does."""
 
 
+UNFINISHED = "a full fit of what is proved"
+"""What is left out where the time ends within it."""
+
+
 @dataclass(frozen=True)
 class Size:
     """A parameter's value and interval, counted from nominal; the interval counts model error."""

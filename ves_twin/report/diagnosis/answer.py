@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from ves_twin.core.quantity import percent
+from ves_twin.diagnosis.build_up.result import UNFINISHED
 from ves_twin.diagnosis.disagreement import disagree
 from ves_twin.diagnosis.verdict import Cause, Kind, Verdict
 from ves_twin.report.diagnosis.basis import gain_words, taken_share
@@ -22,6 +23,9 @@ from ves_twin.report.diagnosis.words import (
 
 STRANGER = 0.5
 """Share of a channel's own spread that stays unexplained where the model is hardly this machine."""
+
+HURRIED = " Time ended within the fit of sizes (--minutes): they may be far off, intervals too."
+"""Beside names whose sizes are what columns at the begin say."""
 
 
 def headline(verdict: Verdict) -> str:
@@ -57,10 +61,11 @@ def confidence_sentence(verdict: Verdict) -> str:
             return _beyond(verdict)
         case _ if verdict.proved:
             rate = percent(verdict.false_discovery_rate)
+            hurried = HURRIED if UNFINISHED in verdict.basis.left_out else ""
             return (
                 f"{verdict.put_to_proof} {'was' if verdict.put_to_proof == 1 else 'were'} tested on"
                 f" held-out data; of those accepted, at most {rate} are expected to be false. Only"
-                " firm names are the mechanism."
+                f" firm names are the mechanism.{hurried}"
             )
         case _:
             return _doubt(verdict)
