@@ -12,6 +12,7 @@ from ves_twin.core.recording.recording import POSES
 from ves_twin.diagnosis.build_up.result import UNFINISHED
 from ves_twin.diagnosis.diagnose import diagnose
 from ves_twin.diagnosis.forward import Excitation, Hypothesis
+from ves_twin.diagnosis.rungs import FEWER
 from ves_twin.diagnosis.runs import Runs
 from ves_twin.diagnosis.verdict import Kind
 from ves_twin.diagnosis.whitening import whitening_declared
@@ -112,8 +113,8 @@ def test_a_diagnosis_without_time_ends_with_a_verdict_and_says_what_it_left_out(
     assert verdict.proved
     assert UNFINISHED in verdict.basis.left_out
     assert "they may be far off" in headline(verdict)
-    assert "some sizes of single causes" in verdict.basis.left_out
+    assert FEWER in verdict.basis.left_out
     unhurried = diagnose(PLANT, [measured(1)], settings=FOUR)
-    assert "some sizes of single causes" not in unhurried.basis.left_out
+    assert FEWER not in unhurried.basis.left_out
     assert verdict.statistics.effect_threshold > 0.0
     assert any("No time was left for" in text for text in basis_sentences(verdict))

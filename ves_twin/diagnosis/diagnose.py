@@ -27,6 +27,7 @@ from ves_twin.diagnosis.likeness import check_likeness
 from ves_twin.diagnosis.next_experiment import separations
 from ves_twin.diagnosis.null import cached_thresholds
 from ves_twin.diagnosis.preprocess import Dataset, preprocess
+from ves_twin.diagnosis.rungs import FEWER
 from ves_twin.diagnosis.runs import Progress, Runs, silent
 from ves_twin.diagnosis.settings import Settings
 from ves_twin.diagnosis.signature_library import SignatureLibrary, build_bank, cached_bank
@@ -257,7 +258,7 @@ def _bank(seen: Dataset, settings: Settings, progress: Progress) -> SignatureLib
     runs = seen.runs
     fewer = settings.sparse or _is_dear(runs, settings)
     if fewer and not settings.sparse:
-        runs.budget.leave_out("some sizes of single causes")
+        runs.budget.leave_out(FEWER)
 
     def build() -> SignatureLibrary:
         check_likeness(seen, runs.one(runs.origin))  # before minutes of simulation

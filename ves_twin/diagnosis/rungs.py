@@ -8,6 +8,9 @@ from ves_twin.core.types import FloatArray
 from ves_twin.diagnosis.forward import Hypothesis
 from ves_twin.diagnosis.linearise import MANY
 
+FEWER = "some sizes of single causes"
+"""What is left out where the runs of a machine are dear."""
+
 
 def rungs(hypothesis: Hypothesis, crowd: int) -> tuple[FloatArray, FloatArray]:
     """Departures to simulate, and how the traces of all sizes follow from theirs.

@@ -13,6 +13,7 @@ from ves_twin.core.workers import Workers
 from ves_twin.diagnosis.build_up import best_proved as best_proved_module
 from ves_twin.diagnosis.build_up import in_full as in_full_module
 from ves_twin.diagnosis.build_up import proof as proof_module
+from ves_twin.diagnosis.build_up import trials as trials_module
 from ves_twin.diagnosis.build_up.best_proved import best_proved
 from ves_twin.diagnosis.build_up.build_up import _counted
 from ves_twin.diagnosis.build_up.builder import Builder
@@ -21,7 +22,7 @@ from ves_twin.diagnosis.build_up.offer import least_left
 from ves_twin.diagnosis.build_up.plain_selector import PlainSelector
 from ves_twin.diagnosis.build_up.proof import prove
 from ves_twin.diagnosis.build_up.select import Selector
-from ves_twin.diagnosis.build_up.trials import Trial
+from ves_twin.diagnosis.build_up.trials import Library, Trial, columns_of, trials_at
 from ves_twin.diagnosis.evidence import Evidence
 from ves_twin.diagnosis.forward import Excitation
 from ves_twin.diagnosis.preprocess import Dataset
@@ -282,19 +283,47 @@ def test_what_a_longer_choice_loses_is_taken_from_the_way(forward, monkeypatch):
 def test_a_cause_that_bends_at_first_is_not_probed_again(forward):
     """Its bank sizes are all there; what was linear is probed, and may be linear there, too."""
     builder = builder_of(forward)
-    origin = builder.fitted.runs.origin
-    first = builder.halves(origin, ()).regression.trials
+    runs = builder.fitted.runs
+    first = builder.halves(runs.origin, ()).regression.trials
+    told = replace(builder, told=Library.after(forward.hypotheses, first, fewer=False))
     bent = {trial.cause.effect for trial in first if trial.bent}
     assert "actuator_deadband" in bent
     assert "actuator_gain" not in bent
     band = next(trial for trial in first if trial.cause.effect == "actuator_deadband")
-    point = builder.fitted.runs.depart(
-        origin, builder.fitted.runs.indices(band.cause), np.array(band.sizes)
-    )
-    labels = frozenset(trial.cause.label for trial in first if trial.bent)
-    told = replace(builder, bent=labels).halves(point, (band,)).regression.trials
+    point = runs.depart(runs.origin, runs.indices(band.cause), np.array(band.sizes))
+    found = told.halves(point, (band,)).regression.trials
     plain = builder.halves(point, (band,)).regression.trials
     every = {trial for trial in plain if trial.cause.effect in bent}
-    assert every <= set(told)
-    assert len(told) == len(set(told))
-    assert not any(trial.bent for trial in told if trial.cause.effect == "actuator_gain")
+    assert every <= set(found)
+    assert len(found) == len(set(found))
+    assert not any(trial.bent for trial in found if trial.cause.effect == "actuator_gain")
+
+
+def test_a_cause_that_was_linear_costs_one_run_where_no_bent_one_is_at_work(forward, monkeypatch):
+    runs = builder_of(forward).fitted.runs
+    asked: list[int] = []
+
+    def counted(runs, point, trials, *more):
+        asked.append(len(trials))
+        return columns_of(runs, point, trials, *more)
+
+    monkeypatch.setattr(trials_module, "columns_of", counted)
+    first, _ = trials_at(runs, runs.origin, forward.hypotheses)
+    told = Library.after(forward.hypotheses, first, fewer=False)
+    gain = next(trial for trial in first if trial.cause.label in told.straight)
+    point = runs.depart(runs.origin, runs.indices(gain.cause), np.array(gain.sizes))
+    again, _ = trials_at(runs, point, told)
+    assert {t for t in again if not t.bent} == {t for t in first if not t.bent}
+    assert asked[0] == 3 * len(forward.hypotheses)
+    assert asked[2] == len(told.straight)
+    band = next(trial for trial in first if trial.cause.label in told.bent)
+    trials_at(runs, point, told, (band,))
+    assert asked[4] == 3 * len(told.straight)
+
+
+def test_where_runs_are_dear_a_bent_cause_has_fewer_sizes(forward):
+    runs = builder_of(forward).fitted.runs
+    every, _ = trials_at(runs, runs.origin, Library(forward.hypotheses))
+    fewer, _ = trials_at(runs, runs.origin, Library(forward.hypotheses, fewer=True))
+    assert {t for t in fewer if t.bent} < {t for t in every if t.bent}
+    assert {t.cause for t in fewer} == {t.cause for t in every}

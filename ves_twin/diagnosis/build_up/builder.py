@@ -16,11 +16,12 @@ from ves_twin.diagnosis.build_up.offer import Offer, preferred
 from ves_twin.diagnosis.build_up.plain_selector import PlainSelector
 from ves_twin.diagnosis.build_up.proof import prove
 from ves_twin.diagnosis.build_up.select import Selector
-from ves_twin.diagnosis.build_up.trials import Trial
+from ves_twin.diagnosis.build_up.trials import Library, Trial
 from ves_twin.diagnosis.evidence import Evidence
 from ves_twin.diagnosis.fit_context import FitContext
 from ves_twin.diagnosis.preprocess import Dataset
 from ves_twin.diagnosis.refine import Fit, bare_residual
+from ves_twin.diagnosis.rungs import FEWER
 
 Way = type[Selector] | type[PlainSelector]
 
@@ -53,20 +54,24 @@ class Builder:
         desk: the record before any cause.
         fitted, held: its halves.
         barred: labels of causes that held-out rows spoke against.
-        bent: labels of causes that were not linear before any was at work.
+        told: what the library showed before any cause was at work; None: nothing yet.
     """
 
     desk: FitContext
     fitted: Dataset
     held: Dataset
     barred: frozenset[str] = frozenset()
-    bent: frozenset[str] = frozenset()
+    told: Library | None = None
+
+    @property
+    def _dear(self) -> bool:
+        """Whether runs are so dear that not all sizes of causes are simulated."""
+        return FEWER in self.fitted.runs.budget.left_out
 
     def halves(self, point: FloatArray, present: Sequence[Trial]) -> Halves:
         """Both halves, linear about a point where some trials are at work."""
-        causes = self.desk.first.screen.bank.hypotheses
-        data = (self.fitted, self.held)
-        both = halves_at(*data, point, causes, present, self.bent, self.desk.progress)
+        library = self.told or Library(self.desk.first.screen.bank.hypotheses, fewer=self._dear)
+        both = halves_at(self.fitted, self.held, point, library, present, self.desk.progress)
         self.desk.progress(0.0, "choosing causes")
         return replace(both, regression=replace(both.regression, barred=self.barred))
 
@@ -214,8 +219,8 @@ class Builder:
         """
         origin = self.fitted.runs.origin
         halves = self.halves(origin, ())
-        trials = halves.regression.trials
-        builder = replace(self, bent=frozenset(t.cause.label for t in trials if t.bent))
+        trials, causes = halves.regression.trials, self.desk.first.screen.bank.hypotheses
+        builder = replace(self, told=Library.after(causes, trials, self._dear))
         offers = builder.offers(halves, origin)
         found, known = preferred(offers), offers[-1].known
         named = [offer for offer in offers if offer.proof.proved]

@@ -10,7 +10,7 @@ import numpy as np
 from ves_twin.core.types import FloatArray, SingleArray
 from ves_twin.diagnosis.build_up.regression import Half, Regression
 from ves_twin.diagnosis.build_up.trial_columns import TrialColumns
-from ves_twin.diagnosis.build_up.trials import Trial, trials_at
+from ves_twin.diagnosis.build_up.trials import Library, Trial, trials_at
 from ves_twin.diagnosis.forward import Hypothesis
 from ves_twin.diagnosis.linearise import Linearisation, linearise
 from ves_twin.diagnosis.preprocess import Dataset
@@ -40,9 +40,8 @@ def halves_at(
     fitted: Dataset,
     held: Dataset,
     point: FloatArray,
-    causes: Sequence[Hypothesis],
+    library: Library | Sequence[Hypothesis],
     present: Sequence[Trial] = (),
-    bent: frozenset[str] = frozenset(),
     progress: Progress = silent,
 ) -> Halves:
     """Both halves, linear about a point.
@@ -51,13 +50,12 @@ def halves_at(
         fitted: recordings that sizes come from.
         held: recordings that they are judged on.
         point: departures in the fitted recordings (coordinates,).
-        causes: the library.
+        library: the causes, with what an earlier look told of them.
         present: trials that are at work at the point.
-        bent: labels of causes that are not linear elsewhere.
         progress: told how far it is.
     """
     runs = fitted.runs
-    trials, columns = trials_at(runs, point, causes, present, bent, progress)
+    trials, columns = trials_at(runs, point, library, present, progress)
     there = carried_point(runs, held.runs, point)
     same = held.runs.programmes is runs.programmes
     known = dict(enumerate(columns))

@@ -9,6 +9,7 @@ import numpy as np
 
 from ves_twin.core.types import FloatArray, SingleArray
 from ves_twin.diagnosis.forward import Hypothesis
+from ves_twin.diagnosis.rungs import rungs
 from ves_twin.diagnosis.runs import Progress, Runs, silent
 
 STRAIGHT = 0.01
@@ -57,6 +58,39 @@ class Trial:
         return np.asarray(np.array(self.sizes) * amplitudes)
 
 
+@dataclass(frozen=True)
+class Library:
+    """Causes, and what an earlier look at them told.
+
+    Attributes:
+        causes: all of them.
+        bent: labels of those that were not linear: every size has a column of its own.
+        straight: labels of those that were: one run tells each column, unless a bent one is at
+            work there, which may bend them.
+        fewer: whether bent ones have the middle or the ends of their sizes alone, where runs are
+            dear.
+    """
+
+    causes: Sequence[Hypothesis]
+    bent: frozenset[str] = frozenset()
+    straight: frozenset[str] = frozenset()
+    fewer: bool = False
+
+    @staticmethod
+    def after(causes: Sequence[Hypothesis], trials: Sequence[Trial], fewer: bool) -> Library:
+        """What trials about a point with nothing at work tell of a library."""
+        bent = frozenset(trial.cause.label for trial in trials if trial.bent)
+        straight = frozenset(trial.cause.label for trial in trials if not trial.bent)
+        return Library(causes, bent, straight, fewer)
+
+    def sizes(self, cause: Hypothesis) -> FloatArray:
+        """Departures at which a bent cause is simulated (m, parameters)."""
+        if not self.fewer:
+            return cause.departures()
+        crowd = sum(other.kind == cause.kind for other in self.causes)
+        return rungs(cause, crowd)[0]
+
+
 def columns_of(
     runs: Runs,
     point: FloatArray,
@@ -99,9 +133,8 @@ def columns_of(
 def trials_at(
     runs: Runs,
     point: FloatArray,
-    causes: Sequence[Hypothesis],
+    library: Library | Sequence[Hypothesis],
     present: Sequence[Trial] = (),
-    bent: frozenset[str] = frozenset(),
     progress: Progress = silent,
 ) -> tuple[list[Trial], list[SingleArray]]:
     """Every way each cause may act about a point, with its columns.
@@ -112,27 +145,31 @@ def trials_at(
     Args:
         runs: of the recordings.
         point: departures (coordinates,).
-        causes: the library.
+        library: the causes; what an earlier look told of them is not probed again.
         present: trials that are fitted at the point: kept as they are.
-        bent: labels of causes that are not linear elsewhere, and are not probed here.
         progress: told how far it is.
     """
-    new = [cause for cause in causes if cause.label not in bent]
-    looked = [probe for cause in new for probe in _probes(runs, cause)]
-    columns = columns_of(runs, point, looked, progress)
+    library = library if isinstance(library, Library) else Library(library)
+    new = [cause for cause in library.causes if cause.label not in library.bent]
+    straight = library.straight
+    if any(trial.cause.label in library.bent for trial in present):
+        straight = frozenset()
+    known = [cause.label in straight for cause in new]
+    looked = [_probes(runs, c)[: 1 if told else 3] for c, told in zip(new, known, strict=True)]
+    columns = columns_of(runs, point, [one for some in looked for one in some], progress)
     here = {trial.cause.label for trial in present}
     trials: list[Trial] = []
     found: list[SingleArray] = []
-    curved = [cause for cause in causes if cause.label in bent]
-    for n, cause in enumerate(new):
-        probes, shown = looked[3 * n : 3 * n + 3], columns[3 * n : 3 * n + 3]
-        linear = not cause.starts and _is_linear(probes, shown)
+    curved = [cause for cause in library.causes if cause.label in library.bent]
+    for cause, told, probes in zip(new, known, looked, strict=True):
+        shown, columns = columns[: len(probes)], columns[len(probes) :]
+        linear = told or (not cause.starts and _is_linear(probes, shown))
         if linear and cause.label not in here:
             trials.append(probes[0])
             found.append(shown[0])
         elif not linear:
             curved.append(cause)
-    sizes = [(cause, _within(runs, cause, row)) for cause in curved for row in cause.departures()]
+    sizes = [(cause, _within(runs, cause, row)) for cause in curved for row in library.sizes(cause)]
     bank = [Trial(cause, row, positive=True, bent=True) for cause, row in sizes]
     rest = list(dict.fromkeys([*bank, *present]))
     stacks = [*found, *columns_of(runs, point, rest, progress)]
