@@ -493,6 +493,15 @@ def test_numbers_of_the_model_that_the_fit_moved_are_told_beside_what_they_alone
         assert error.after_si <= error.tolerances_si <= error.before_si
 
 
+def test_what_is_left_is_told_with_the_few_signals_that_it_follows_most(proven):
+    verdict = proof_of(proven, firm=True)
+    many = {f"drive.{k}": 0.1 * k for k in range(1, 7)}
+    left = {"out.0": replace(verdict.left["out.0"], laws=many)}
+    page = diagnosis_page(replace(verdict, left=left))
+    assert "drive.6 (60 %), drive.5 (50 %), drive.4 (40 %) and 3 more" in page
+    assert "out.1 (+0.70)" in page
+
+
 def test_a_number_that_its_limit_holds_is_told_first_and_without_an_interval(proven):
     """Held at 5 sd it stands for a cause that was not found: noise alone says nothing of it."""
     sure = Estimate(3e-4, 2.9e-4, 3.1e-4, "1", 1e-4)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 
 from ves_twin.core.quantity import UNSURE, percent, quantity
 from ves_twin.diagnosis.build_up.result import TOGETHER, Left, Proved
@@ -11,7 +11,7 @@ from ves_twin.report.diagnosis.words import spoken
 from ves_twin.report.html import Html, bullets, paragraph, section, table
 
 SHOWN = 3
-"""Channels of one cause that are told: those where it takes most."""
+"""Of channels, or what one follows, those that are told: the largest."""
 
 NEAR = 3.0
 """Factor between a p and its limit up to which one stretch of time may turn it: the median of the
@@ -160,8 +160,8 @@ def _left(left: Mapping[str, Left]) -> list[Html]:
             quantity(one.rms, one.unit),
             quantity(one.noise, one.unit),
             quantity(one.memory, "s"),
-            ", ".join(f"{k} ({c:+.2f})" for k, c in one.along.items()) or UNSURE,
-            ", ".join(f"{k} ({percent(s)})" for k, s in one.laws.items()) or UNSURE,
+            _largest(one.along, "{:+.2f}".format),
+            _largest(one.laws, percent),
         )
         for name, one in left.items()
     ]
@@ -170,3 +170,10 @@ def _left(left: Mapping[str, Left]) -> list[Html]:
         " explains it. Follows: a smooth law of that signal would take this share of its square."
     )
     return [paragraph(note, "note"), table(head, rows)]
+
+
+def _largest(found: Mapping[str, float], told: Callable[[float], str]) -> str:
+    """The largest few, and how many more: what is left may follow a dozen signals alike."""
+    ranked = sorted(found.items(), key=lambda item: -abs(item[1]))
+    more = f" and {len(ranked) - SHOWN} more" if len(ranked) > SHOWN else ""
+    return ", ".join(f"{name} ({told(size)})" for name, size in ranked[:SHOWN]) + more or UNSURE
