@@ -3,10 +3,14 @@
 from __future__ import annotations
 
 import pytest
+from linear import Linear, halves
 
 from ves_twin.diagnosis.assemble_verdict import sized
+from ves_twin.diagnosis.build_up.proof import prove
+from ves_twin.diagnosis.build_up.report import report_of
 from ves_twin.diagnosis.build_up.result import BuildUp, Proved
 from ves_twin.diagnosis.verdict import Cause, Estimate
+from ves_twin.report.diagnosis.proved import standing_words
 
 ENDS = {"level": (0.0, 2.0)}
 
@@ -19,6 +23,22 @@ def test_a_size_whose_interval_reaches_the_end_of_its_range_is_not_firm(high, fi
     (told,) = sized(BuildUp((one,), 1, 0.05, 0.05, {}, {}), (cause,), ENDS)
     assert told.firm is firm
     assert told.ended is not firm
+
+
+@pytest.mark.parametrize("out_of_step", [False, True])
+def test_a_name_is_not_firm_where_its_channel_is_not_followed_at_all(out_of_step):
+    """What makes a simulation out of step smaller improves it, whatever is wrong with it."""
+    both = halves(Linear(), {"coulomb@a:size": 0.8}, 51, error=0.02)
+    labels = [trial.cause.label for trial in both.regression.trials]
+    proof = prove(both.regression, both.held, [labels.index("coulomb@a")])
+    assert proof.proved
+    left = proof.bench.residual(proof.proved)
+    if out_of_step:
+        left = left - 2.0 * both.measured
+    (one,) = report_of(both, proof, (left, left)).proved
+    assert one.unfollowed == (("torque.a",) if out_of_step else ())
+    assert one.firm is not out_of_step
+    assert ("torque.a is still not followed at all" in standing_words(one)) is out_of_step
 
 
 @pytest.mark.parametrize(("value", "firm"), [(0.0008, False), (0.0021, True)])

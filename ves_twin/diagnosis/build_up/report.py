@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from ves_twin.core.types import FloatArray
+from ves_twin.core.types import BoolArray, FloatArray, SingleArray
 from ves_twin.diagnosis.build_up.halves import Halves
 from ves_twin.diagnosis.build_up.inseparable import inseparable
 from ves_twin.diagnosis.build_up.leftover_laws import Law, by_channel, laws_left, same_motion
@@ -20,6 +20,9 @@ from ves_twin.diagnosis.build_up.stand_ins import stand_ins
 
 ALONG = 0.3
 """Correlation from which channels are said to go along with what another one leaves."""
+
+LOUD = 3.0
+"""Times the noise of a row from which what is left of a channel is no noise alone."""
 
 SHAKEN = 0.25
 """Share of a cause's amplitude from which a law of the same motion in what is left shakes its
@@ -44,7 +47,8 @@ def report_of(halves: Halves, proof: Proof, ends: tuple[FloatArray, FloatArray])
     trials = regression.trials
     together = inseparable(proof, others)
     shared = {name for one in together for name in one.names}
-    proved = [_proved(bench, proof, n, others[n], laws, left) for n in ranked]
+    lost = _unfollowed(bench.held, halves.measured, left)
+    proved = [_proved(bench, proof, n, others[n], laws, left, lost) for n in ranked]
     return BuildUp(
         proved=tuple(replace(p, firm=p.firm and p.label not in shared) for p in proved),
         tested=proof.tested,
@@ -56,8 +60,29 @@ def report_of(halves: Halves, proof: Proof, ends: tuple[FloatArray, FloatArray])
     )
 
 
+def _unfollowed(half: Half, measured: SingleArray, left: FloatArray) -> BoolArray:
+    """Channels (c,) of which more than noise is left than their own mean would leave.
+
+    A simulation that is out of step is worse than none: what stiffens or brakes it improves the
+    prediction, whatever is wrong (a satellite's mass centre, 20 times too far off).
+    """
+    runs, spread = half.runs, np.array(measured, float)
+    for rows in runs.slices:
+        mean = np.mean(spread[rows], axis=0, where=half.kept[rows])
+        spread[rows] -= np.nan_to_num(mean)
+    noise = np.array([runs.forward.channels[c].sd for c in runs.columns])
+    rms = half.rms(left)
+    return np.asarray((rms > half.rms(np.nan_to_num(spread))) & (rms > LOUD * noise))
+
+
 def _proved(
-    bench: Bench, proof: Proof, trial: int, others: Sequence[int], laws: list[Law], left: FloatArray
+    bench: Bench,
+    proof: Proof,
+    trial: int,
+    others: Sequence[int],
+    laws: list[Law],
+    left: FloatArray,
+    lost: BoolArray,
 ) -> Proved:
     trials, half = bench.regression.trials, bench.held
     change = bench.residual([n for n in proof.proved if n != trial])
@@ -76,6 +101,7 @@ def _proved(
     like = [trials[n].cause.label for n in others]
     if not like:
         like = [TOGETHER.join(trials[n].cause.label for n in spanned_by(proof, trial))]
+    unfollowed = tuple(names[c] for c in acts if lost[c])
     return Proved(
         effect=cause.effect,
         target=cause.target,
@@ -83,8 +109,9 @@ def _proved(
         p=difference.p,
         blocks=difference.blocks,
         takes={names[c]: (float(before[c]), float(after[c])) for c in acts},
-        firm=not any(like) and not ruled,
+        firm=not any(like) and not ruled and not unfollowed,
         acts_like=tuple(dict.fromkeys(filter(None, like))),
+        unfollowed=unfollowed,
     )
 
 

@@ -45,6 +45,8 @@ class Proved:
             size: it improves the prediction in the place of something else, and is not proved.
         below_row: whether it is a delay of less than a row of the recordings, which their clock
             explains as well.
+        unfollowed: channels where it acts that the extended model still predicts worse than their
+            own mean: what makes a simulation out of step smaller improves it.
     """
 
     effect: str
@@ -57,6 +59,7 @@ class Proved:
     acts_like: tuple[str, ...] = ()
     ended: bool = False
     below_row: bool = False
+    unfollowed: tuple[str, ...] = ()
 
     @property
     def label(self) -> str:
