@@ -21,6 +21,10 @@ from ves_twin.diagnosis.build_up.stand_ins import stand_ins
 ALONG = 0.3
 """Correlation from which channels are said to go along with what another one leaves."""
 
+STEADY = 0.7
+"""Rms about the mean, as a share of all of it, below which what a cause adds is mostly steady: half
+of its power. A load on a cylinder is known by the mean, whatever the force does about it."""
+
 LOUD = 3.0
 """Times the noise of a row from which what is left of a channel is no noise alone."""
 
@@ -61,18 +65,24 @@ def report_of(halves: Halves, proof: Proof, ends: tuple[FloatArray, FloatArray])
 
 
 def _unfollowed(half: Half, measured: SingleArray, left: FloatArray) -> BoolArray:
-    """Channels (c,) of which more than noise is left than their own mean would leave.
+    """Channels (c,) of whose swings about their mean more than noise, and than they, is left.
 
     A simulation that is out of step is worse than none: what stiffens or brakes it improves the
     prediction, whatever is wrong (a satellite's mass centre, 20 times too far off).
     """
-    runs, spread = half.runs, np.array(measured, float)
-    for rows in runs.slices:
-        mean = np.mean(spread[rows], axis=0, where=half.kept[rows])
-        spread[rows] -= np.nan_to_num(mean)
+    runs = half.runs
     noise = np.array([runs.forward.channels[c].sd for c in runs.columns])
-    rms = half.rms(left)
-    return np.asarray((rms > half.rms(np.nan_to_num(spread))) & (rms > LOUD * noise))
+    rms = half.rms(_swings(half, left))
+    return np.asarray((rms > half.rms(_swings(half, measured))) & (rms > LOUD * noise))
+
+
+def _swings(half: Half, rows: FloatArray | SingleArray) -> FloatArray:
+    """Rows (rows, c) of each recording about their mean."""
+    found: FloatArray = np.nan_to_num(np.array(rows, float))
+    for part in half.runs.slices:
+        count = np.maximum(half.kept[part].sum(axis=0), 1)
+        found[part] -= np.sum(found[part], axis=0, where=half.kept[part]) / count
+    return found
 
 
 def _proved(
@@ -85,8 +95,9 @@ def _proved(
     lost: BoolArray,
 ) -> Proved:
     trials, half = bench.regression.trials, bench.held
-    change = bench.residual([n for n in proof.proved if n != trial])
-    without = left + change - bench.residual(proof.proved)
+    rest = bench.residual([n for n in proof.proved if n != trial])
+    change = rest - bench.residual(proof.proved)
+    without = left + change
     before, after = half.rms(without), half.rms(left)
     names = _names(half)
     acts = np.flatnonzero(bench.acts(trial))
@@ -101,7 +112,8 @@ def _proved(
     like = [trials[n].cause.label for n in others]
     if not like:
         like = [TOGETHER.join(trials[n].cause.label for n in spanned_by(proof, trial))]
-    unfollowed = tuple(names[c] for c in acts if lost[c])
+    swings = half.rms(_swings(half, change)) > STEADY * half.rms(change)
+    unfollowed = tuple(names[c] for c in acts if lost[c] and swings[c])
     return Proved(
         effect=cause.effect,
         target=cause.target,
