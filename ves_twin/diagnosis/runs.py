@@ -176,6 +176,7 @@ class Runs:
         found = self._columns.get(key)
         if found is None:
             found = compute()
+            found.setflags(write=False)
             self._columns.keep(key, found)
         return found
 
