@@ -38,6 +38,9 @@ AFFORDABLE = 0.1
 """Share of the time of a diagnosis that simulated rigs may take: thresholds of linear ones are the
 same but for BENDS."""
 
+FEW = 3
+"""Rigs that tell what one takes: one alone may be quick (a platform: below 2 s, the next ones 10)."""
+
 LINEAR = "simulated rigs in order (thresholds are of linear ones)"
 """What is left out where they would take too long."""
 
@@ -166,14 +169,16 @@ def _in_time(
 ) -> list[tuple[float, float]] | None:
     """Simulated rigs; None where all of them would take more than AFFORDABLE of the time.
 
-    The first one tells: batches of several processes come back when most of the time is gone.
+    The first FEW tell: batches of several processes come back when most of the time is gone.
     """
     budget, workers = study.bank.base.runs.budget, study.bank.base.runs.workers
-    begun, drawn = budget.spent, study.batch(seeds[:1])
-    if (budget.spent - begun) * len(seeds) > AFFORDABLE * workers.count:
-        budget.leave_out(LINEAR)
-        return None
-    for one in _draws(study, seeds[1:], progress):
+    begun, drawn = budget.spent, list[tuple[float, float]]()
+    for seed in seeds[:FEW]:
+        drawn += study.batch([seed])
+        if (budget.spent - begun) * len(seeds) > AFFORDABLE * workers.count * len(drawn):
+            budget.leave_out(LINEAR)
+            return None
+    for one in _draws(study, seeds[FEW:], progress):
         drawn.append(one)
         if (budget.spent - begun) * len(seeds) > AFFORDABLE * len(drawn):
             budget.leave_out(LINEAR)
