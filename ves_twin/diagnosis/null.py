@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from functools import cached_property
+from itertools import chain
 
 import numpy as np
 from scipy.stats import chi2
@@ -39,7 +41,7 @@ AFFORDABLE = 0.1
 same but for BENDS."""
 
 FEW = 3
-"""Rigs that tell what one takes: one alone may be quick (a platform: below 2 s, the next ones 10)."""
+"""Rigs that tell what one takes: one alone may be quick by chance."""
 
 LINEAR = "simulated rigs in order (thresholds are of linear ones)"
 """What is left out where they would take too long."""
@@ -125,7 +127,7 @@ def null_thresholds(
 
 @dataclass(frozen=True)
 class _NullStudy:
-    """What one null rig is drawn from and judged by."""
+    """What one null rig is drawn from and judged by; none is begun beyond a share of the time."""
 
     bank: SignatureLibrary
     whitening: Whitening
@@ -133,6 +135,7 @@ class _NullStudy:
     misfit: float
     alpha: float
     simulated: bool
+    until: float = math.inf
 
     def draw(self, seed: np.random.SeedSequence) -> tuple[float, float]:
         runs, rng = self.bank.base.runs, np.random.default_rng(seed)
@@ -161,7 +164,8 @@ class _NullStudy:
         return np.asarray(base.prediction + np.tensordot(share, base.columns, axes=1))
 
     def batch(self, seeds: list[np.random.SeedSequence]) -> list[tuple[float, float]]:
-        return [self.draw(seed) for seed in seeds]
+        budget = self.bank.base.runs.budget
+        return [self.draw(seed) for seed in seeds if budget.spent < self.until]
 
 
 def _in_time(
@@ -173,17 +177,18 @@ def _in_time(
     """
     budget, workers = study.bank.base.runs.budget, study.bank.base.runs.workers
     begun, drawn = budget.spent, list[tuple[float, float]]()
-    for seed in seeds[:FEW]:
-        drawn += study.batch([seed])
-        if (budget.spent - begun) * len(seeds) > AFFORDABLE * workers.count * len(drawn):
-            budget.leave_out(LINEAR)
-            return None
-    for one in _draws(study, seeds[FEW:], progress):
+    study = replace(study, until=begun + AFFORDABLE)
+    first = ((one, workers.count) for seed in seeds[:FEW] for one in study.batch([seed]))
+    rest = ((one, 1) for one in _draws(study, seeds[FEW:], progress))
+    for one, share in chain(first, rest):
         drawn.append(one)
-        if (budget.spent - begun) * len(seeds) > AFFORDABLE * len(drawn):
-            budget.leave_out(LINEAR)
-            return None
-    return drawn
+        if (budget.spent - begun) * len(seeds) > AFFORDABLE * share * len(drawn):
+            break
+    else:
+        if len(drawn) == len(seeds):
+            return drawn
+    budget.leave_out(LINEAR)
+    return None
 
 
 def _draws(
