@@ -178,6 +178,7 @@ def _in_time(
     budget, workers = study.bank.base.runs.budget, study.bank.base.runs.workers
     begun, drawn = budget.spent, list[tuple[float, float]]()
     study = replace(study, until=begun + AFFORDABLE)
+    progress(0.0, "null distribution")
     first = ((one, workers.count) for seed in seeds[:FEW] for one in study.batch([seed]))
     rest = ((one, 1) for one in _draws(study, seeds[FEW:], progress))
     for one, share in chain(first, rest):
