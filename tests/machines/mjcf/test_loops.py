@@ -88,6 +88,16 @@ def test_loops_close_about_a_joint_that_is_told_in_place_and_speed(turn):
     assert np.max(np.abs(rows @ data.qvel)) < 1e-9
 
 
+def test_loops_that_cannot_close_stay_as_they_are():
+    machine = model()
+    data = mujoco.MjData(machine)
+    piston = machine.joint("piston")
+    data.qpos[piston.qposadr[0]] = 1.0  # a metre off, where crank and rod reach 0.4
+    before = data.qpos.copy()
+    assemble(machine, data, np.array([piston.dofadr[0]]))
+    assert np.array_equal(data.qpos, before)
+
+
 def logged(folder, home: float):
     """The piston shaken by hand, its length told from somewhere."""
     rng = np.random.default_rng(2)

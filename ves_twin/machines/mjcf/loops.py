@@ -12,8 +12,8 @@ from ves_twin.core.types import FloatArray, IntArray
 LOOPS = (int(mujoco.mjtEq.mjEQ_CONNECT), int(mujoco.mjtEq.mjEQ_WELD))
 """Equality constraints that close a chain of bodies."""
 
-CLOSED = 1e-9
-"""Gap of a loop [m or rad] that counts as none."""
+CLOSED = 1e-6
+"""Gap of a loop [m or rad] that counts as none: soft constraints leave as much."""
 
 STEPS = 20
 """Newton steps at most: a platform 5 mm from home takes three."""
@@ -46,7 +46,7 @@ def assemble(model: mujoco.MjModel, data: mujoco.MjData, known: IntArray) -> Non
 
     Args:
         model: of the machine.
-        data: its state; nothing happens without loops.
+        data: its state; nothing happens without loops, or where they cannot close.
         known: degrees of freedom that are told.
     """
     if not has_loops(model):
@@ -62,6 +62,8 @@ def assemble(model: mujoco.MjModel, data: mujoco.MjData, known: IntArray) -> Non
         move = np.zeros(model.nv)
         move[others] = -np.linalg.pinv(rows[:, others]) @ gaps
         mujoco.mj_integratePos(dense, look.qpos, move, 1.0)
+    else:
+        return
     data.qpos[:] = look.qpos
     data.qvel[others] -= np.linalg.pinv(rows[:, others]) @ (rows @ data.qvel)
 
