@@ -8,10 +8,13 @@ import pytest
 
 from ves_twin.core.errors import InvalidInputError
 from ves_twin.core.recording.recording import Recording, RecordingInfo
+from ves_twin.diagnosis.forward import Excitation
 from ves_twin.diagnosis.settings import Settings
 from ves_twin.machines.diagnose import diagnose
 from ves_twin.machines.load import open_machine
 from ves_twin.machines.machine import Material, Named
+from ves_twin.machines.mjcf.draft.runs_away import runs_away
+from ves_twin.machines.mjcf.forward import MjcfForward
 from ves_twin.machines.mjcf.machine import Rig
 from ves_twin.machines.mjcf.pieces import pieces
 from ves_twin.machines.new_machine import new_machine
@@ -180,11 +183,30 @@ def test_in_pieces_a_hidden_friction_of_a_machine_that_falls_over_is_found(tmp_p
     assert "simulated in 6 pieces, each from its own start" in rests_on(told.basis)
 
 
-def test_a_model_that_has_a_wrong_number_alone_is_no_reason_for_pieces(tmp_path):
-    """The same table hung up: it comes back from any start, and its log is predicted whole."""
-    log = logged(tmp_path, 1)
-    hung = ROCKER.replace('pos="0 0 0.005"', 'pos="0 0 -0.05"')
-    (tmp_path / "rocker.xml").write_text(hung)
-    draft = new_machine(tmp_path / "rocker.xml", [log], tmp_path / "my.toml").draft
-    assert draft.explained["tilt.position"] < 0.5
-    assert "horizon" not in draft.text
+def simulated(folder, place, friction=0.0, seconds=12.0):
+    """The machine with its table's centre at a height, and a log of it on tones of the wheel."""
+    (folder / "rocker.xml").write_text(ROCKER.replace("0 0 0.005", f"0 0 {place}"))
+    (folder / "rocker.toml").write_text(FILE % "")
+    rig = Rig.load(str(folder / "rocker.toml"))
+    time = 0.01 * np.arange(int(100 * seconds))
+    torque = 0.2 * np.sin(2.0 * np.pi * np.outer(time, [0.31, 0.57])).sum(axis=1)
+    begin = {"tilt": 0.0 * time, "wheel": 0.0 * time, "torque": torque}
+    signals = {name: column[:, None] for name, column in begin.items()}
+    forward = MjcfForward.of(rig)
+    fed = Excitation("tones", time, signals)
+    rows = forward.simulate(fed, {"coulomb_friction@wheel:level": friction})
+    told = {c.signal: rows[:, [k]] for k, c in enumerate(forward.channels)}
+    return forward, Recording(time, {**signals, **told}, RecordingInfo("measured", period=0.01))
+
+
+@pytest.mark.parametrize(
+    ("place", "friction", "whole"),
+    [(-0.05, 0.0, True), (-0.05, 0.02, True), (-0.01, 0.0, False)],
+    ids=["itself", "a friction less", "out of step"],
+)
+def test_pieces_are_for_what_is_out_of_step_and_not_for_a_size_that_is_off(
+    tmp_path, place, friction, whole
+):
+    """A table hung 5 cm below its bearing, and models of it with one number off."""
+    log = simulated(tmp_path, -0.05, friction)[1]
+    assert runs_away(simulated(tmp_path, place)[0], log) is not whole
