@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import tomllib
+from dataclasses import replace
 
 import mujoco
 import numpy as np
@@ -10,8 +11,12 @@ import pytest
 
 from ves_twin.machines.compare import compare
 from ves_twin.machines.load import open_machine
+from ves_twin.machines.mjcf.draft.chosen import _home
 from ves_twin.machines.mjcf.draft.closed_chain import closed_chain
 from ves_twin.machines.mjcf.draft.draft import draft
+from ves_twin.machines.mjcf.draft.log_columns import LogColumns
+from ves_twin.machines.mjcf.draft.match import Match
+from ves_twin.machines.mjcf.draft.spots import Quantity, Spot
 from ves_twin.machines.mjcf.loops import CLOSED, assemble, dense_copy, loop_rows
 from ves_twin.report.comparison.words import fed_words
 
@@ -137,3 +142,19 @@ def test_a_draft_lets_the_drives_of_a_parallel_machine_move_and_compares_their_e
     machine = open_machine(str(tmp_path / "my.toml"))
     (one,) = compare([machine.read(str(log))], machine, patience=0.0).recordings
     assert fed_words(one) == "piston moved as recorded, all else integrated"
+
+
+@pytest.mark.parametrize("scale", [1.0, -1.0])
+def test_what_makes_a_length_a_position_is_told_in_its_unit_whatever_its_sign(tmp_path, scale):
+    """Of a piston whose length counts the other way, in mm: scale times column plus offset."""
+    logged(tmp_path, place(HOME))
+    log = LogColumns.read(tmp_path / "log.csv")
+    values = {name: scale * column for name, column in log.values.items()}
+    spot = Spot(Quantity.POSITION, "piston", "m", frozenset(), 1)
+    match = Match("piston length", spot, "mm", True, scale, ())
+    name = next(column for column in values if column.startswith(match.column))
+    match = replace(match, column=name)
+    offset, _ = _home(match, model("piston"), replace(log, values=values))
+    begun = scale * values[name][0] + offset
+    assert abs(begun) < 30.0  # within the piston's motion of home, not two lengths away
+    assert offset == pytest.approx(-1e3 * place(HOME), abs=1e-3)

@@ -184,10 +184,11 @@ def _home(position: Match, model: mujoco.MjModel, log: LogColumns) -> tuple[floa
     along = np.zeros(3)
     mujoco.mju_rotVecQuat(along, joint.axis, model.body_quat[body])
     length = abs(float(along @ model.body_pos[body]))
+    unit = position.factor / position.scale
     slides = int(joint.type[0]) == int(mujoco.mjtJoint.mjJNT_SLIDE)
     if slides and abs(begin - length) < near:
-        return (zero - length) / position.factor, "offset: the length that the model has at home"
-    return (zero - begin) / position.factor, "offset: as if the log began where the model stands"
+        return (zero - length) / unit, "offset: the length that the model has at home"
+    return (zero - begin) / unit, "offset: as if the log began where the model stands"
 
 
 def _is_plain(match: Match, model: mujoco.MjModel) -> bool:
