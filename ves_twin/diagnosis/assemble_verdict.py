@@ -26,6 +26,7 @@ from ves_twin.diagnosis.report_traces import ReportTraces, exhibit_of
 from ves_twin.diagnosis.residual_structure import ResidualStructure, describe
 from ves_twin.diagnosis.rivals import rivals_of
 from ves_twin.diagnosis.settings import Settings
+from ves_twin.diagnosis.shaken import shaken
 from ves_twin.diagnosis.verdict import (
     Basis,
     Cause,
@@ -104,6 +105,7 @@ def assemble_verdict(
     components = {p.name for p in parameters if p.component}
     row = _row(findings.seen)
     proved = sized(built, causes, ends, row, components) if built and named else ()
+    proved = shaken(proved, findings.law)
     firm = {one.label: one.firm for one in proved}
     causes = tuple(replace(c, firm=firm.get(f"{c.effect}@{c.target}", c.firm)) for c in causes)
     worse = findings.gain is not None and bool(findings.gain.worse)
@@ -218,8 +220,9 @@ def _ended(size: Estimate, low: float, high: float) -> bool:
 
 
 def _below(name: str, size: Estimate, row: float) -> bool:
-    """Whether this is a delay of less than a row."""
-    return name.rpartition(":")[2] == "delay" and abs(size.value - size.nominal) < row
+    """Whether this is a delay that may be less than a row: the near end of its interval is."""
+    near = min(abs(size.low - size.nominal), abs(size.high - size.nominal))
+    return name.rpartition(":")[2] == "delay" and near < row
 
 
 def _row(seen: Dataset) -> float:

@@ -41,10 +41,12 @@ def test_a_name_is_not_firm_where_its_channel_is_not_followed_at_all(out_of_step
     assert ("torque.a is still not followed at all" in standing_words(one)) is out_of_step
 
 
-@pytest.mark.parametrize(("value", "firm"), [(0.0008, False), (0.0021, True)])
-def test_a_delay_of_less_than_a_row_is_not_firm(value, firm):
+@pytest.mark.parametrize(
+    ("value", "spread", "firm"), [(0.0008, 0.1, False), (0.0013, 0.4, False), (0.0021, 0.1, True)]
+)
+def test_a_delay_that_may_be_less_than_a_row_is_not_firm(value, spread, firm):
     """When in its row a log stamps each column is not known (EMPS, 0.8 ms in rows of 1 ms)."""
-    size = Estimate(value, 0.9 * value, 1.1 * value, "s", 0.0)
+    size = Estimate(value, (1.0 - spread) * value, (1.0 + spread) * value, "s", 0.0)
     cause = Cause("actuator_delay", "motor", {"actuator_delay@motor:delay": size}, 1.0, True, None)
     one = Proved("actuator_delay", "motor", {}, 1e-9, 20, {"torque": (2.0, 1.0)}, True)
     ends = {"actuator_delay@motor:delay": (0.0, 0.05)}

@@ -71,6 +71,22 @@ def test_a_tumbling_body_shows_the_rates_and_accelerations_that_it_has(tmp_path)
     assert np.max(np.abs(error[:, 3:])) < 0.02  # m/s^2 of 0.7
 
 
+def test_one_number_of_a_sensor_is_compared_by_itself(tmp_path):
+    """An accelerometer of one axis, which MuJoCo has three of."""
+    whole = rig_of(tmp_path)
+    text = FILE.replace('["d", "e", "f"]', '["f"]').replace(
+        '"acc", noise', '"acc", axis = "z", noise'
+    )
+    (tmp_path / "one.toml").write_text(text)
+    one = Rig.load(str(tmp_path / "one.toml"))
+    time = PERIOD * np.arange(400)
+    turn = np.stack([0.0 * time, 0.0 * time, np.sin(time), np.cos(time)], axis=1)
+    poses = np.hstack([np.outer(np.sin(3.0 * time), [0.1, 0.2, 0.3]), turn])
+    motion = Excitation("shaken", time, {"pose": poses})
+    three = MjcfForward.of(whole).simulate(motion, {})
+    np.testing.assert_array_equal(MjcfForward.of(one).simulate(motion, {}), three[:, [0, 1, 2, 5]])
+
+
 def test_a_ball_joint_that_is_fed_in_is_refused_with_what_stands_for_it(tmp_path):
     with pytest.raises(InvalidInputError, match="three hinges"):
         rig_of(tmp_path, '<joint name="base" type="ball"/>')

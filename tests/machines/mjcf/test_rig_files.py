@@ -48,6 +48,8 @@ LOG = "t,f,m,set,x,a,fx,fy,fz\n" + "\n".join(
         ("schema = 1", "schema = 9", "schema version 9"),
         ('speed = "0.5 m/s"', "", "typical.joint.rail.speed"),
         ('columns = ["fx", "fy", "fz"]', 'columns = ["fx", "fy"]', "3, as sensor load has it"),
+        ('columns = ["fx", "fy", "fz"]', 'columns = ["fz"]', 'axis = "z" for one of them'),
+        ('sensor = "load"', 'joint = "rail"\naxis = "z"', "axis 'z' without a sensor"),
         ('columns = ["x"]', 'columns = ["x", "y"]', "1, as joint rail has it"),
         ('columns = ["set"]', 'columns = ["f", "set"]', "1, as controllers.drive has it"),
         ("[start.rail]", '[start.rail]\nposition = "mesured"', "start.rail.position"),

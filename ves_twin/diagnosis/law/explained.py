@@ -124,7 +124,11 @@ def _asked(runs: Runs, shift: FloatArray, settings: Settings) -> bool:
     begin = perf_counter()
     runs.one(runs.depart(shift, runs.nuisances, NEAR * shift[runs.nuisances]))  # else it is kept
     once = (perf_counter() - begin) / runs.workers.count
-    return settings.laws is True or runs_of(plant.law_places(), settings.sparse) * once <= LONGEST
+    takes = runs_of(plant.law_places(), settings.sparse) * once
+    if settings.laws is None and takes > LONGEST:
+        runs.budget.leave_out(f"a law (some {takes / 60.0:.0f} min: --law asks for it)")
+        return False
+    return True
 
 
 def _explained(found: Explanation, search: Search) -> Explanation:

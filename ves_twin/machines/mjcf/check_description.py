@@ -125,6 +125,8 @@ def _widths(told: RigDescription, model: mujoco.MjModel) -> None:
         count, what = wanted.get(signal, (width, ""))
         if width != count:
             expected = f"{count}, as {what} has it"
+            if width == 1 and count == len("xyz"):
+                expected += '; axis = "z" for one of them'
             raise InvalidInputError(f"signals.{signal}.columns", list(column.columns), expected)
         if isinstance(column.noise, tuple) and len(column.noise) not in (1, width):
             expected = f"one number, or {width} as it has columns"
@@ -133,7 +135,11 @@ def _widths(told: RigDescription, model: mujoco.MjModel) -> None:
 
 def _width(compared: Compared, model: mujoco.MjModel) -> tuple[int, str]:
     if compared.sensor:
-        return int(model.sensor(compared.sensor).dim[0]), f"sensor {compared.sensor}"
+        width = int(model.sensor(compared.sensor).dim[0])
+        if compared.axis and width != len("xyz"):
+            came = f"axis {compared.axis} of sensor {compared.sensor}, which has {width}"
+            raise InvalidInputError("axis", came, "a sensor of three numbers")
+        return (1 if compared.axis else width), f"sensor {compared.sensor}"
     if compared.actuator:
         return 1, f"actuator {compared.actuator}"
     return 1, f"joint {compared.joint}"

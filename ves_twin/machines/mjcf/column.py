@@ -32,6 +32,7 @@ class Column(Part):
     the frame of a signal that holds a quaternion x, y, z, w (sensor to world). A column may be a
     formula of columns. Where the signal says `joint`, `actuator` or `sensor`, it needs no entry in
     `compare` and none in `drive`: that mode and place decide whether it is fed in or compared.
+    `axis`: the one number of three that is measured of the sensor, in its own frame.
     """
 
     columns: tuple[str, ...] = Field(min_length=1)
@@ -44,6 +45,7 @@ class Column(Part):
     of: Literal["position", "speed"] = "position"
     actuator: str = ""
     sensor: str = ""
+    axis: Literal["", "x", "y", "z"] = ""
     source: str = ""
 
     @model_validator(mode="before")

@@ -104,12 +104,15 @@ class Compared(Part):
     of: Literal["position", "speed"] = "position"
     actuator: str = ""
     sensor: str = ""
+    axis: Literal["", "x", "y", "z"] = ""
     sign: Literal[-1, 1] = 1
 
     @model_validator(mode="after")
     def _one_place(self) -> Self:
         if sum(map(bool, (self.joint, self.actuator, self.sensor))) != 1:
             raise ValueError("expected one of joint, actuator, sensor")
+        if self.axis and not self.sensor:
+            raise ValueError(f"axis {self.axis!r} without a sensor")
         return self
 
 
@@ -330,7 +333,7 @@ class RigDescription(Part):
         for name, signal in content["signals"].items():
             if not isinstance(signal, dict):
                 continue
-            keys = ("joint", "of", "actuator", "sensor")
+            keys = ("joint", "of", "actuator", "sensor", "axis")
             place = {key: signal[key] for key in keys if key in signal}
             if not place:
                 continue

@@ -208,7 +208,9 @@ def _of(target: str, signal: str) -> bool:
 
 
 def sensor_rows(model: mujoco.MjModel, sensordata: FloatArray, compared: Compared) -> FloatArray:
-    """Columns of a named sensor (n, w) out of all sensor data (n, all)."""
+    """Columns of a named sensor (n, w) out of all sensor data (n, all), or of its axis."""
     sensor = model.sensor(compared.sensor)
-    first = int(sensor.adr[0])
-    return np.asarray(sensordata[:, first : first + int(sensor.dim[0])])
+    first, width = int(sensor.adr[0]), int(sensor.dim[0])
+    if compared.axis:
+        first, width = first + "xyz".index(compared.axis), 1
+    return np.asarray(sensordata[:, first : first + width])

@@ -1,0 +1,34 @@
+"""shaken: proved names at a place where a law still takes more than a share of what they do."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+from ves_twin.diagnosis.build_up.report import SHAKEN
+from ves_twin.diagnosis.build_up.result import Proved
+from ves_twin.diagnosis.law.result import LawFinding
+from ves_twin.effects.law import joints_of
+
+
+def shaken(proved: Sequence[Proved], law: LawFinding | None) -> tuple[Proved, ...]:
+    """What is proved, with no firm name where a law of what is left shakes it.
+
+    Unmodelled physics at a joint looks in part like any cause there: hysteresis stiffens, so that a
+    cubic spring improves the prediction. A law that a search found there, claimed or not, with a
+    gain on held-out data that is clear of zero, shakes a name from SHAKEN of its amplitude on.
+
+    Args:
+        proved: causes, with what each takes from channels on held-out data.
+        law: the nearest one of what they leave; None if nobody looked.
+    """
+    if law is None or not law.part or law.gain is None or (law.gain.low or 0.0) <= 0.0:
+        return tuple(proved)
+    share, joints = law.gain.low or 0.0, {name for name, _ in joints_of(law.place)}
+    found = []
+    for one in proved:
+        there = {name for name, _ in joints_of(one.target)} <= joints
+        before, after = max(one.takes.values(), key=lambda ends: ends[0] ** 2 - ends[1] ** 2)
+        more = share * after**2 > SHAKEN**2 * (before**2 - after**2)
+        found.append(replace(one, firm=one.firm and not (there and more)))
+    return tuple(found)
