@@ -310,15 +310,13 @@ def _tuned(findings: Findings) -> dict[str, Estimate]:
     if fit is None:
         return {}
     runs, z = fit.local.runs, float(norm.isf(0.5 * (1.0 - findings.settings.confidence)))
+    known = np.sqrt(np.diag(fit.posterior)) if fit.told is None else fit.told
     free, estimates = set(fit.active[: len(fit.sizes)]), {}
     for n, i in enumerate(fit.active):
         parameter = runs.coordinates[int(i)].parameter
         if i in free or runs.coordinates[int(i)].recording != -1:
             continue
-        value, reach = (
-            parameter.nominal + float(fit.shift[i]),
-            z * float(np.sqrt(fit.posterior[n, n])),
-        )
+        value, reach = parameter.nominal + float(fit.shift[i]), z * float(known[n])
         estimates[parameter.name] = Estimate(
             value, value - reach, value + reach, parameter.unit, parameter.nominal, i in fit.held
         )

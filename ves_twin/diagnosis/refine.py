@@ -57,6 +57,7 @@ class Fit:
         prediction: channels at that point (rows, c), without the discretisation share.
         columns: of the causes, to go on with; None where they would be computed anew.
         held: nuisances that an end of what is allowed holds: coordinates.
+        told: sd of the active departures where model error counts (k,); None: the posterior's.
     """
 
     causes: tuple[Hypothesis, ...]
@@ -73,6 +74,7 @@ class Fit:
     prediction: SingleArray
     columns: CauseColumns | None = None
     held: IntArray = field(default_factory=lambda: np.zeros(0, int))
+    told: FloatArray | None = None
 
     @property
     def pull(self) -> float:

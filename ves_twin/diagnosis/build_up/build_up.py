@@ -178,12 +178,14 @@ def _widened(
     left = np.asarray(bare_residual(evidence, fit), float)
     wide = averaged_half_widths(regression, proved, evidence.whitening, left, confidence)
     names = [name for cause in fit.causes for name in cause.parameters]
-    half = half_widths(evidence, fit, confidence)
-    half = np.maximum(half, [wide.get(name, 0.0) for name in names])
-    sd = half / float(norm.isf(0.5 * (1.0 - confidence)))
+    told = half_widths(evidence, fit, confidence)
+    half = np.maximum(told[: len(names)], [wide.get(name, 0.0) for name in names])
+    quantile = float(norm.isf(0.5 * (1.0 - confidence)))
+    sd = half / quantile
     own = np.sqrt(np.maximum(np.diag(fit.covariance), 1e-300))
     grown = np.maximum(sd / own, 1.0)
-    return replace(fit, covariance=fit.covariance * np.outer(grown, grown))
+    covariance = fit.covariance * np.outer(grown, grown)
+    return replace(fit, covariance=covariance, told=told / quantile)
 
 
 def _explained(desk: FitContext, start: Explanation, final: Fit) -> Explanation:

@@ -28,7 +28,8 @@ def half_widths(evidence: Evidence, fit: Fit, confidence: float) -> FloatArray:
         confidence: of the intervals.
 
     Returns:
-        Half widths of the free parameters, cause by cause [their units] (k,).
+        Half widths of the active departures, the causes' own first [their units] (k,). Of
+        commissioning errors no more than their tolerances allow.
     """
     whitening, runs = evidence.whitening, evidence.runs
     nuisances = np.isin(runs.nuisances, fit.active[len(fit.sizes) :])
@@ -49,9 +50,12 @@ def half_widths(evidence: Evidence, fit: Fit, confidence: float) -> FloatArray:
     )
     sandwich = inverse @ (scores.T @ scores) @ inverse * BLOCKS / (BLOCKS - 1.0)
     level = max(float(left @ left) / max(float(np.sum(whitening.freedom)), 1.0), 1.0)
-    count = len(fit.sizes)
-    model = np.maximum(np.diag(inverse)[:count], 1e-300)
-    grown = np.sqrt(np.maximum(level, np.diag(sandwich)[:count] / model))
-    own = np.sqrt(np.maximum(np.diag(fit.posterior)[:count], 0.0))  # in the parameters' units
+    count, errors = len(fit.sizes), fit.active[len(fit.sizes) :]
+    beside = count + np.searchsorted(np.sort(errors), errors)  # rows of nuisances are in order
+    columns = np.concatenate([np.arange(count), beside])
+    model = np.maximum(np.diag(inverse)[columns], 1e-300)
+    grown = np.sqrt(np.maximum(level, np.diag(sandwich)[columns] / model))
+    own = np.sqrt(np.maximum(np.diag(fit.posterior), 0.0))  # in the parameters' units
+    widest = np.concatenate([np.full(count, np.inf), runs.sd[errors]])
     quantile = float(student.ppf(0.5 + 0.5 * confidence, BLOCKS - 1))
-    return np.asarray(quantile * grown * own)
+    return np.asarray(quantile * np.minimum(grown * own, widest))
