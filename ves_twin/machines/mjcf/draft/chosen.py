@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
 import mujoco
@@ -50,6 +50,7 @@ class Chosen:
         imposed: joints that move as recorded in CONTROL, since no column tells what moves them.
         horizon: pieces that are simulated from a start of their own [s]; 0: the whole log.
         homes: column -> what is added to it, in its unit, to make it a position, and why.
+        typical: joint without a column -> effort, speed and travel that the model gives it [SI].
     """
 
     mode: Mode
@@ -61,6 +62,7 @@ class Chosen:
     imposed: tuple[str, ...] = ()
     horizon: float = 0.0
     homes: Mapping[str, tuple[float, str]] = field(default_factory=dict)
+    typical: Mapping[str, Mapping[str, float]] = field(default_factory=dict)
 
 
 def chosen(
@@ -91,14 +93,12 @@ def chosen(
     """
     efforts = [m for m in check.found if m.spot.quantity is Quantity.EFFORT]
     positions = [m for m in check.found if m.spot.quantity is Quantity.POSITION]
-    if not efforts or len(efforts) == len(check.found):
+    shaken = () if model.nu else _shaken(positions, model)
+    if not (efforts or shaken) or len(efforts) + len(shaken) == len(check.found):
         _refuse(log, matches, check, model)
-    moved = [m.factor * log.values[m.column] for m in positions]
-    rest = rest_of(moved, log.period)
-    noise = {}
-    for m in check.found:
-        sd, how = noise_of(log.values[m.column], log.period, rest)
-        noise[m.column] = (abs(m.factor) * sd, how)
+    noise = _noise(log, check, positions)
+    if shaken:
+        return _of_base(log, check, model, noise, shaken)
     driven = {m.spot.joint for m in efforts if _is_plain(m, model)}
     single = {model.joint(i).name for i in single_joints(model)}
     unknown = _moved_by(model) & single - {m.spot.joint for m in efforts}
@@ -118,7 +118,7 @@ def chosen(
     band = float(np.clip(band, 0.5 * RATES[0], min(0.5 * RATES[1], 0.25 / log.period)))
     share = max(_induced(m, noise, efforts, model, log, band)[1] for m in positions)
     band = max(min(band, band * (DROWNED / max(share, 1e-9)) ** 0.4), 0.5 * RATES[0])
-    length = log.period * len(moved[0])
+    length = log.period * log.rows
     if 2.0 * band * length < ENOUGH:
         if closed is None:
             rows = 2.0 * band * length
@@ -139,6 +139,62 @@ def chosen(
         sd, how = noise[m.column]
         noise[m.column] = (float(np.hypot(sd, of_joint[m.spot.joint])), how)
     return Chosen(Mode.MOTION, closed or why, 2.0 * band, CORNER * band, noise)
+
+
+def _noise(
+    log: LogColumns, check: Checked, positions: Sequence[Match]
+) -> dict[str, tuple[float, str]]:
+    """Column -> sd of one row in SI, and how it was told."""
+    moved = [m.factor * log.values[m.column] for m in positions]
+    rest, found = rest_of(moved, log.period), {}
+    for m in check.found:
+        sd, how = noise_of(log.values[m.column], log.period, rest)
+        found[m.column] = (abs(m.factor) * sd, how)
+    return found
+
+
+def _shaken(positions: list[Match], model: mujoco.MjModel) -> tuple[str, ...]:
+    """Joints by which a model without actuators is shaken: those measured nearest to the world."""
+    bodies = {m.spot.name: int(model.joint(m.spot.name).bodyid[0]) for m in positions}
+    found = []
+    for name, body in bodies.items():
+        above = int(model.body_parentid[body])
+        while above and above not in bodies.values():
+            above = int(model.body_parentid[above])
+        if not above:
+            found.append(name)
+    return tuple(sorted(found))
+
+
+def _of_base(
+    log: LogColumns,
+    check: Checked,
+    model: mujoco.MjModel,
+    noise: dict[str, tuple[float, str]],
+    imposed: tuple[str, ...],
+) -> Chosen:
+    """Of a model that is shaken: the band is that of what is compared."""
+    followed = [m for m in check.found if m.spot.name not in imposed]
+    band = BAND * max(band_of(log.values[m.column], log.period, 0.99) for m in followed)
+    band = float(np.clip(band, 0.5 * RATES[0], min(0.5 * RATES[1], 0.25 / log.period)))
+    verb = "moves" if len(imposed) == 1 else "move"
+    why = f"no actuator drives the model: {', '.join(imposed)} {verb} as recorded"
+    homes = {m.column: home for m in followed if (home := _sensed_home(m, model, log))}
+    return Chosen(Mode.CONTROL, why, 2.0 * band, CORNER * band, noise, imposed=imposed, homes=homes)
+
+
+def _sensed_home(match: Match, model: mujoco.MjModel, log: LogColumns) -> tuple[float, str] | None:
+    """What makes a place that is told from elsewhere the model's [its unit]; None if it is."""
+    if match.spot.quantity is not Quantity.SENSOR or match.spot.unit != "m":
+        return None
+    values, data = match.factor * log.values[match.column], mujoco.MjData(model)
+    mujoco.mj_forward(model, data)
+    at = int(model.sensor(match.spot.name).adr[0]) + match.spot.axis
+    begin, zero = float(np.mean(values[:FIRST])), float(data.sensordata[at])
+    if abs(begin - zero) < 2.0 * travel(values):
+        return None
+    unit = match.factor / match.scale
+    return (zero - begin) / unit, "offset: as if the log began where the model stands"
 
 
 def _of_loops(
@@ -234,5 +290,7 @@ def _refuse(log: LogColumns, matches: Matches, check: Checked, model: mujoco.MjM
     joints = ", ".join(model.joint(i).name for i in single_joints(model))
     lacks_effort = all(m.spot.quantity is not Quantity.EFFORT for m in check.found)
     expected = f"an effort of {motors}" if lacks_effort else f"a position or speed of {joints}"
+    if not model.nu:
+        expected = f"actuators in the model, or a position of {joints} and what follows from it"
     came = f"columns matched: {there}; not matched: {left}"
     raise InvalidInputError(f"{log.file} does not fit the model", came, expected)

@@ -26,6 +26,7 @@ from ves_twin.machines.mjcf.draft.match import matched
 from ves_twin.machines.mjcf.draft.runs_away import runs_away
 from ves_twin.machines.mjcf.draft.shape import by_shape
 from ves_twin.machines.mjcf.draft.spots import spots_of
+from ves_twin.machines.mjcf.draft.unmeasured import unmeasured
 from ves_twin.machines.mjcf.forward import MjcfForward
 from ves_twin.machines.mjcf.machine import Rig
 from ves_twin.machines.mjcf.pieces import pieces
@@ -119,6 +120,9 @@ def draft(model: Path, logs: Sequence[Path], out: Path, rate: float | None = Non
         return _Version(mode, text, rig, *_predicted(rig, logs[0]))
 
     now = version(chosen(log, matches, check, given.model))
+    if not given.model.nu:
+        recording = read_rig_recording(logs[0], now.rig)
+        now = version(replace(now.mode, typical=unmeasured(now.rig, recording)))
     if now.mode.either and now.explained[now.least] < HALF:
         why = f"open loop the model explains {now.explained[now.least]:.0%} of {now.least}"
         now = version(chosen(log, matches, check, given.model, why))

@@ -80,7 +80,7 @@ def draft_text(
     ]
     fitted = any(match.fitted for match in check.found)
     why = "   # efforts by the fitted scale: they change with it" if fitted else ""
-    lines += ["", f"[typical.joint]{why}", *_joints(log, check, model)]
+    lines += ["", f"[typical.joint]{why}", *_joints(log, check, mode, model)]
     spans = list(_spans(log, check))
     lines += ["", "[typical.signal]", *spans] if spans else []
     starts = list(_starts(log, check, mode)) if mode.mode is Mode.CONTROL else []
@@ -160,6 +160,8 @@ def _signal(group: list[Match], mode: Chosen) -> str:
     else:
         kind = "actuator" if first.spot.quantity is Quantity.EFFORT else "sensor"
         keys[kind] = _quoted(first.spot.name)
+        if len(group) < first.spot.width:
+            keys["axis"] = _quoted("xyz"[first.spot.axis])
     if first.spot.joint and first.spot.joint in mode.imposed:
         del keys["actuator"]  # [compare] says it: here it would be fed in
     reasons = list(first.reasons) + ([] if first.told else [f"unit {first.unit} is a guess"])
@@ -177,7 +179,7 @@ def _signal(group: list[Match], mode: Chosen) -> str:
     return f"{_quoted(signal_name(first))} = {{ {text} }}   # {why}"
 
 
-def _joints(log: LogColumns, check: Checked, model: mujoco.MjModel) -> Iterator[str]:
+def _joints(log: LogColumns, check: Checked, mode: Chosen, model: mujoco.MjModel) -> Iterator[str]:
     """Typical effort, speed and travel of each joint that was recorded, behind its gear."""
     efforts = {m.spot.joint: m for m in check.found if m.spot.quantity is Quantity.EFFORT}
     for match in check.found:
@@ -195,6 +197,9 @@ def _joints(log: LogColumns, check: Checked, model: mujoco.MjModel) -> Iterator[
             sizes = {"effort": typical(steady), **sizes}
         text = ", ".join(f"{k} = {v:g}" for k, v in sizes.items() if v > 0.0)
         yield f"{_key(match.spot.name)} = {{ {text} }}"
+    for joint, given in mode.typical.items():
+        text = ", ".join(f"{k} = {v:g}" for k, v in given.items())
+        yield f"{_key(joint)} = {{ {text} }}   # as the model moves: no column tells it"
 
 
 def _speed(log: LogColumns, position: Match, corner: float) -> float:

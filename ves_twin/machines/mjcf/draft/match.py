@@ -20,7 +20,7 @@ from ves_twin.machines.mjcf.draft.names import (
     is_setpoint,
     likeness,
 )
-from ves_twin.machines.mjcf.draft.spots import Quantity, Spot
+from ves_twin.machines.mjcf.draft.spots import Quantity, Spot, words_of
 
 RIVAL = 2.0
 """A rival is worth telling where its likeness is less than this below: one piece of evidence."""
@@ -104,7 +104,7 @@ def matched(log: LogColumns, spots: Sequence[Spot]) -> Matches:
     chosen = {
         columns[i]: spots[k] for i, k in zip(rows, places, strict=True) if score[i, k] >= ENOUGH
     }
-    chosen = _whole_sensors(chosen)
+    chosen = _whole_sensors(chosen, spots)
     found_ = [_match(log, c, s, alike, chosen) for c, s in chosen.items()]
     order = {spot: i for i, spot in enumerate(spots)}
     found_.sort(key=lambda m: order[m.spot])
@@ -125,15 +125,24 @@ def _likeness(log: LogColumns, column: str, spot: Spot, spots: Sequence[Spot]) -
     return likeness(column, log.units.get(column, ""), spot, len(rivals) == 1, zero)
 
 
-def _whole_sensors(chosen: dict[str, Spot]) -> dict[str, Spot]:
-    """Without sensors of which not every number has a column."""
+def _whole_sensors(chosen: dict[str, Spot], spots: Sequence[Spot]) -> dict[str, Spot]:
+    """Without sensors of which not every number has a column, but for one column of one axis.
+
+    Of three numbers one column alone is the one that its name says, or the only one that moves.
+    """
     there = [(s.name, s.axis) for s in chosen.values() if s.quantity is Quantity.SENSOR]
     counts = {name: sum(n == name for n, _ in there) for name, _ in there}
-    return {
-        c: s
-        for c, s in chosen.items()
-        if s.quantity is not Quantity.SENSOR or counts[s.name] == s.width
-    }
+    found = {}
+    for column, spot in chosen.items():
+        if spot.quantity is not Quantity.SENSOR or counts[spot.name] == spot.width:
+            found[column] = spot
+            continue
+        own = [s for s in spots if (s.quantity, s.name) == (spot.quantity, spot.name)]
+        said = [s for s in own if "xyz"[s.axis] in words_of(bare_name(column))] if own[2:] else []
+        likely = said or [s for s in own if s.moves]
+        if counts[spot.name] == 1 and len(likely) == 1:
+            found[column] = likely[0]
+    return found
 
 
 def _match(
@@ -148,7 +157,7 @@ def _match(
     others = [
         f"it could be {s.label}"
         for (c, s), found in alike.items()
-        if c == column and s != spot and found.score > near and s not in chosen.values()
+        if c == column and s != spot and s.moves and found.score > near and s not in chosen.values()
     ]
     others += [
         f"{c} would do as well"

@@ -66,6 +66,10 @@ nearer, and a supply's voltage is in volts, too."""
 WRONG_NUMBER, WRONG_KIND, WISH = -3.0, -2.0, -0.5
 """Weight against: another number, a word of another quantity, what was asked for, not measured."""
 
+OWN = 0.4
+"""Weight of many shared words that are of the spot's own name, and not of the body it is on; half
+of it of one. No piece of evidence by itself: it decides between spots that are else alike."""
+
 ENOUGH = 2.5
 """Likeness from which a column is matched: two pieces of evidence, or one and no rival spot."""
 
@@ -129,6 +133,9 @@ def _of_kind(words: frozenset[str], told: bool, wish: bool, spot: Spot) -> list[
         return [(KIND, "asked for, as the command of a servo")]
     if spot.quantity is Quantity.SENSOR and spot.unit == "rad/s" and Quantity.SPEED in named:
         return [(KIND, "name of a rate")]
+    place = KIND_WORDS[Quantity.POSITION] & words - AXES
+    if spot.quantity is Quantity.SENSOR and spot.unit == "m" and place:
+        return [(KIND, "name of a place")]
     if spot.quantity in named and not (told and len(named) > 1):
         return [(KIND, f"name of {ARTICLE[spot.quantity]}")]
     return [] if not named or told or spot.quantity in named else [(WRONG_KIND, "")]
@@ -139,6 +146,8 @@ def _of_words(words: frozenset[str], spot: Spot) -> list[tuple[float, str]]:
     shared = {w for w in spot.words & words if not w.isdigit()}
     long = {w for w in shared if len(w) > 1 or spot.quantity is Quantity.SENSOR}
     found = [(WORD, f"shares '{max(sorted(long), key=len)}' with {spot.label}")] if long else []
+    own = len(long & set(words_of(spot.name)))
+    found += [(OWN * own / (own + 1.0), "")] if own else []
     axes = shared & AXES - long
     return [*found, *((AXIS, f"axis {axis}") for axis in sorted(axes))]
 

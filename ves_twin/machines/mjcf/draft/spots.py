@@ -8,6 +8,9 @@ from dataclasses import dataclass
 from enum import StrEnum
 
 import mujoco
+import numpy as np
+
+from ves_twin.core.types import BoolArray
 
 HINGE, SLIDE = int(mujoco.mjtJoint.mjJNT_HINGE), int(mujoco.mjtJoint.mjJNT_SLIDE)
 ON_JOINT = int(mujoco.mjtTrn.mjTRN_JOINT)
@@ -30,6 +33,12 @@ TURNING, TURNS = ("GYRO", "FRAMEANGVEL"), (("roll",), ("pitch",), ("yaw",))
 
 STANDS_FOR = {"JOINTPOS", "JOINTVEL", "ACTUATORFRC", "JOINTACTFRC"}
 """Sensors whose number a joint or an actuator has, too; their names count as names of that."""
+
+POSES, NUDGE = 4, 0.1
+"""States at which sensors are read to see which numbers change, and how far they are off [s]."""
+
+STILL = 1e-6
+"""Share of a sensor's largest change below which a number of it stands still: rounding."""
 
 
 class Quantity(StrEnum):
@@ -55,6 +64,7 @@ class Spot:
         joint: that an actuator drives; empty where it drives none.
         axis: of a sensor with several numbers, from 0.
         width: numbers of that sensor.
+        moves: whether any motion of the model changes that number.
     """
 
     quantity: Quantity
@@ -65,6 +75,7 @@ class Spot:
     joint: str = ""
     axis: int = 0
     width: int = 1
+    moves: bool = True
 
     @property
     def label(self) -> str:
@@ -80,7 +91,7 @@ class Spot:
 
 def spots_of(model: mujoco.MjModel) -> tuple[Spot, ...]:
     """Every spot of the named joints, actuators and sensors of a model."""
-    extra = _stand_ins(model)
+    extra, moving = _stand_ins(model), _moving(model)
     found = _joints(model, extra) + _actuators(model, extra)
     for i in range(model.nsensor):
         sensor = model.sensor(i)
@@ -103,6 +114,7 @@ def spots_of(model: mujoco.MjModel) -> tuple[Spot, ...]:
                 axis + 1,
                 axis=axis,
                 width=width,
+                moves=bool(moving[int(model.sensor_adr[i]) + axis]),
             )
             for axis in range(width)
         ]
@@ -130,6 +142,23 @@ def is_servo(model: mujoco.MjModel, actuator: int) -> bool:
     )
     on_joint = int(model.actuator_trntype[actuator]) == ON_JOINT
     return affine and pulled and on_joint and float(model.actuator_gear[actuator, 0]) == 1.0
+
+
+def _moving(model: mujoco.MjModel) -> BoolArray:
+    """Which numbers of all sensors change where every joint moves (n,)."""
+    data, rng, rows = mujoco.MjData(model), np.random.default_rng(0), []
+    for _ in range(POSES):
+        mujoco.mj_resetData(model, data)
+        mujoco.mj_integratePos(model, data.qpos, rng.normal(size=model.nv), NUDGE)
+        data.qvel[:] = rng.normal(size=model.nv)
+        mujoco.mj_forward(model, data)
+        rows.append(data.sensordata.copy())
+    change, found = np.ptp(np.array(rows), axis=0), np.ones(model.nsensordata, bool)
+    for i in range(model.nsensor):
+        first, width = int(model.sensor_adr[i]), int(model.sensor_dim[i])
+        own = change[first : first + width]
+        found[first : first + width] = own > STILL * max(own, default=0.0)
+    return found
 
 
 def words_of(name: str) -> tuple[str, ...]:
