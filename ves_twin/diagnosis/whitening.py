@@ -130,7 +130,7 @@ class Whitening:
             power, angle = _periodogram(block)
             power = power / np.mean(kept, axis=0)
             shapes = 1.0 / np.abs(1.0 - COLOURS[:, None] * np.exp(-1j * angle)) ** 2
-            scale = np.mean(power[None] / shapes[:, :, None], axis=1)
+            scale = np.maximum(np.mean(power[None] / shapes[:, :, None], axis=1), 1e-300)
             cost = np.log(scale) + np.mean(np.log(shapes), axis=1)[:, None]
             if self.runs.programmes[k].poses:
                 cost[np.abs(COLOURS) > 1e-9] = np.inf

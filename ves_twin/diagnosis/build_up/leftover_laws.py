@@ -94,7 +94,8 @@ def laws_left(bench: Bench, fitted: FloatArray, held: FloatArray) -> list[Law]:
             rows = bench.whole[:, channel]
             told = paired((before**2 - after**2)[rows], bench.pieces[rows])
             bare = held[:, channel]
-            share = 1.0 - float(np.sum((bare - other[0, :, channel]) ** 2) / np.sum(bare**2))
+            total = max(float(np.sum(bare**2)), 1e-300)  # a column that nothing moves
+            share = 1.0 - float(np.sum((bare - other[0, :, channel]) ** 2)) / total
             found.append(Law(name, channel, share, told.p))
     return _kept(found)
 

@@ -133,7 +133,8 @@ def _left(bench: Bench, left: FloatArray, laws: list[Law]) -> dict[str, Left]:
     grid = half.runs.grids[0]
     rows = half.kept.all(axis=1)
     spread = left[rows] if np.count_nonzero(rows) > 2 else left
-    along = np.atleast_2d(np.corrcoef(spread.T))
+    with np.errstate(invalid="ignore", divide="ignore"):  # nothing goes along with a still column
+        along = np.atleast_2d(np.corrcoef(spread.T))
     found = {}
     for c, name in enumerate(names):
         channel = half.runs.forward.channels[half.runs.columns[c]]
