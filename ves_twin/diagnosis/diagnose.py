@@ -23,6 +23,7 @@ from ves_twin.diagnosis.forward import Excitation, Forward
 from ves_twin.diagnosis.held_out import HeldOut
 from ves_twin.diagnosis.law.explained import lawful_explanation, lawful_rest
 from ves_twin.diagnosis.law.propose import Limits
+from ves_twin.diagnosis.law.result import LAW
 from ves_twin.diagnosis.likeness import check_likeness
 from ves_twin.diagnosis.next_experiment import separations
 from ves_twin.diagnosis.null import cached_thresholds
@@ -207,7 +208,7 @@ class _View:
         seen.runs.budget.stage(math.inf if chosen.laws else 1.0)  # asked for, whatever it takes
         looks = not chosen.sparse if chosen.laws is None else chosen.laws  # dear runs: if asked
         wanted = looks and (unknown or (kind is Kind.PARTIAL and proved))
-        if wanted and not seen.runs.budget.skips("a law"):
+        if wanted and not seen.runs.budget.skips(LAW):
             progress(0.0, "looking for a law" if unknown else "looking for a law in what is left")
             if end.built is not None and not unknown:
                 lawful = lawful_rest(end.built, self.limits, chosen, still, progress)

@@ -18,7 +18,7 @@ from ves_twin.diagnosis.law.lean import LeanEvidence
 from ves_twin.diagnosis.law.place import LawForward
 from ves_twin.diagnosis.law.propose import Limits, Search, search_laws
 from ves_twin.diagnosis.law.rest import search_rest
-from ves_twin.diagnosis.law.result import LawFinding
+from ves_twin.diagnosis.law.result import LAW, LawFinding
 from ves_twin.diagnosis.law.screen import runs_of
 from ves_twin.diagnosis.refine import Fit
 from ves_twin.diagnosis.runs import Progress, Runs
@@ -126,7 +126,7 @@ def _asked(runs: Runs, shift: FloatArray, settings: Settings) -> bool:
     once = (perf_counter() - begin) / runs.workers.count
     takes = runs_of(plant.law_places(), settings.sparse) * once
     if settings.laws is None and takes > LONGEST:
-        runs.budget.leave_out(f"a law (some {takes / 60.0:.0f} min: --law asks for it)")
+        runs.budget.leave_out(f"{LAW} (some {takes / 60.0:.0f} min: --law asks for it)")
         return False
     return True
 

@@ -7,6 +7,9 @@ from dataclasses import dataclass
 from ves_twin.diagnosis.gain import Gain
 from ves_twin.effects.law import WITHIN, joints_of
 
+LAW = "a law"
+"""What a search for one is called, or begins with, where time leaves it out."""
+
 
 @dataclass(frozen=True)
 class LawNumber:

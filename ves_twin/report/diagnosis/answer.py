@@ -5,6 +5,7 @@ from __future__ import annotations
 from ves_twin.core.quantity import percent
 from ves_twin.diagnosis.build_up.result import UNFINISHED
 from ves_twin.diagnosis.disagreement import disagree
+from ves_twin.diagnosis.law.result import LAW
 from ves_twin.diagnosis.verdict import Cause, Kind, Verdict
 from ves_twin.report.diagnosis.basis import gain_words, taken_share
 from ves_twin.report.diagnosis.coarse_step import finer
@@ -26,6 +27,12 @@ STRANGER = 0.5
 
 HURRIED = " Time ended within the fit of sizes (--minutes): they may be far off, intervals too."
 """Beside names whose sizes are what columns at the begin say."""
+
+UNSOUGHT = (
+    " No law was looked for in what is left (--law does): where physics is missing, a firm name at"
+    " its place may stand for it."
+)
+"""Beside firm names where nobody looked for what the library lacks."""
 
 
 def headline(verdict: Verdict) -> str:
@@ -62,6 +69,9 @@ def confidence_sentence(verdict: Verdict) -> str:
         case _ if verdict.proved:
             rate = percent(verdict.false_discovery_rate)
             hurried = HURRIED if UNFINISHED in verdict.basis.left_out else ""
+            firm = any(one.firm for one in verdict.proved)
+            if firm and any(what.startswith(LAW) for what in verdict.basis.left_out):
+                hurried += UNSOUGHT
             return (
                 f"{verdict.put_to_proof} {'was' if verdict.put_to_proof == 1 else 'were'} tested on"
                 f" held-out data; of those accepted, at most {rate} are expected to be false. Only"

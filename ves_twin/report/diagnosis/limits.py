@@ -100,11 +100,22 @@ def limit_sentences(verdict: Verdict) -> tuple[str, ...]:
     if verdict.holes:
         told = ", ".join(f"{name} {percent(share)}" for name, share in verdict.holes.items())
         said.append(f"Rows without a value, which were left out: {told}.")
-    blind = [spoken(k) for k, f in verdict.smallest_findable.items() if f.value is None]
+    blind = blind_causes(verdict)
     if blind:
         more = f" and {len(blind) - TOLD} more" if len(blind) > TOLD else ""
         said.append(f"Nothing can be said about {', '.join(blind[:TOLD])}{more}.")
     return (*said, *_lookalikes(verdict), *_twins(verdict))
+
+
+def blind_causes(verdict: Verdict) -> list[str]:
+    """Causes that these recordings would not show by themselves, but for those that are told.
+
+    Beside others that were proved they may show: these have a size.
+    """
+    told = {name.partition(":")[0] for name in verdict.tuned}
+    told |= {f"{cause.effect}@{cause.target}" for cause in verdict.causes}
+    blind = (k for k, f in verdict.smallest_findable.items() if f.value is None)
+    return [spoken(k) for k in blind if k not in told]
 
 
 def _lookalikes(verdict: Verdict) -> tuple[str, ...]:
@@ -180,7 +191,7 @@ def next_sentences(verdict: Verdict) -> tuple[str, ...]:
         )
     if verdict.basis.noise == "declared":
         said.append("Record the machine standing still and give it as --standstill.")
-    blind = [spoken(k) for k, f in verdict.smallest_findable.items() if f.value is None]
+    blind = blind_causes(verdict)
     if blind:
         some = ", ".join(blind[:TOLD])
         said.append(f"Find a programme that excites what this one cannot show: {some}.")

@@ -21,6 +21,7 @@ from ves_twin.report.diagnosis.basis import basis_sentences, gain_sentence, rest
 from ves_twin.report.diagnosis.credibility import credibility
 from ves_twin.report.diagnosis.law import law_heading, law_parts
 from ves_twin.report.diagnosis.limits import (
+    blind_causes,
     findable_sentence,
     limit_sentences,
     next_sentences,
@@ -313,7 +314,7 @@ def _chi2(value: float | None) -> str:
 
 def _findable(verdict: Verdict) -> list[Html]:
     known = {k: f for k, f in verdict.smallest_findable.items() if f.value is not None}
-    blind = [spoken(k) for k, f in verdict.smallest_findable.items() if f.value is None]
+    blind = blind_causes(verdict)
     rows = [(spoken(label), quantity(f.value, f.unit)) for label, f in known.items()]
     parts = [
         paragraph(findable_sentence(verdict), "note"),

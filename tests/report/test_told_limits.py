@@ -1,0 +1,50 @@
+"""What a verdict says that it does not know agrees with what it says that it found."""
+
+from __future__ import annotations
+
+import pytest
+
+from ves_twin.diagnosis.build_up.result import Proved
+from ves_twin.diagnosis.law.result import LAW
+from ves_twin.diagnosis.verdict import Basis, Cause, Estimate, Findable, Kind, Statistics, Verdict
+from ves_twin.report.diagnosis.answer import confidence_sentence
+from ves_twin.report.diagnosis.limits import blind_causes
+
+FIGURES = Statistics(1.0, 2.0, 9.0, 5.0)
+SIZE = Estimate(92e3, 88e3, 96e3, "N/m", 1e5)
+
+
+def verdict(firm: bool = True, left_out: tuple[str, ...] = ()) -> Verdict:
+    basis = Basis("declared", "declared", "measured", left_out=left_out)
+    cause = Cause("viscous_friction", "slide", {"damping": SIZE}, 1.0, firm, None)
+    one = Proved("viscous_friction", "slide", {}, 1e-6, 20, {"force": (9.0, 8.0)}, firm)
+    names = ("viscous_friction@slide", "joint_spring@slide", "quadratic_drag@slide")
+    return Verdict(
+        Kind.PARTIAL,
+        basis,
+        FIGURES,
+        causes=(cause,),
+        tuned={"joint_spring@slide:stiffness": SIZE},
+        smallest_findable={name: Findable(None, "1") for name in names},
+        proved=(one,),
+        put_to_proof=1,
+        false_discovery_rate=0.05,
+    )
+
+
+def test_nothing_is_said_to_be_unknown_of_what_has_a_size_beside_others():
+    assert blind_causes(verdict()) == ["quadratic drag at slide"]
+
+
+@pytest.mark.parametrize(
+    ("firm", "left_out", "warned"),
+    [
+        (True, (LAW,), True),
+        (True, (f"{LAW} (some 12 min: --law asks for it)",), True),
+        (True, ("pairs of causes",), False),
+        (False, (LAW,), False),
+    ],
+)
+def test_firm_names_are_told_with_a_law_that_nobody_looked_for(firm, left_out, warned):
+    """A one-sided stop in a car's strut, which the library lacks, was called a cubic spring."""
+    assert ("No law was looked for" in confidence_sentence(verdict(firm, left_out))) is warned
