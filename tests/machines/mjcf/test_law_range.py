@@ -3,6 +3,7 @@
 from dataclasses import replace
 
 import numpy as np
+import pytest
 from pendulum import FED, MACHINE
 
 from ves_twin.core.recording.recording import Recording, RecordingInfo
@@ -36,3 +37,14 @@ def test_a_motion_beyond_the_range_of_a_law_is_told_with_its_share():
 
 def test_a_motion_within_the_range_of_a_law_is_not_mentioned():
     assert "held" not in notes(50.0)
+
+
+@pytest.mark.parametrize(("rate", "told"), [(20.0, True), (100.0, False)])
+def test_a_comparison_of_more_than_a_diagnosis_looks_at_says_so(rate, told):
+    """An isolator's force fell by 6 % over all rows, and by 38 % below 50 Hz, which is fitted."""
+    rig = replace(MACHINE, description=MACHINE.description.model_copy(update={"rate": rate}))
+    rows = MjcfForward.of(rig).simulate(FED, {})
+    signals = {"joint.angle": rows[:, :1], "joint.rate": rows[:, 1:], **FED.drive}
+    recording = Recording(FED.time, signals, RecordingInfo("measured", scenario="run"))
+    (case,) = MjcfMachine(rig).cases(Named("run", recording))
+    assert ("a diagnosis looks below 10 Hz alone" in " ".join(case.notes)) is told

@@ -32,6 +32,9 @@ SAME = 1e-6
 """Share of a set-point's span by which two recordings of one programme may differ: the digits that
 a log is written with."""
 
+NARROWER = 0.5
+"""Share of the rows from which on a diagnosis compares so much less that it is told."""
+
 
 @dataclass(frozen=True, kw_only=True)
 class MjcfCase(Case):
@@ -144,6 +147,7 @@ def mjcf_cases(
                 notes=(
                     *((f"the first {forget:g} s are not compared",) if forget else ()),
                     *_beyond(forward, ready),
+                    *_wider(own, ready),
                 ),
                 rows=slice(first, len(time)),
                 offset=0.0,
@@ -164,6 +168,16 @@ def _beyond(forward: MjcfForward, recording: Recording) -> tuple[str, ...]:
         if share > 0.0:
             found.append(held_words(law, share))
     return tuple(found)
+
+
+def _wider(rig: Rig, recording: Recording) -> tuple[str, ...]:
+    """That a diagnosis looks at a lower band than this comparison, where it does."""
+    rate = rig.description.rate
+    rows = (len(recording.time) - 1) / float(np.ptp(recording.time))
+    if recording.info.log == POSES or rate > NARROWER * rows:
+        return ()
+    band = f"a diagnosis looks below {rate / 2.0:.3g} Hz alone"
+    return (f"all of {rows:.4g} rows a second are compared; {band}",)
 
 
 def modes_of(rig: Rig, recording: Recording) -> tuple[Mode, ...]:
