@@ -47,6 +47,15 @@ def test_an_arm_in_order_is_matched_by_number_and_nothing_is_suspected(arm, colu
     assert min(found.explained.values()) > 0.9
 
 
+def test_an_effort_of_which_much_is_left_out_is_told(arm, columns, write):
+    """An isolator shaken up to 150 Hz was judged below 50 Hz, and nothing said so."""
+    row = np.arange(len(columns["t"]))
+    loud = columns["tau2"] + np.std(columns["tau2"]) * np.sin(0.8 * np.pi * row)
+    found, _ = drafted(arm, write(changed(columns, tau2=loud)))
+    assert found.mode.startswith("motion")
+    assert "of the power of tau2 lies above" in found.mode
+
+
 def test_a_draft_of_six_columns_is_short_and_reads_its_log(arm, columns, write):
     log = write(columns)
     found, rig = drafted(arm, log)

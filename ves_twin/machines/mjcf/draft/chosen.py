@@ -15,7 +15,7 @@ from ves_twin.machines.mjcf.draft.closed_chain import closed_chain
 from ves_twin.machines.mjcf.draft.estimates import noise_of, rest_of, travel
 from ves_twin.machines.mjcf.draft.log_columns import LogColumns
 from ves_twin.machines.mjcf.draft.match import Match, Matches
-from ves_twin.machines.mjcf.draft.motion import band_of
+from ves_twin.machines.mjcf.draft.motion import band_of, spectrum
 from ves_twin.machines.mjcf.draft.spots import ON_JOINT, Quantity, is_motor, single_joints
 
 BAND = 2.0
@@ -27,6 +27,9 @@ RATES = (20.0, 100.0)
 
 ENOUGH = 115
 """Rows of the analysis that a log must leave: a diagnosis asks for 100, its low-pass takes 10."""
+
+LOST = 0.1
+"""Share of an effort's power above the band of a diagnosis that is told."""
 
 FIRST = 10
 """Rows that tell where a log begins."""
@@ -138,7 +141,8 @@ def chosen(
     for m in efforts:
         sd, how = noise[m.column]
         noise[m.column] = (float(np.hypot(sd, of_joint[m.spot.joint])), how)
-    return Chosen(Mode.MOTION, closed or why, 2.0 * band, CORNER * band, noise)
+    why = (closed or why) + _beyond(efforts, log, band)
+    return Chosen(Mode.MOTION, why, 2.0 * band, CORNER * band, noise)
 
 
 def _noise(
@@ -151,6 +155,18 @@ def _noise(
         sd, how = noise_of(log.values[m.column], log.period, rest)
         found[m.column] = (abs(m.factor) * sd, how)
     return found
+
+
+def _beyond(efforts: Sequence[Match], log: LogColumns, band: float) -> str:
+    """That an effort has much of its power above the band in which motion tells it, if one has."""
+    shares = {}
+    for m in efforts:
+        frequency, power = spectrum(log.values[m.column], log.period)
+        shares[m.column] = float(np.sum(power[frequency > band]) / max(np.sum(power), 1e-300))
+    most = max(shares, key=lambda column: shares[column])
+    if shares[most] < LOST:
+        return ""
+    return f"; {shares[most]:.0%} of the power of {most} lies above {band:.0f} Hz and is left out"
 
 
 def _shaken(positions: list[Match], model: mujoco.MjModel) -> tuple[str, ...]:
