@@ -306,7 +306,8 @@ def _refuse(log: LogColumns, matches: Matches, check: Checked, model: mujoco.MjM
     joints = ", ".join(model.joint(i).name for i in single_joints(model))
     lacks_effort = all(m.spot.quantity is not Quantity.EFFORT for m in check.found)
     expected = f"an effort of {motors}" if lacks_effort else f"a position or speed of {joints}"
-    if not model.nu:
-        expected = f"actuators in the model, or a position of {joints} and what follows from it"
     came = f"columns matched: {there}; not matched: {left}"
+    if not model.nu:
+        came = f"a model without actuators; {came}"
+        expected = f"actuators, or a position of {joints} and what follows from it"
     raise InvalidInputError(f"{log.file} does not fit the model", came, expected)
