@@ -8,6 +8,8 @@ from scipy.signal import TransferFunction, lsim
 
 from ves_twin.core.errors import InvalidInputError
 from ves_twin.machines.mjcf.draft.draft import draft
+from ves_twin.machines.mjcf.draft.match import _whole_sensors
+from ves_twin.machines.mjcf.draft.spots import Quantity, Spot
 from ves_twin.machines.mjcf.machine import Rig
 
 MASS, SPRING, DAMPER, PERIOD = 4.0, 2500.0, 20.0, 0.005
@@ -93,6 +95,16 @@ def test_a_column_that_says_its_axis_is_that_axis(shaken, tmp_path):
     del columns["block_acc_ms2"]
     _, rig = drafted(tmp_path, columns)
     assert rig.description.compare["block_acc"].axis == "x"
+
+
+def test_one_number_of_a_quaternion_is_left_out():
+    """It has four, of which none is an axis."""
+    spots = [
+        Spot(Quantity.SENSOR, "tilt", "1", frozenset({"tilt"}), k + 1, axis=k, width=4)
+        for k in range(4)
+    ]
+    assert _whole_sensors({"tilt_z": spots[3]}, spots) == {}
+    assert len(_whole_sensors({f"tilt_{k}": spots[k] for k in range(4)}, spots)) == 4
 
 
 def test_a_base_alone_is_refused_with_what_is_missing(shaken, tmp_path):

@@ -117,8 +117,7 @@ def chosen(
         why = f"no effort is told at {', '.join(free)}" if free else "not every position is told"
         return Chosen(Mode.CONTROL, why, RATES[1], check.corner, noise, imposed=imposed)
     positions = [m for m in positions if m.spot.name in driven]
-    band = BAND * max(band_of(log.values[m.column], log.period, 0.99) for m in efforts)
-    band = float(np.clip(band, 0.5 * RATES[0], min(0.5 * RATES[1], 0.25 / log.period)))
+    band = _band(log, efforts)
     share = max(_induced(m, noise, efforts, model, log, band)[1] for m in positions)
     band = max(min(band, band * (DROWNED / max(share, 1e-9)) ** 0.4), 0.5 * RATES[0])
     length = log.period * log.rows
@@ -143,6 +142,12 @@ def chosen(
         noise[m.column] = (float(np.hypot(sd, of_joint[m.spot.joint])), how)
     why = (closed or why) + _beyond(efforts, log, band)
     return Chosen(Mode.MOTION, why, 2.0 * band, CORNER * band, noise)
+
+
+def _band(log: LogColumns, followed: Sequence[Match]) -> float:
+    """Band [Hz] of what is compared, within that of an analysis and of the log."""
+    band = BAND * max(band_of(log.values[m.column], log.period, 0.99) for m in followed)
+    return float(np.clip(band, 0.5 * RATES[0], min(0.5 * RATES[1], 0.25 / log.period)))
 
 
 def _noise(
@@ -191,8 +196,7 @@ def _of_base(
 ) -> Chosen:
     """Of a model that is shaken: the band is that of what is compared."""
     followed = [m for m in check.found if m.spot.name not in imposed]
-    band = BAND * max(band_of(log.values[m.column], log.period, 0.99) for m in followed)
-    band = float(np.clip(band, 0.5 * RATES[0], min(0.5 * RATES[1], 0.25 / log.period)))
+    band = _band(log, followed)
     verb = "moves" if len(imposed) == 1 else "move"
     why = f"no actuator drives the model: {', '.join(imposed)} {verb} as recorded"
     homes = {m.column: home for m in followed if (home := _sensed_home(m, model, log))}
@@ -225,8 +229,7 @@ def _of_loops(
 
     The band is that of the efforts, or in which differentiated noise stays below DROWNED.
     """
-    band = BAND * max(band_of(log.values[m.column], log.period, 0.99) for m in drives)
-    band = float(np.clip(band, 0.5 * RATES[0], min(0.5 * RATES[1], 0.25 / log.period)))
+    band = _band(log, drives)
     share = max(_induced(m, noise, drives, model, log, band, felt)[1] for m in positions)
     band = max(min(band, band * (DROWNED / max(share, 1e-9)) ** 0.4), 0.5 * RATES[0])
     of_joint = {

@@ -137,8 +137,10 @@ def _whole_sensors(chosen: dict[str, Spot], spots: Sequence[Spot]) -> dict[str, 
         if spot.quantity is not Quantity.SENSOR or counts[spot.name] == spot.width:
             found[column] = spot
             continue
+        if spot.width != len("xyz"):
+            continue
         own = [s for s in spots if (s.quantity, s.name) == (spot.quantity, spot.name)]
-        said = [s for s in own if "xyz"[s.axis] in words_of(bare_name(column))] if own[2:] else []
+        said = [s for s in own if "xyz"[s.axis] in words_of(bare_name(column))]
         likely = said or [s for s in own if s.moves]
         if counts[spot.name] == 1 and len(likely) == 1:
             found[column] = likely[0]

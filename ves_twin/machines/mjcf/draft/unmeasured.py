@@ -44,7 +44,7 @@ def unmeasured(rig: Rig, recording: Recording) -> dict[str, dict[str, float]]:
     )
     forward = MjcfForward.of(seen)
     rows = forward.simulate(Excitation.of(recording, forward.drive), {})
-    moved = dict(zip([channel.signal for channel in forward.channels], rows.T, strict=False))
+    moved = dict(zip([channel.signal for channel in forward.channels], rows.T, strict=True))
     found = {}
     for name in names:
         q, speed = moved[f"position of {name}"], moved[f"speed of {name}"]
