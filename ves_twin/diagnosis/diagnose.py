@@ -22,6 +22,7 @@ from ves_twin.diagnosis.fit_context import FitContext
 from ves_twin.diagnosis.forward import Excitation, Forward
 from ves_twin.diagnosis.held_out import HeldOut
 from ves_twin.diagnosis.law.explained import lawful_explanation, lawful_rest
+from ves_twin.diagnosis.law.own_motion import own_motion
 from ves_twin.diagnosis.law.propose import Limits
 from ves_twin.diagnosis.law.result import LAW
 from ves_twin.diagnosis.likeness import check_likeness
@@ -215,13 +216,17 @@ class _View:
             else:
                 lawful = lawful_explanation(first, found, self.limits, chosen, held, progress)
         basis = replace(basis, left_out=tuple(seen.runs.budget.left_out))
+        looked = wanted and not any(what.startswith(LAW) for what in basis.left_out)
+        report = end.built.report if end.built else None
+        if end.built is not None and proved and not looked:
+            report = own_motion(end.built, progress)
         findings = replace(
             findings,
             law=lawful.finding if lawful else None,
             shown=lawful.explanation if lawful and unknown else None,
             beside=lawful.explanation if lawful and not unknown else None,
             found=found,
-            built=end.built.report if end.built else None,
+            built=report,
             gain=lawful.gain if lawful and lawful.explanation and unknown else end.gain,
             forecast=end.forecast,
             before=end.before,

@@ -10,6 +10,8 @@ from ves_twin.core.recording.recording import Recording, RecordingInfo
 from ves_twin.effects.law import LawKind
 from ves_twin.effects.law_table import LawTable
 from ves_twin.machines.machine import Named
+from ves_twin.machines.mjcf.case import _unsized
+from ves_twin.machines.mjcf.description import Typical
 from ves_twin.machines.mjcf.forward import MjcfForward
 from ves_twin.machines.mjcf.mjcf_machine import MjcfMachine
 
@@ -48,3 +50,11 @@ def test_a_comparison_of_more_than_a_diagnosis_looks_at_says_so(rate, told):
     recording = Recording(FED.time, signals, RecordingInfo("measured", scenario="run"))
     (case,) = MjcfMachine(rig).cases(Named("run", recording))
     assert ("a diagnosis looks below 10 Hz alone" in " ".join(case.notes)) is told
+
+
+@pytest.mark.parametrize("told", [Typical(), MACHINE.description.typical])
+def test_a_signal_that_lacks_its_range_is_named_with_the_key_that_tells_it(told):
+    """A gyro's gain of 5 % was not among the causes of a satellite, and nothing said so."""
+    description = MACHINE.description.model_copy(update={"typical": told})
+    note = " ".join(_unsized(replace(MACHINE, description=description), ["joint.angle"]))
+    assert ("without [typical.signal] joint.angle.span" in note) is (told == Typical())

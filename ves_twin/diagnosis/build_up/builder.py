@@ -12,6 +12,7 @@ from ves_twin.diagnosis.build_up.best_proved import best_proved, most_promising
 from ves_twin.diagnosis.build_up.discrepancy import discrepancy
 from ves_twin.diagnosis.build_up.halves import Halves, halves_at
 from ves_twin.diagnosis.build_up.in_full import in_full
+from ves_twin.diagnosis.build_up.next_of_kin import next_of_kin
 from ves_twin.diagnosis.build_up.offer import Offer, preferred
 from ves_twin.diagnosis.build_up.plain_selector import PlainSelector
 from ves_twin.diagnosis.build_up.proof import prove
@@ -169,10 +170,12 @@ class Builder:
         """What is proved of a choice, fitted in full."""
         self.desk.progress(0.0, f"putting {len(chosen)} causes to proof")
         labels = frozenset(halves.regression.trials[n].cause.label for n in chosen)
-        proof = prove(halves.regression, halves.held, chosen, more=len(known - labels))
+        more = len(known - labels)
+        proof = next_of_kin(prove(halves.regression, halves.held, chosen, more))
         evidence = self.evidence(proof.bench.fit.residual, memory=False)
         fit = in_full(halves.regression, proof.proved, point, evidence)
-        return Offer.of(halves, point, proof, fit, known | labels)
+        tried = (halves.regression.trials[n].cause.label for n in (*proof.proved, *proof.dropped))
+        return Offer.of(halves, point, proof, fit, known.union(tried))
 
     def again(self, offer: Offer) -> list[Offer]:
         """What comes of choosing beside what is proved, without causes that were rejected.

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -22,6 +22,7 @@ from ves_twin.machines.mjcf.description import Mode
 from ves_twin.machines.mjcf.experiment import MjcfExperiment
 from ves_twin.machines.mjcf.forward import MjcfForward
 from ves_twin.machines.mjcf.machine import Rig
+from ves_twin.machines.mjcf.places import typical_span
 from ves_twin.machines.mjcf.signals import rig_signals
 
 FORGET = 1.0
@@ -148,6 +149,7 @@ def mjcf_cases(
                     *((f"the first {forget:g} s are not compared",) if forget else ()),
                     *_beyond(forward, ready),
                     *_wider(own, ready),
+                    *_unsized(own, outputs),
                 ),
                 rows=slice(first, len(time)),
                 offset=0.0,
@@ -178,6 +180,17 @@ def _wider(rig: Rig, recording: Recording) -> tuple[str, ...]:
         return ()
     band = f"a diagnosis looks below {rate / 2.0:.3g} Hz alone"
     return (f"all of {rows:.4g} rows a second are compared; {band}",)
+
+
+def _unsized(rig: Rig, outputs: Sequence[str]) -> tuple[str, ...]:
+    """That a "*" asks for nothing of a signal whose range nobody tells."""
+    told = rig.description
+    sensed = [name for name in outputs if not told.compare[name].actuator]
+    bare = [name for name in sensed if not typical_span(name, told)]
+    if not told.effects or not bare:
+        return ()
+    keys = ", ".join(f"[typical.signal] {name}.span" for name in bare)
+    return (f"a diagnosis asks for no gain, offset or delay of {', '.join(bare)} without {keys}",)
 
 
 def modes_of(rig: Rig, recording: Recording) -> tuple[Mode, ...]:

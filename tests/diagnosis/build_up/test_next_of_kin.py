@@ -1,0 +1,41 @@
+"""A cause that held-out rows do not bear out leaves its place to another at the same target."""
+
+from __future__ import annotations
+
+import pytest
+from linear import Linear, halves
+
+from ves_twin.diagnosis.build_up.next_of_kin import next_of_kin
+from ves_twin.diagnosis.build_up.proof import Proof, prove
+
+PLANT = Linear()
+
+
+def proofs(hidden: dict[str, float], chosen: set[str]) -> tuple[Proof, Proof, dict[int, str]]:
+    """Of a choice alone, and with what takes the place of dropped ones; labels by number."""
+    both = halves(PLANT, hidden, 4)
+    labels = {n: trial.cause.label for n, trial in enumerate(both.regression.trials)}
+    some: dict[str, int] = {}
+    for n, label in labels.items():
+        if label in chosen:
+            some.setdefault(label, n)
+    before = prove(both.regression, both.held, list(some.values()))
+    return before, next_of_kin(before), labels
+
+
+def test_what_was_dropped_leaves_its_place_to_what_is_there():
+    hidden = {"coulomb@a:size": 0.5, "spring@b:size": 1.0}
+    before, after, labels = proofs(hidden, {"rotor@a", "spring@b"})
+    assert {labels[n] for n in before.proved} == {"spring@b"}
+    assert {labels[n] for n in after.proved} == {"coulomb@a", "spring@b"}
+    assert after.tested == before.tested + 1
+    assert {labels[n] for n in after.dropped} == {"rotor@a"}
+
+
+@pytest.mark.parametrize("chosen", [{"rotor@a", "spring@b"}, {"spring@b"}])
+def test_nothing_enters_where_nothing_is_and_every_try_counts_for_the_rate(chosen):
+    before, after, _ = proofs({"spring@b:size": 1.0}, chosen)
+    assert after.proved == before.proved
+    more = set(after.dropped) - set(before.dropped)
+    assert after.tested == before.tested + len(more)
+    assert len(more) <= len(before.dropped)
