@@ -4,8 +4,11 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from ves_twin.diagnosis.build_up.proof import Proof, prove
+from ves_twin.diagnosis.build_up.proof import NULL_FROM, Proof, prove
 from ves_twin.diagnosis.build_up.stand_ins import HALF, LEAST
+
+MOST = 3
+"""Others that are tried in the place of one: each that fails costs the rest a share of the rate."""
 
 
 def next_of_kin(proof: Proof) -> Proof:
@@ -13,26 +16,33 @@ def next_of_kin(proof: Proof) -> Proof:
 
     A choice on the fitted half takes one of several causes that look alike there. Where held-out
     rows do not bear it out, its like may be what is there: viscous friction of a satellite's wheel
-    failed in the place of Coulomb friction. One other is tried for each, the one that takes most
-    of the fitted half beside what is proved, and it counts for the rate.
+    failed in the place of Coulomb friction. Those are tried that take most of the fitted half
+    beside what is proved, until one is proved, and each counts for the rate; none in the place of
+    what held-out rows speak against.
     """
-    told, bench = proof, proof.bench
-    for n in sorted(proof.dropped, key=lambda one: proof.dropped[one]):
-        other = _likest(told, n)
-        if other is None:
-            continue
-        names, more = [*told.proved, other], told.tested - len(told.proved)
-        tried = prove(bench.regression, bench.held, names, more, bench.errors)
-        if set(tried.proved) == set(names):
-            told = replace(tried, dropped={**told.dropped, **tried.dropped})
-            continue
-        p = tried.dropped[other] if other in tried.dropped else tried.differences[other].p
-        told = replace(told, tested=tried.tested, dropped={**told.dropped, other: p})
+    told = proof
+    likely = [n for n, p in proof.dropped.items() if p <= NULL_FROM]
+    for n in sorted(likely, key=lambda one: proof.dropped[one]):
+        for other in _likest(told, n):
+            told = _beside(told, other)
+            if other in told.proved:
+                break
     return told
 
 
-def _likest(proof: Proof, dropped: int) -> int | None:
-    """Of other causes at its target the one that takes most, half as much as it did or more."""
+def _beside(proof: Proof, other: int) -> Proof:
+    """The proof with another trial beside all of it; where not all of that is proved, as it was."""
+    bench, names = proof.bench, [*proof.proved, other]
+    more = proof.tested - len(proof.proved)
+    tried = prove(bench.regression, bench.held, names, more, bench.errors)
+    if set(tried.proved) == set(names):
+        return replace(tried, dropped={**proof.dropped, **tried.dropped})
+    p = tried.dropped[other] if other in tried.dropped else tried.differences[other].p
+    return replace(proof, tested=tried.tested, dropped={**proof.dropped, other: p})
+
+
+def _likest(proof: Proof, dropped: int) -> list[int]:
+    """Of other causes at its target those that take most, half as much as it did or more."""
     regression = proof.bench.regression
     trials, tried = regression.trials, {*proof.proved, *proof.dropped}
     known, target = {trials[n].cause.label for n in tried}, trials[dropped].cause.target
@@ -42,10 +52,13 @@ def _likest(proof: Proof, dropped: int) -> int | None:
         if trials[k].cause.target == target and trials[k].cause.label not in known
     ]
     if not others:
-        return None
+        return []
     fit = regression.solve(proof.proved, proof.bench.fit.whitening)
     gains = regression.gains(fit, [dropped, *others])
     least = max(LEAST, HALF * gains.of(dropped))
     failed = proof.bench.held.columns.failed(others)
     sound = [k for k in others if k not in failed and gains.of(k) > least]
-    return max(sound, key=gains.of, default=None)
+    best: dict[str, int] = {}
+    for k in sorted(sound, key=gains.of, reverse=True):
+        best.setdefault(trials[k].cause.label, k)
+    return list(best.values())[:MOST]
