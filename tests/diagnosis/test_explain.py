@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from toy import QUICK, SD, Toy, programme
 
+from ves_twin.diagnosis import explain as explain_module
 from ves_twin.diagnosis.assess import STRANGE, assess, pull_limit
 from ves_twin.diagnosis.explain import FAR, _far, explain
 from ves_twin.diagnosis.fit_context import FitContext
@@ -448,3 +449,19 @@ def test_further_causes_are_all_that_a_fit_has_not_and_their_best_score_is_told(
     # below the threshold and an allowance nothing is simulated for it
     spared = replace(desk, progress=lambda *_: pytest.fail("simulated"))
     assert _second(spared, record.evidence, fit, 1e9) > LEVELS.effect
+
+
+@pytest.mark.parametrize(("size", "rough"), [(3.0, True), (0.03, False)])
+def test_a_glance_at_single_causes_will_do_where_all_leave_many_times_the_noise(
+    looked, monkeypatch, size, rough
+):
+    """A satellite's were weighed for minutes before its many causes were looked for."""
+    time = FED.time[:, None]
+    strange = size * np.sin(2.0 * np.pi * 9.0 * time) * np.where(time > 4.0, [1.0, -2.0], 0.0)
+    record, calls = looked({}, added=strange), []
+    monkeypatch.setattr(explain_module, "settled", lambda e, fits, desk: calls.append(1) or fits)
+    found = explain(record, LEVELS, QUICK, glance=True)
+    assert (found.rough, not calls) == (rough, rough)
+    assert not found.adequate
+    assert not explain(record, LEVELS, QUICK).rough
+    assert calls

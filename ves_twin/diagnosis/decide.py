@@ -100,7 +100,7 @@ def decide(
     """
     budget, many = desk.first.evidence.runs.budget, desk.settings.causes > MANY_FROM
     budget.stage(EXPLAINED if many else BUILT)
-    found = explain(desk.first, desk.thresholds, desk.settings, desk.progress)
+    found = explain(desk.first, desk.thresholds, desk.settings, desk.progress, glance=many)
     budget.stage(CHOSEN if many else BUILT)
     if found is None:
         return Conclusion(None, Kind.UNKNOWN)
@@ -123,6 +123,8 @@ def decide(
             return Conclusion(built.found, Kind.UNKNOWN, gain, None, built, cut, built.before)
     if cut:  # nothing is proved there, and nothing else was held out
         held = None
+    if found.rough and not budget.skips("single causes and pairs weighed in full"):
+        found = explain(desk.first, desk.thresholds, desk.settings, desk.progress) or found
     found = _probed(found, desk.settings)
     limit = pull_limit(desk.first.screen.bank, desk.settings.alpha)
     before = _within(found, limit)

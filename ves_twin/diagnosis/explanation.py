@@ -27,6 +27,7 @@ class Explanation:
         alone: fits of single causes, where only two together are adequate.
         hopeless: fits that were given up, under the first whitening.
         far: whether no cause takes HOPE of what is there, nor two of them by the screen.
+        rough: whether single causes were fitted roughly alone: many must be at work.
     """
 
     evidence: Evidence
@@ -43,6 +44,7 @@ class Explanation:
     alone: tuple[Fit, ...] = ()
     hopeless: tuple[Fit, ...] = ()
     far: bool = False
+    rough: bool = False
 
     @property
     def best(self) -> Fit:
