@@ -216,9 +216,8 @@ class _View:
             else:
                 lawful = lawful_explanation(first, found, self.limits, chosen, held, progress)
         basis = replace(basis, left_out=tuple(seen.runs.budget.left_out))
-        looked = wanted and not any(what.startswith(LAW) for what in basis.left_out)
         report = end.built.report if end.built else None
-        if end.built is not None and proved and not looked:
+        if end.built is not None and proved:
             report = own_motion(end.built, progress)
         findings = replace(
             findings,
