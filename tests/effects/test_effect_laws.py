@@ -17,6 +17,7 @@ import ves_twin as vt
 from ves_twin.core.errors import InvalidInputError, UnknownNameError
 from ves_twin.core.signals import SIGNALS, Role
 from ves_twin.core.units import SI_UNITS
+from ves_twin.effects.element import Element
 from ves_twin.effects.magnitude import Sign
 from ves_twin.effects.registry import (
     EFFECTS,
@@ -375,3 +376,25 @@ def test_an_earlier_name_in_the_file_of_a_machine_is_the_kind_of_today(earlier, 
     (entry,) = (e for e in Rig.load(str(path)).entries if e.effect.kind == kind)
     assert entry.cause
     assert entry.nominal[0] == 0.5
+
+
+@pytest.mark.parametrize(
+    "kind", [k for k in TARGETS if EFFECTS[k].anywhere.element is Element.SIGNAL]
+)
+def test_what_a_sensor_saw_comes_back_from_what_it_read(forwards, kind):
+    """To second order in the smallest size of interest; ends are held within the delay of them."""
+    entry = next(
+        e
+        for e in forwards[Mode.CONTROL].rig.entries
+        if (e.effect.kind, e.effect.target) == (kind, TARGETS[kind][0])
+    )
+    size = entry.magnitudes[0].smallest
+    effect = replace(entry.effect, **{next(iter(entry.effect.values)): size})
+    time = 0.002 * np.arange(500)
+    true = np.sin(np.outer(time, [7.0, 5.0, 3.0])) + 0.2
+    read = effect.edit_reading(true, true, time, entry.place)
+    back = effect.undo_reading(read, time, entry.place)
+    inner = slice(10, -10)
+    off = np.max(np.abs(read - true)[inner])
+    assert off > 0.0
+    assert np.max(np.abs(back - true)[inner]) < 0.1 * off

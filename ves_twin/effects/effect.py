@@ -263,6 +263,10 @@ class Effect(ABC):
         """What is read, or logged, (n, w) of a signal whose true values are (n, w)."""
         return reading
 
+    def undo_reading(self, reading: FloatArray, time: FloatArray, place: Place) -> FloatArray:
+        """The true values (n, w) behind what is read, to first order in the effect."""
+        return np.asarray(2.0 * reading - self.edit_reading(reading, reading, time, place))
+
     @property
     def setting(self) -> tuple[str, str]:
         """Element and attribute that stand for it in [[parameters]]: "tool", "centre_x"."""

@@ -44,6 +44,11 @@ class SensorGain(Effect):
         """Add its share of the true value."""
         return added(reading, self.column, self.gain * true[:, self.column])
 
+    def undo_reading(self, reading: FloatArray, time: FloatArray, place: Place) -> FloatArray:
+        """Less its share."""
+        share = self.gain / (1.0 + self.gain)
+        return added(reading, self.column, -share * reading[:, self.column])
+
 
 @final
 @dataclass(frozen=True)
@@ -239,3 +244,7 @@ class SensorDelay(Effect):
     ) -> FloatArray:
         """What was read a delay ago."""
         return shifted(reading, time, self.delay)
+
+    def undo_reading(self, reading: FloatArray, time: FloatArray, place: Place) -> FloatArray:
+        """What is read a delay later, the last value held."""
+        return shifted(reading, time, -self.delay)

@@ -214,3 +214,35 @@ def test_a_prediction_leaves_nothing_to_the_next(machine, mode):
         forward.simulate(Excitation("wild", TIME, wild), {"viscous_asymmetry@rail:slope": 2.0})
     Work.begin(machine, fed, {"body_mass@cart:mass": 1.0}).data.qpos[:] = 1.0
     assert np.array_equal(forward.simulate(Excitation("again", TIME, fed.drive), {}), before)
+
+
+@pytest.mark.parametrize(
+    ("kind", "target", "size"),
+    [
+        ("sensor_offset", "arm.angle.1", 0.02),
+        ("sensor_gain", "arm.angle.1", 0.1),
+        ("sensor_delay", "arm.angle", 0.004),
+    ],
+)
+def test_a_measured_start_is_what_the_sensor_saw_and_not_what_it_read(tmp_path, kind, target, size):
+    """The offset of an encoder was added to a start that had it already, and was not believed.
+
+    Recorded with the fault from a known start, and simulated with it from the recorded one.
+    """
+    fault = f'\n[[effects]]\nkind = "{kind}"\non = ["{target}"]\n'
+    typical = '\n[typical.signal."arm.angle"]\nspan = 1.0\n'
+    path = write_files(tmp_path, more=f"{fault}{typical}")
+    true = MjcfForward.of(Rig.load(str(path)))
+    path.write_text(path.read_text() + '\n[start.swing]\nposition = "measured"\n')
+    begun = MjcfForward.of(Rig.load(str(path)))
+    at = [c.name for c in true.channels].index("arm.angle")
+    (name,) = [p.name for p in true.parameters if p.name.startswith(f"{kind}@{target}:")]
+    recorded = true.simulate(programme(), {name: size})
+    fed = {**programme().drive, "arm.angle": recorded[:, [at]]}
+    with_it, without = (
+        begun.simulate(Excitation("again", TIME, fed), values)[:, at] - recorded[:, at]
+        for values in ({name: size}, {})
+    )
+    assert abs(with_it[0]) < 1e-6  # a cubic through its first rows
+    assert np.max(np.abs(with_it)) < 0.003  # of 3 rad: the speed of the start is known to 0.01
+    assert np.max(np.abs(without)) > 0.03

@@ -138,7 +138,10 @@ def _start(work: Work, first: int) -> mujoco.MjData:
 
 
 def _measured_start(work: Work, joint: str, first: int) -> tuple[float, float]:
-    """Given by the file, or by the first rows of the joint's signal that are simulated."""
+    """Given by the file, or by the first rows of the joint's signal that are simulated.
+
+    Of what its sensor saw: an offset that is read with it is none of the joint.
+    """
     told = work.rig.description
     start = told.start[joint]
     if (recorded := work.programme.drive.get(start_signal(joint))) is not None:
@@ -149,7 +152,7 @@ def _measured_start(work: Work, joint: str, first: int) -> tuple[float, float]:
         return at, to_si(start.speed, units[1], f"{what}.speed")
     signal, is_speed = read_from(told, joint)
     sign = told.compare[signal].sign if signal in told.compare else 1
-    column = sign * work.programme.drive[signal][first:, 0]
+    column = sign * work.unread(signal, work.programme.drive[signal])[first:, 0]
     if is_speed:
         return float(work.model.qpos0[work.model.joint(joint).qposadr[0]]), float(column[0])
     return first_state(column, work.programme.period, told.drive.smoothing)

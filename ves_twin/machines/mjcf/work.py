@@ -173,11 +173,24 @@ class Work:
     def reading(self, signal: str, true: FloatArray) -> FloatArray:
         """What is recorded of a signal (n, w)."""
         reading = true
-        for effect, place in self.effects:
-            name = effect.target
-            if effect.element is Element.SIGNAL and (_covers(name, signal) or _of(name, signal)):
-                reading = effect.edit_reading(reading, true, self.programme.time, place)
+        for effect, place in self._of_signal(signal):
+            reading = effect.edit_reading(reading, true, self.programme.time, place)
         return reading
+
+    def unread(self, signal: str, recorded: FloatArray) -> FloatArray:
+        """The true values (n, w) of a signal behind what was recorded of it."""
+        for effect, place in reversed(self._of_signal(signal)):
+            recorded = effect.undo_reading(recorded, self.programme.time, place)
+        return recorded
+
+    def _of_signal(self, signal: str) -> list[tuple[Effect, Place]]:
+        """Effects on a signal, one of its columns, or the part whose signal it is."""
+        return [
+            (effect, place)
+            for effect, place in self.effects
+            if effect.element is Element.SIGNAL
+            and (_covers(effect.target, signal) or _of(effect.target, signal))
+        ]
 
 
 @lru_cache(maxsize=KEPT)
