@@ -39,6 +39,9 @@ from ves_twin.diagnosis.verdict import (
     Verdict,
 )
 
+NEAR = 0.1
+"""Share of an interval within which its size is at an end of its range: bounds hold it there."""
+
 
 @dataclass(frozen=True)
 class Findings:
@@ -208,13 +211,21 @@ def sized(
         known = any(away.values()) and all(away[n] for n in away if n not in components)
         known = known and one.p <= built.false_discovery_rate  # many that are sure raise its limit
         ended = any(_ended(e, *ends[name]) for name, e in cause.parameters.items())
+        wide = not ended and any(_reaches(e, *ends[name]) for name, e in cause.parameters.items())
         below = any(_below(name, e, row) for name, e in cause.parameters.items())
-        firm = one.firm and cause.firm and known and not (ended or below)
-        found.append(replace(one, parameters=sizes, firm=firm, ended=ended, below_row=below))
+        firm = one.firm and cause.firm and known and not (ended or wide or below)
+        told = replace(one, parameters=sizes, firm=firm, ended=ended, wide=wide, below_row=below)
+        found.append(told)
     return tuple(found)
 
 
 def _ended(size: Estimate, low: float, high: float) -> bool:
+    """Whether a size is at an end of its range, by the width of its interval."""
+    near = NEAR * (size.high - size.low)
+    return _reaches(size, low, high) and not low + near < size.value < high - near
+
+
+def _reaches(size: Estimate, low: float, high: float) -> bool:
     """Whether an interval reaches an end of the range that is not what the model has already."""
     return (size.low <= low < size.nominal) or (size.high >= high > size.nominal)
 

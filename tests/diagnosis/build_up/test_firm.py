@@ -15,14 +15,22 @@ from ves_twin.report.diagnosis.proved import standing_words
 ENDS = {"level": (0.0, 2.0)}
 
 
-@pytest.mark.parametrize(("high", "firm"), [(1.9, True), (2.0, False)])
-def test_a_size_whose_interval_reaches_the_end_of_its_range_is_not_firm(high, firm):
-    size = Estimate(1.7, 1.5, high, "N", 0.0)
+@pytest.mark.parametrize(
+    ("value", "high", "firm", "ended"),
+    [(1.7, 1.9, True, False), (1.7, 2.0, False, False), (1.99, 2.0, False, True)],
+)
+def test_a_size_whose_interval_reaches_the_end_of_its_range_is_not_firm(value, high, firm, ended):
+    """At the end itself it stands for something else; a crane's viscous friction of 4.3 N s/m
+    within 0 to 21 was called that, and 4 was true.
+    """
+    size = Estimate(value, 1.5, high, "N", 0.0)
     cause = Cause("coulomb_friction", "joint", {"level": size}, 1.0, True, None)
     one = Proved("coulomb_friction", "joint", {}, 1e-3, 20, {"torque": (2.0, 1.0)}, True)
     (told,) = sized(BuildUp((one,), 1, 0.05, 0.05, {}, {}), (cause,), ENDS)
     assert told.firm is firm
-    assert told.ended is not firm
+    assert told.ended is ended
+    assert told.wide is not (firm or ended)
+    assert ("so not proved" in standing_words(told)) is ended
 
 
 @pytest.mark.parametrize("out_of_step", [False, True])

@@ -41,8 +41,9 @@ class Proved:
             same motion, and no commissioning error explains it.
         acts_like: causes that do as well in its place on held-out data; or the few, with TOGETHER
             between, whose columns together are its own.
-        ended: whether an interval of its sizes reaches an end of its range. The range then says the
-            size: it improves the prediction in the place of something else, and is not proved.
+        ended: whether one of its sizes is at an end of its range. The range then says the size: it
+            improves the prediction in the place of something else, and is not proved.
+        wide: whether an interval alone reaches an end: by itself it is hardly known.
         below_row: whether it is a delay of less than a row of the recordings, which their clock
             explains as well.
         unfollowed: channels where it acts that the extended model still predicts worse than their
@@ -58,6 +59,7 @@ class Proved:
     firm: bool
     acts_like: tuple[str, ...] = ()
     ended: bool = False
+    wide: bool = False
     below_row: bool = False
     unfollowed: tuple[str, ...] = ()
 

@@ -29,6 +29,9 @@ FORGET = 1.0
 """Time [s] at the begin that is not compared in forward simulation: a start is read from noisy
 rows, and a controller's memory is empty."""
 
+FEWEST = 8
+"""Rows that are compared at least: a spectrum and its errors need some."""
+
 SAME = 1e-6
 """Share of a set-point's span by which two recordings of one programme may differ: the digits that
 a log is written with."""
@@ -136,6 +139,9 @@ def mjcf_cases(
         forget += own.description.drive.lead if mode is Mode.CONTROL else 0.0
         time = ready.time - ready.time[0]
         first = int(np.searchsorted(time, max(start, forget) - 1e-9))
+        if len(time) - first < FEWEST:
+            came = f"{time[-1]:.3g} s, of which the first {max(start, forget):g} s are not compared"
+            raise InvalidInputError(name, came, "a longer recording: is its clock in that unit?")
         found.append(
             MjcfCase(
                 name=name,

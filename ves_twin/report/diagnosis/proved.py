@@ -92,6 +92,8 @@ def standing_words(one: Proved) -> str:
     if one.acts_like:
         like = [" with ".join(map(spoken, name.split(TOGETHER))) for name in one.acts_like]
         return f"acts like it, or like {' or '.join(like)}"
+    if one.wide:
+        return "acts like it: its interval reaches the end of its range"
     return "acts like it: what is left, a tolerance or another cause follows the same motion"
 
 

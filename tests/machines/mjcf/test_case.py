@@ -1,4 +1,4 @@
-"""Beyond the range in which a law was seen it is held, and a comparison says so."""
+"""What a comparison says beside its figures: laws that are held, bands, ranges, lengths."""
 
 from dataclasses import replace
 
@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from pendulum import FED, MACHINE
 
+from ves_twin.core.errors import InvalidInputError
 from ves_twin.core.recording.recording import Recording, RecordingInfo
 from ves_twin.effects.law import LawKind
 from ves_twin.effects.law_table import LawTable
@@ -58,3 +59,13 @@ def test_a_signal_that_lacks_its_range_is_named_with_the_key_that_tells_it(told)
     description = MACHINE.description.model_copy(update={"typical": told})
     note = " ".join(_unsized(replace(MACHINE, description=description), ["joint.angle"]))
     assert ("without [typical.signal] joint.angle.span" in note) is (told == Typical())
+
+
+@pytest.mark.parametrize("rows", [3, 400, 505])
+def test_a_recording_of_which_hardly_a_row_is_compared_is_refused_in_one_line(rows):
+    """A clock of milliseconds taken for seconds made 20 s into 0.02 s, and a traceback."""
+    signals = {"joint.angle": np.zeros((rows, 1)), "joint.rate": np.zeros((rows, 1))}
+    signals["joint.torque"] = np.ones((rows, 1))
+    short = Recording(0.002 * np.arange(rows), signals, RecordingInfo("measured", scenario="a"))
+    with pytest.raises(InvalidInputError, match="is its clock in that unit"):
+        MjcfMachine(MACHINE).cases(Named("a.csv", short))
