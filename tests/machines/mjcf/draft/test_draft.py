@@ -166,11 +166,13 @@ def test_volts_of_a_model_that_takes_volts_stay_as_they_are(tmp_path, swing, wri
     model = tmp_path / "volts.xml"
     model.write_text(swing[0].read_text().replace("<motor ", '<motor gear="0.04" '))
     volts = {("u_V" if n == "tau" else n): v for n, v in swing[1].items()}
-    for factor, told in ((25.0 * 1.02, 1.0), (25.0 * 12.0, pytest.approx(1.0 / 12.0, rel=0.1))):
+    turned = (-25.0 * 1.1, -1.0)  # a gain of 10 % off stays for the diagnosis to find
+    other = (25.0 * 12.0, pytest.approx(1.0 / 12.0, rel=0.1))
+    for factor, told in ((25.0 * 1.02, 1.0), turned, other):
         scaled = volts | {"u_V": factor * volts["u_V"]}
         _, rig = drafted(model, write(scaled))
         assert scales(rig)["drive.effort"] == told
-        assert rig.description.tolerances["gain"] == (0.01 if told == 1.0 else 0.2)
+        assert rig.description.tolerances["gain"] == (0.2 if told == other[1] else 0.01)
         model.with_name("my.toml").unlink()
 
 

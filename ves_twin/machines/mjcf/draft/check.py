@@ -242,10 +242,13 @@ class _Judge:
             fit = self.fit(match, motion)
             if match.electrical and fit.gain > TELLS:
                 scale = 1.0 / fit.slope
-                if match.spot.unit == "1" and 1.0 / FAR < scale < FAR:
+                if match.spot.unit == "1" and 1.0 / FAR < abs(scale) / match.prefix < FAR:
+                    own = float(np.copysign(match.prefix, scale))
+                    found[i] = replace(match, scale=own)
                     said.append(
                         f"{match.column} is taken as the command of {match.spot.label} as the model"
-                        f" has it; {scale:.3g} times it would fit best"
+                        f" has it{', turned' * (scale < 0.0)}; {scale / own:.3g} times it would fit"
+                        " best"
                     )
                     continue
                 found[i] = replace(match, scale=float(f"{scale:.3g}"))

@@ -57,7 +57,12 @@ class Match:
     @property
     def fitted(self) -> bool:
         """Whether that constant is one that the log gave, and no model's own command."""
-        return self.electrical and not (self.spot.unit == "1" and self.scale == 1.0)
+        return self.electrical and not (self.spot.unit == "1" and abs(self.scale) == self.prefix)
+
+    @property
+    def prefix(self) -> float:
+        """Of an electrical unit: a model's own command is in amperes or volts."""
+        return 1e-3 if self.unit in ("mA", "mV") else 1.0
 
     @property
     def factor(self) -> float:
