@@ -24,7 +24,7 @@ from ves_twin.diagnosis.refine import refine
 from ves_twin.diagnosis.refusal import refusal
 from ves_twin.diagnosis.rivals import Standing
 from ves_twin.diagnosis.settings import Settings
-from ves_twin.diagnosis.verdict import Estimate, Kind
+from ves_twin.diagnosis.verdict import ChannelError, Estimate, Kind
 from ves_twin.diagnosis.whitening import whitening_declared
 from ves_twin.report.diagnosis.answer import headline, next_step, tone
 from ves_twin.report.diagnosis.basis import basis_sentences, gain_words, taken_words
@@ -588,6 +588,18 @@ def test_where_more_than_noise_stays_the_gain_is_told_by_the_rms_and_by_units_of
     assert "falls by 50 % (force) and by 25 % (speed);" in words
     left = gain_words(replace(proven, gain=gain))  # noise alone is left: one measure says it all
     assert left == taken_words(gain)
+
+
+@pytest.mark.parametrize(
+    ("spread", "after", "told"), [(0.17, 30.0, True), (2.0, 30.0, False), (0.17, 1.0, False)]
+)
+def test_a_gain_that_leaves_more_than_a_channel_moves_by_says_so(proven, spread, after, told):
+    """A trolley that ran away by 28.7 m did so by 0.33 m then: a gain of 99 %."""
+    gain = Gain(0.99, 0.98, 1.0, before=9e4, after=9e2, errors={"rail": (28.7, 0.33)})
+    error = ChannelError(9e4, after, 28.7, 0.33, "m", spread)
+    residuals = {"rail": error}
+    words = gain_words(replace(proven, verdict=Kind.PARTIAL, gain=gain, residuals=residuals))
+    assert ("rail is still predicted worse than by a constant" in words) is told
 
 
 def test_causes_whose_p_one_stretch_of_time_may_turn_are_told_on_both_sides_of_the_limit(proven):

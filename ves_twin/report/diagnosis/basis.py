@@ -14,6 +14,9 @@ NEARLY_ALL = 0.99
 STAYS = 0.005
 """Change of an rms error that no per cent tells."""
 
+LOUD = 3.0
+"""Sigma of what is left of a channel from which that is more than noise."""
+
 GIVEN = {
     ("noise", "measured"): "noise measured at a standstill",
     ("noise", "declared"): "the declared noise",
@@ -68,10 +71,24 @@ def gain_words(verdict: Verdict) -> str:
     if gain is None or gain.share is None:
         return ""
     if verdict.verdict not in (Kind.PARTIAL, Kind.UNKNOWN) or not gain.errors:
-        return taken_words(gain)
+        return taken_words(gain) + _lost_words(verdict)
     share, low, high = _taken(gain)
     span = f" ({low} to {high})" if low else ""
-    return f"{rms_words(gain)}; of its square in units of noise, {share}{span} goes"
+    square = f"of its square in units of noise, {share}{span} goes"
+    return f"{rms_words(gain)}; {square}{_lost_words(verdict)}"
+
+
+def _lost_words(verdict: Verdict) -> str:
+    """Which channels are predicted no better than by their mean, after whatever gain.
+
+    A crane's trolley that ran away by 28.7 m did so by 0.33 m then, of 0.17 m that it moves by: a
+    gain of 99 %.
+    """
+    errors = verdict.gain.errors if verdict.gain else {}
+    own = {name: one for name, one in verdict.residuals.items() if one.after > LOUD}
+    lost = [name for name, (_, left) in errors.items() if name in own and left > own[name].spread]
+    verb = "is" if len(lost) == 1 else "are"
+    return f"; {_listed(lost)} {verb} still predicted worse than by a constant" if lost else ""
 
 
 def rms_words(gain: Gain) -> str:
