@@ -411,3 +411,33 @@ def test_a_position_far_beyond_its_joint_s_range_is_told(tmp_path):
     assert any("joint z from -0.3 to 0.3: another unit?" in words for words in found.look)
     found, _ = hoisted(tmp_path)
     assert not any("another unit" in words for words in found.look)
+
+
+CART = """
+<mujoco model="cart">
+  <option timestep="0.002" integrator="implicitfast"/>
+  <worldbody><body name="cart"><joint name="rail" type="slide" axis="1 0 0"/>
+    <inertial pos="0 0 0" mass="6" diaginertia="0.1 0.1 0.1"/>
+    <body name="rod"><joint name="swing" axis="0 1 0" damping="0.02"/>
+      <inertial pos="0 0 -0.8" mass="0.5" diaginertia="0.001 0.001 0.001"/></body></body></worldbody>
+  <actuator><motor name="belt" joint="rail"/></actuator>
+</mujoco>
+"""
+
+
+def test_a_simulation_that_runs_away_is_told_with_how_far_and_what_may_lack(tmp_path, write):
+    """Of a crane whose model has no friction "0 %" was told, and right columns were suspected."""
+    model, rng = tmp_path / "cart.xml", np.random.default_rng(3)
+    model.write_text(CART)
+    t = 0.01 * np.arange(3000)
+    x, v = 0.05 * (1.0 - np.cos(1.3 * t)), 0.065 * np.sin(1.3 * t)
+    effort = 6.0 * 0.0845 * np.cos(1.3 * t) + np.where(v > 0.0, 3.0, -2.2)
+    place = x + 2e-5 * rng.standard_normal(len(t))
+    angle = 0.0086 * np.cos(1.3 * t) + 4e-4 * rng.standard_normal(len(t))
+    columns = {"t": t, "belt_N": effort, "rail_m": place, "swing_rad": angle}
+    found, _ = drafted(model, write(columns))
+    words = " ".join(found.look)
+    assert "simulated, rail.position runs" in words
+    assert "has a joint no damping or friction in the model?" in words
+    assert "smaller timestep" not in words
+    assert min(found.explained.values()) == 0.0

@@ -44,11 +44,14 @@ STRETCH = 2.0
 LONGEST = 60.0
 """Stretch of a log that is predicted to say how near the model is [s]."""
 
-HORIZONS = (10.0, 5.0, 3.0, 2.0, 1.5)
+HORIZONS = (10.0, 5.0, 3.0, 2.0, 1.5, 1.0, 0.5)
 """Pieces that are tried where the model runs away from a log [s], the longest first."""
 
 HELPS = 0.1
 """Share of a signal's power that a horizon must explain more for it to be taken."""
+
+AWAY = -1.0
+"""Share of a channel's power below which a simulation runs away: it is off by more than moves."""
 
 COARSE = 3.0
 """Error of the model's step, in noise of one row, that is told: a rotary pendulum with 13 had
@@ -124,7 +127,7 @@ def draft(model: Path, logs: Sequence[Path], out: Path, rate: float | None = Non
         recording = read_rig_recording(logs[0], now.rig)
         now = version(replace(now.mode, typical=unmeasured(now.rig, recording)))
     if now.mode.either and now.explained[now.least] < HALF:
-        why = f"open loop the model explains {now.explained[now.least]:.0%} of {now.least}"
+        why = f"open loop the model explains {_percent(now)} of {now.least}"
         now = version(chosen(log, matches, check, given.model, why))
     if now.mode.mode is Mode.CONTROL and now.explained[now.least] < HALF:
         recording = read_rig_recording(logs[0], now.rig)
@@ -138,7 +141,8 @@ def draft(model: Path, logs: Sequence[Path], out: Path, rate: float | None = Non
     look = (*given.notes, *log.notes, *check.findings, *now.coarse)
     words, stretch = f"{now.mode.mode}: {now.mode.why}", _stretch(now.mode, log)
     guesses = _guesses(check, now.mode)
-    return Draft(now.text, given.text, guesses, left, look, words, now.explained, stretch)
+    told = {name: max(share, 0.0) for name, share in now.explained.items()}
+    return Draft(now.text, given.text, guesses, left, look, words, told, stretch)
 
 
 @dataclass(frozen=True)
@@ -163,7 +167,7 @@ def _in_pieces(whole: _Version, version: Callable[[Chosen], _Version]) -> _Versi
     Where no horizon helps, or no row tells a joint's start, all stays as it is.
     """
     mode, share = whole.mode, whole.explained[whole.least]
-    why = f"{mode.why}; over the whole log the model explains {share:.0%} of {whole.least}"
+    why = f"{mode.why}; over the whole log the model explains {_percent(whole)} of {whole.least}"
     best, found = share + HELPS, whole
     for horizon in (h for h in HORIZONS if h * mode.rate >= ROWS):
         try:
@@ -175,6 +179,11 @@ def _in_pieces(whole: _Version, version: Callable[[Chosen], _Version]) -> _Versi
         if found.explained[found.least] >= HALF:
             break
     return found
+
+
+def _percent(version: _Version) -> str:
+    """What it explains least of; a simulation that runs away explains nothing."""
+    return f"{max(version.explained[version.least], 0.0):.0%}"
 
 
 def _stretch(mode: Chosen, log: LogColumns) -> float:
@@ -203,7 +212,8 @@ def _predicted(rig: Rig, log: Path) -> tuple[dict[str, float], list[str]]:
     """Of the model, fed with the log's commands: what it explains, and what its step spoils.
 
     Returns:
-        Signal -> share of its power; a sentence for each channel that the step puts far off.
+        Signal -> share of its power, below zero where it runs away; a sentence for channels that
+        do, or that the step puts far off.
     """
     recording = read_rig_recording(log, rig)
     rows = recording.time - recording.time[0] <= LONGEST
@@ -216,16 +226,22 @@ def _predicted(rig: Rig, log: Path) -> tuple[dict[str, float], list[str]]:
     )
     shares: dict[str, list[float]] = {}
     coarse: dict[str, tuple[float, str]] = {}
+    lost: list[str] = []
     for column, half, channel in zip(found.T, finer.T, forward.channels, strict=True):
         off = 2.0 * float(np.sqrt(np.mean((half - column) ** 2)))  # to first order
-        if off > COARSE * channel.sd > 0.0:
-            coarse[channel.name] = off / channel.sd, quantity(off, channel.unit, 2)
         y = short[channel.signal][: len(column), channel.column]
         rest, power = y - column, float(np.sum((y - y.mean()) ** 2)) or 1.0
-        share = 1.0 - float(rest @ rest) / power if np.all(np.isfinite(rest)) else 0.0
+        share = 1.0 - float(rest @ rest) / power if np.all(np.isfinite(rest)) else -np.inf
         shares.setdefault(channel.signal, []).append(share)
+        if share < AWAY:
+            ends = (np.sqrt(np.mean(x * x)) for x in (rest, y - y.mean()))
+            far, moves = (quantity(float(x), channel.unit, 2) for x in ends)
+            lost.append(f"simulated, {channel.name} runs {far} away (rms) and moves by {moves}")
+        elif off > COARSE * channel.sd > 0.0:
+            coarse[channel.name] = off / channel.sd, quantity(off, channel.unit, 2)
     step = float(rig.model.opt.timestep)
-    return {name: max(min(found), 0.0) for name, found in shares.items()}, _coarse(coarse, step)
+    words = [f"{'; '.join(lost)}: has a joint no damping or friction in the model?"] if lost else []
+    return {name: min(found) for name, found in shares.items()}, [*words, *_coarse(coarse, step)]
 
 
 def _coarse(found: dict[str, tuple[float, str]], step: float) -> list[str]:
