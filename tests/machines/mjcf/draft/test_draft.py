@@ -441,3 +441,13 @@ def test_a_simulation_that_runs_away_is_told_with_how_far_and_what_may_lack(tmp_
     assert "has a joint no damping or friction in the model?" in words
     assert "smaller timestep" not in words
     assert min(found.explained.values()) == 0.0
+
+
+@pytest.mark.parametrize(("factor", "asked"), [(1.0, False), (1000.0, True), (1e-4, True)])
+def test_rows_that_no_machine_is_logged_at_ask_for_the_unit_of_the_clock(
+    swing, write, factor, asked
+):
+    """Milliseconds taken for seconds made a motor's constant of 5e5."""
+    named = {("t [s]" if name == "t" else name): rows for name, rows in swing[1].items()}
+    found, _ = drafted(swing[0], write(named | {"t [s]": factor * swing[1]["t"]}))
+    assert ("apart: is that its unit?" in " ".join(found.look)) is asked

@@ -25,6 +25,9 @@ FILLED = 0.9
 JITTER = 0.01
 """Departure of a step from the usual one from which on a draft says so."""
 
+USUAL = (1e-5, 0.5)
+"""Time between rows of a machine's log [s], beyond which its clock may be in another unit."""
+
 
 @dataclass(frozen=True)
 class LogColumns:
@@ -98,6 +101,8 @@ class LogColumns:
 
 def _period(time: FloatArray, clock: str, notes: list[str]) -> float:
     period = usual_step(time[np.isfinite(time)])
+    if not USUAL[0] <= period <= USUAL[1]:
+        notes.append(f"clock {clock}: rows are {period:.3g} s apart: is that its unit?")
     steps = np.diff(time)
     wide = steps[steps > GAP * period]
     if len(wide) > UNEVEN * len(steps):
