@@ -451,3 +451,13 @@ def test_rows_that_no_machine_is_logged_at_ask_for_the_unit_of_the_clock(
     named = {("t [s]" if name == "t" else name): rows for name, rows in swing[1].items()}
     found, _ = drafted(swing[0], write(named | {"t [s]": factor * swing[1]["t"]}))
     assert ("apart: is that its unit?" in " ".join(found.look)) is asked
+
+
+def test_a_spring_that_no_cause_can_change_is_told(tmp_path, swing, write):
+    """Of a series elastic joint whose spring was a tendon nothing was said of its stiffness."""
+    joint = '<joint joint="joint" coef="1"/>'
+    tendon = f'<tendon><fixed name="spring" stiffness="3">{joint}</fixed></tendon>'
+    model = tmp_path / "sprung.xml"
+    model.write_text(swing[0].read_text().replace("<actuator>", f"{tendon}<actuator>", 1))
+    found, _ = drafted(model, write(swing[1]))
+    assert any("no cause changes the stiffness of tendon spring" in words for words in found.look)
