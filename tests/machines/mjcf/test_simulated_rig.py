@@ -246,3 +246,35 @@ def test_a_measured_start_is_what_the_sensor_saw_and_not_what_it_read(tmp_path, 
     assert abs(with_it[0]) < 1e-6  # a cubic through its first rows
     assert np.max(np.abs(with_it)) < 0.003  # of 3 rad: the speed of the start is known to 0.01
     assert np.max(np.abs(without)) > 0.03
+
+
+@pytest.mark.parametrize(
+    ("kind", "target", "size"),
+    [
+        ("sensor_offset", "arm.angle.1", 0.05),
+        ("sensor_gain", "arm.angle.1", 0.1),
+        ("sensor_delay", "arm.angle", 0.02),
+    ],
+)
+def test_a_fault_of_an_encoder_whose_motion_is_fed_in_is_taken_off_that_motion(
+    tmp_path, kind, target, size
+):
+    """Of a series elastic joint 4 ms between two encoders were a third of the effort's error."""
+    fault = f'\n[[effects]]\nkind = "{kind}"\non = ["{target}"]\n'
+    typical = '\n[typical.signal."arm.angle"]\nspan = 1.0\n'
+    path = write_files(tmp_path, more=f"{fault}{typical}")
+    forward = MjcfForward.of(Rig.load(str(path)), Mode.MOTION)
+    (name,) = [p.name for p in forward.parameters if p.name.startswith(f"{kind}@{target}:")]
+    true = programme().drive["arm.angle"]
+    read = {
+        "sensor_offset": true + size,
+        "sensor_gain": (1.0 + size) * true,
+        "sensor_delay": np.interp(TIME - size, TIME, true[:, 0])[:, None],
+    }
+    fed = {**programme().drive, "arm.angle": read[kind]}
+    right = forward.simulate(programme(), {})[INNER]
+    known = forward.simulate(Excitation("known", TIME, fed), {name: size})[INNER]
+    unknown = forward.simulate(Excitation("unknown", TIME, fed), {})[INNER]
+    off = np.max(np.abs(unknown - right))
+    assert off > 0.1
+    assert np.max(np.abs(known - right)) < 0.02 * off  # linear between rows, for a delay

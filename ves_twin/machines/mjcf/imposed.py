@@ -67,7 +67,7 @@ class Imposed:
         late = 0.5 / steps if model.opt.integrator == STAGED else 0.0
         places, dofs, motions = [], [], []
         for joint, signal in drive.imposed_signals.items():
-            column = work.position(joint, programme.drive[signal][:, 0])
+            column = work.position(joint, work.seen(signal)[:, 0])
             smooth = smoothed(column, programme.period, drive.smoothing)
             spline, rate = CubicSpline(np.arange(rows), smooth), 1.0 / programme.period
             motion = [rate**k * spline(at, k) for k in range(3)]

@@ -104,8 +104,9 @@ def _moved_of(work: Work) -> Moved:
     have a motion of their own, of which directions would not be used again.
     """
     rigid, (nominal, content) = _rigid(work.model), _nominal(work.rig.model)
-    recorded = {j: work.programme.drive[s][:, 0] for j, s in _single(work)}
-    positions = {j: work.position(j, column) for j, column in recorded.items()}
+    fed = _single(work)
+    recorded = {j: work.programme.drive[s][:, 0] for j, s in fed}
+    positions = {j: work.position(j, work.seen(s)[:, 0]) for j, s in fed}
 
     def motion(model: mujoco.MjModel, numbers: bytes) -> _Motion:
         digest = hashlib.sha256(f"{work.rig.identity}{work.programme.identity}".encode() + numbers)

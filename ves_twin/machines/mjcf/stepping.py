@@ -152,7 +152,7 @@ def _measured_start(work: Work, joint: str, first: int) -> tuple[float, float]:
         return at, to_si(start.speed, units[1], f"{what}.speed")
     signal, is_speed = read_from(told, joint)
     sign = told.compare[signal].sign if signal in told.compare else 1
-    column = sign * work.unread(signal, work.programme.drive[signal])[first:, 0]
+    column = sign * work.seen(signal)[first:, 0]
     if is_speed:
         return float(work.model.qpos0[work.model.joint(joint).qposadr[0]]), float(column[0])
     return first_state(column, work.programme.period, told.drive.smoothing)

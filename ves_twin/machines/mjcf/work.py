@@ -177,8 +177,9 @@ class Work:
             reading = effect.edit_reading(reading, true, self.programme.time, place)
         return reading
 
-    def unread(self, signal: str, recorded: FloatArray) -> FloatArray:
-        """The true values (n, w) of a signal behind what was recorded of it."""
+    def seen(self, signal: str) -> FloatArray:
+        """What a sensor saw (n, w) of what was recorded of it and is fed in."""
+        recorded = self.programme.drive[signal]
         for effect, place in reversed(self._of_signal(signal)):
             recorded = effect.undo_reading(recorded, self.programme.time, place)
         return recorded
