@@ -2,11 +2,23 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import pytest
 
 from ves_twin.diagnosis.build_up.result import Proved
+from ves_twin.diagnosis.gain import Gain
 from ves_twin.diagnosis.law.result import LAW
-from ves_twin.diagnosis.verdict import Basis, Cause, Estimate, Findable, Kind, Statistics, Verdict
+from ves_twin.diagnosis.verdict import (
+    Basis,
+    Cause,
+    ChannelError,
+    Estimate,
+    Findable,
+    Kind,
+    Statistics,
+    Verdict,
+)
 from ves_twin.report.diagnosis.answer import confidence_sentence
 from ves_twin.report.diagnosis.limits import blind_causes
 
@@ -48,3 +60,22 @@ def test_nothing_is_said_to_be_unknown_of_what_has_a_size_beside_others():
 def test_firm_names_are_told_with_a_law_that_nobody_looked_for(firm, left_out, warned):
     """A one-sided stop in a car's strut, which the library lacks, was called a cubic spring."""
     assert ("No law was looked for" in confidence_sentence(verdict(firm, left_out))) is warned
+
+
+@pytest.mark.parametrize(
+    ("there", "held_out", "warned"),
+    [(1.8, "measured", True), (0.9, "measured", False), (1.8, "split", False)],
+)
+def test_held_out_recordings_of_another_motion_are_told(there, held_out, warned):
+    """Two frictions of a series elastic joint were not proved, as a chirp hid them."""
+    gain = Gain(0.2, 0.1, 0.3, 9.0, 8.0, errors={"force": (there, 1.5)})
+    error = ChannelError(9.0, 8.0, 0.6, 0.5, "N", 2.0, tolerances_si=0.58)
+    plain = verdict()
+    told = replace(
+        plain,
+        gain=gain,
+        residuals={"force": error},
+        basis=replace(plain.basis, held_out=held_out),
+    )
+    words = confidence_sentence(told)
+    assert ("3.1 times as far off as on the fitted ones (force)" in words) is warned
