@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import replace
 
 from ves_twin.diagnosis.build_up.proof import NULL_FROM, Proof, prove
@@ -17,28 +18,28 @@ def next_of_kin(proof: Proof) -> Proof:
     A choice on the fitted half takes one of several causes that look alike there. Where held-out
     rows do not bear it out, its like may be what is there: viscous friction of a satellite's wheel
     failed in the place of Coulomb friction. Those are tried that take most of the fitted half
-    beside what is proved, until one is proved, and each counts for the rate; none in the place of
-    what held-out rows speak against.
+    beside what is proved, until one is proved, and each counts for the rate if one is; none in the
+    place of what held-out rows speak against.
     """
-    told = proof
+    told, in_vain = proof, dict[int, float]()
     likely = [n for n, p in proof.dropped.items() if p <= NULL_FROM]
     for n in sorted(likely, key=lambda one: proof.dropped[one]):
         for other in _likest(told, n):
-            told = _beside(told, other)
-            if other in told.proved:
+            tried = _beside(told, other, in_vain)
+            if other in tried.proved and len(tried.proved) > len(told.proved):
+                told, in_vain = tried, {}
                 break
+            found = tried.differences
+            in_vain[other] = found[other].p if other in tried.proved else tried.dropped[other]
     return told
 
 
-def _beside(proof: Proof, other: int) -> Proof:
-    """The proof with another trial beside all of it; where not all of that is proved, as it was."""
+def _beside(proof: Proof, other: int, in_vain: Mapping[int, float]) -> Proof:
+    """The proof with another trial beside all of it, those before it tried in vain."""
     bench, names = proof.bench, [*proof.proved, other]
-    more = proof.tested - len(proof.proved)
+    more = proof.tested - len(proof.proved) + len(in_vain)
     tried = prove(bench.regression, bench.held, names, more, bench.errors)
-    if set(tried.proved) == set(names):
-        return replace(tried, dropped={**proof.dropped, **tried.dropped})
-    p = tried.dropped[other] if other in tried.dropped else tried.differences[other].p
-    return replace(proof, tested=tried.tested, dropped={**proof.dropped, other: p})
+    return replace(tried, dropped={**proof.dropped, **in_vain, **tried.dropped})
 
 
 def _likest(proof: Proof, dropped: int) -> list[int]:
