@@ -25,7 +25,10 @@ MODEL = """
       </body>
     </body>
   </worldbody>
-  <tendon><fixed name="belt"><joint joint="swing" coef="0.5"/></fixed></tendon>
+  <tendon>
+    <fixed name="belt"><joint joint="swing" coef="0.5"/></fixed>
+    <fixed name="cord" stiffness="0.02"><joint joint="swing" coef="1"/></fixed>
+  </tendon>
   <actuator><motor name="drive" joint="rail"/><motor name="hinge" joint="swing"/></actuator>
   <sensor><force name="load" site="tip"/></sensor>
 </mujoco>
@@ -61,6 +64,7 @@ TARGETS = {
     "coupling_inertia": ["belt"],
     "coupling_viscous": ["belt"],
     "coupling_coulomb": ["belt"],
+    "coupling_spring": ["cord"],
     "actuator_gain": ["drive"],
     "actuator_delay": ["drive"],
     "actuator_offset": ["drive"],

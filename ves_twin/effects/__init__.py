@@ -18,7 +18,12 @@ from ves_twin.effects.bodies import (
     Payload,
     PayloadMass,
 )
-from ves_twin.effects.couplings import CouplingCoulomb, CouplingInertia, CouplingViscous
+from ves_twin.effects.couplings import (
+    CouplingCoulomb,
+    CouplingInertia,
+    CouplingSpring,
+    CouplingViscous,
+)
 from ves_twin.effects.effect import Effect
 from ves_twin.effects.friction import (
     LoadFriction,
@@ -107,6 +112,7 @@ __all__ = [
     "CoulombFriction",
     "CouplingCoulomb",
     "CouplingInertia",
+    "CouplingSpring",
     "CouplingViscous",
     "CrossTalk",
     "CubicSpring",

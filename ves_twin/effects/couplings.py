@@ -1,16 +1,18 @@
-"""Effects of a fixed tendon: what couples two joints by a gear: inertia, viscous, dry friction."""
+"""Effects of a fixed tendon, which couples joints: inertia, viscous and dry friction, a spring."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 from typing import final
 
+from ves_twin.core.errors import InvalidInputError
 from ves_twin.effects.change import Attribute
 from ves_twin.effects.effect import Effect
 from ves_twin.effects.element import Element
-from ves_twin.effects.magnitude import Sign
+from ves_twin.effects.magnitude import Magnitude, Sign
+from ves_twin.effects.place import Place
 from ves_twin.effects.row import Anywhere
-from ves_twin.effects.size import DAMPING, EFFORT, INERTIA, Size
+from ves_twin.effects.size import DAMPING, EFFORT, INERTIA, STIFFNESS, Size
 
 ON = Element.TENDON
 
@@ -62,3 +64,28 @@ class CouplingCoulomb(Effect):
     anywhere = Anywhere(
         ON, lambda p: p.effort, attribute=Attribute(ON, "frictionloss", "tendon_frictionloss")
     )
+
+
+@final
+@dataclass(frozen=True)
+class CouplingSpring(Effect):
+    """The spring between two joints is stiffer or softer: MuJoCo's stiffness of a tendon.
+
+    That of a series elastic drive, up to nothing and to twice as stiff.
+    """
+
+    stiffness: float = 0.0
+
+    kind = "coupling_spring"
+    sizes = (Size("stiffness", STIFFNESS, Sign.POSITIVE),)
+    anywhere = Anywhere(
+        ON, lambda p: p.stiffness, attribute=Attribute(ON, "stiffness", "tendon_stiffness")
+    )
+
+    @classmethod
+    def magnitudes_at(cls, place: Place) -> tuple[Magnitude, ...]:
+        """Stiffness with its range; raises InvalidInputError where the tendon has no spring."""
+        if not place.stiffness:
+            expected = "a tendon that has a stiffness in the model"
+            raise InvalidInputError(f"target of {cls.kind}", place.name, expected)
+        return super().magnitudes_at(place)

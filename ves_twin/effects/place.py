@@ -17,7 +17,7 @@ class Place:
         hinge: whether a joint turns rather than slides.
         effort, speed, travel: typical at a joint [N or N m, m/s or rad/s, m or rad]; of an
             actuator the command that this effort takes.
-        stiffness: of a joint's spring in the model [N/m or N m/rad].
+        stiffness: of the spring of a joint or tendon in the model [N/m or N m/rad].
         unit: of a signal, or of an actuator's command.
         span: typical range of a signal [its unit].
         mass: of a body [kg].

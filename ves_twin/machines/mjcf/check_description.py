@@ -149,10 +149,9 @@ def _friction(told: RigDescription, model: mujoco.MjModel) -> None:
     """Dry friction of a given motion turns its sign round over a share of the typical speed."""
     given = told.drive.joints if told.drive.mode is Mode.MOTION else told.drive.imposed
     for compared in told.compare.values():
-        if compared.actuator:
-            joint = model.joint(int(model.actuator(compared.actuator).trnid[0]))
-            if joint.name in given and model.dof_frictionloss[joint.dofadr[0]] > 0.0:
-                typical_speed(joint.name, told, model)
+        name = driven_joint(model, compared.actuator) if compared.actuator else ""
+        if name in given and model.dof_frictionloss[model.joint(name).dofadr[0]] > 0.0:
+            typical_speed(name, told, model)
 
 
 def _starts(told: RigDescription, model: mujoco.MjModel) -> None:

@@ -103,7 +103,5 @@ def _commands(rig: Rig, joint: str, mode: Mode) -> tuple[Variable, ...]:
         return ()
     told, model = rig.description, rig.model
     names = [*told.drive.actuators, *told.controllers]
-    own = [
-        n for n in dict.fromkeys(names) if int(model.actuator(n).trnid[0]) == model.joint(joint).id
-    ]
+    own = [n for n in dict.fromkeys(names) if driven_joint(model, n) == joint]
     return tuple(Variable(f"command@{name}", "") for name in own)

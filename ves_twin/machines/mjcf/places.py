@@ -97,7 +97,7 @@ def typical_span(signal: str, told: RigDescription) -> float:
     return to_si(value, unit, f"typical.joint.{compared.joint}")
 
 
-def driven_joint(model: mujoco.MjModel, actuator: str) -> str:
+def driven_joint(model: mujoco.MjModel, actuator: str | int) -> str:
     """The joint that an actuator drives; empty where it drives a tendon or a site."""
     part = model.actuator(actuator)
     on_joint = int(part.trntype[0]) == int(mujoco.mjtTrn.mjTRN_JOINT)
@@ -168,6 +168,7 @@ def _tendon(target: str, told: RigDescription, model: mujoco.MjModel) -> Place:
         effort=min(p.effort / s for p, s in zip(places, shares, strict=True)),
         speed=sum(s * p.speed for p, s in zip(places, shares, strict=True)),
         travel=sum(s * p.travel for p, s in zip(places, shares, strict=True)),
+        stiffness=float(model.tendon_stiffness[model.tendon(target).id]),
     )
 
 

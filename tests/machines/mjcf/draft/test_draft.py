@@ -7,24 +7,10 @@ import tomllib
 import mujoco
 import numpy as np
 import pytest
+from drafted import changed, drafted, scales
 
 from ves_twin.machines.mjcf.draft.draft import draft
-from ves_twin.machines.mjcf.machine import Rig
 from ves_twin.machines.mjcf.read import read_recording
-
-
-def drafted(arm, log, rate=None):
-    found = draft(arm, [log], arm.with_name("my.toml"), rate)
-    arm.with_name("my.toml").write_text(found.text)
-    return found, Rig.load(str(arm.with_name("my.toml")))
-
-
-def changed(columns, **new):
-    return {name: new.get(name, values) for name, values in columns.items()}
-
-
-def scales(rig):
-    return {n: c.scale for n, c in rig.description.signals.items()}
 
 
 def columns_of(rig):
@@ -411,53 +397,3 @@ def test_a_position_far_beyond_its_joint_s_range_is_told(tmp_path):
     assert any("joint z from -0.3 to 0.3: another unit?" in words for words in found.look)
     found, _ = hoisted(tmp_path)
     assert not any("another unit" in words for words in found.look)
-
-
-CART = """
-<mujoco model="cart">
-  <option timestep="0.002" integrator="implicitfast"/>
-  <worldbody><body name="cart"><joint name="rail" type="slide" axis="1 0 0"/>
-    <inertial pos="0 0 0" mass="6" diaginertia="0.1 0.1 0.1"/>
-    <body name="rod"><joint name="swing" axis="0 1 0" damping="0.02"/>
-      <inertial pos="0 0 -0.8" mass="0.5" diaginertia="0.001 0.001 0.001"/></body></body></worldbody>
-  <actuator><motor name="belt" joint="rail"/></actuator>
-</mujoco>
-"""
-
-
-def test_a_simulation_that_runs_away_is_told_with_how_far_and_what_may_lack(tmp_path, write):
-    """Of a crane whose model has no friction "0 %" was told, and right columns were suspected."""
-    model, rng = tmp_path / "cart.xml", np.random.default_rng(3)
-    model.write_text(CART)
-    t = 0.01 * np.arange(3000)
-    x, v = 0.05 * (1.0 - np.cos(1.3 * t)), 0.065 * np.sin(1.3 * t)
-    effort = 6.0 * 0.0845 * np.cos(1.3 * t) + np.where(v > 0.0, 3.0, -2.2)
-    place = x + 2e-5 * rng.standard_normal(len(t))
-    angle = 0.0086 * np.cos(1.3 * t) + 4e-4 * rng.standard_normal(len(t))
-    columns = {"t": t, "belt_N": effort, "rail_m": place, "swing_rad": angle}
-    found, _ = drafted(model, write(columns))
-    words = " ".join(found.look)
-    assert "simulated, rail.position runs" in words
-    assert "has a joint no damping or friction in the model?" in words
-    assert "smaller timestep" not in words
-    assert min(found.explained.values()) == 0.0
-
-
-@pytest.mark.parametrize(("factor", "asked"), [(1.0, False), (1000.0, True), (1e-4, True)])
-def test_rows_that_no_machine_is_logged_at_ask_for_the_unit_of_the_clock(
-    swing, write, factor, asked
-):
-    """Milliseconds taken for seconds made a motor's constant of 5e5."""
-    named = {("t [s]" if name == "t" else name): rows for name, rows in swing[1].items()}
-    found, _ = drafted(swing[0], write(named | {"t [s]": factor * swing[1]["t"]}))
-    assert ("apart: is that its unit?" in " ".join(found.look)) is asked
-
-
-def test_a_spring_that_no_cause_can_change_is_told(tmp_path, swing, write):
-    """Of a series elastic joint whose spring was a tendon nothing was said of its stiffness."""
-    joint = '<joint joint="joint" coef="1"/>'
-    tendon = f'<tendon><fixed name="spring" stiffness="3">{joint}</fixed></tendon>'
-    model = tmp_path / "sprung.xml"
-    model.write_text(swing[0].read_text().replace("<actuator>", f"{tendon}<actuator>", 1))
-    found, _ = drafted(model, write(swing[1]))
-    assert any("no cause changes the stiffness of tendon spring" in words for words in found.look)

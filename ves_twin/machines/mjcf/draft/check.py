@@ -15,6 +15,7 @@ from ves_twin.machines.mjcf.draft.match import Match, Matches
 from ves_twin.machines.mjcf.draft.motion import Motion, band_of, motion_of
 from ves_twin.machines.mjcf.draft.spots import Quantity, is_servo
 from ves_twin.machines.mjcf.inverse import smoothed
+from ves_twin.machines.mjcf.places import driven_joint
 
 GAINED = 0.15
 """Share of one joint's power that a change must explain more to be proposed: well above what
@@ -198,9 +199,9 @@ class _Judge:
     def pushed(self, found: list[Match]) -> set[int]:
         """Degrees of freedom of joints whose motors no column tells."""
         told = {m.spot.name for m in found}
-        motors = [self.model.actuator(i) for i in range(self.model.nu)]
-        joints = [self.model.joint(int(m.trnid[0])) for m in motors if m.name not in told]
-        return {int(j.dofadr[0]) for j in joints}
+        motors = (i for i in range(self.model.nu) if self.model.actuator(i).name not in told)
+        joints = {driven_joint(self.model, i) for i in motors}
+        return {int(self.model.joint(name).dofadr[0]) for name in joints if name}
 
     def dof(self, match: Match) -> int:
         """That an effort acts on."""

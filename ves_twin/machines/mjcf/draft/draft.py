@@ -9,7 +9,6 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
-import mujoco
 import numpy as np
 
 from ves_twin.core.errors import InvalidInputError
@@ -139,7 +138,7 @@ def draft(model: Path, logs: Sequence[Path], out: Path, rate: float | None = Non
     left = dict(matches.left)
     left |= {c: "says what was asked for" for c in matches.setpoints}
     left |= {m.column: "is a speed" for m in check.found if not used(m, now.mode)}
-    look = (*given.notes, *log.notes, *check.findings, *now.coarse, *_springs(given.model))
+    look = (*given.notes, *log.notes, *check.findings, *now.coarse)
     words, stretch = f"{now.mode.mode}: {now.mode.why}", _stretch(now.mode, log)
     guesses = _guesses(check, now.mode)
     told = {name: max(share, 0.0) for name, share in now.explained.items()}
@@ -256,15 +255,6 @@ def _coarse(found: dict[str, tuple[float, str]], step: float) -> list[str]:
         f"the model's step of {step:.3g} s puts {worst} {off} off (rms), {times:.2g} times its"
         f" noise{more}: give the model a smaller timestep"
     ]
-
-
-def _springs(model: mujoco.MjModel) -> list[str]:
-    """That no cause changes the stiffness of tendons, where a model has some."""
-    names = [model.tendon(i).name for i in np.flatnonzero(model.tendon_stiffness)]
-    if not names:
-        return []
-    told = f"no cause changes the stiffness of tendon {', '.join(names)}"
-    return [f"{told}: a spring that may be wrong has to be one of a joint, between two bodies"]
 
 
 def _guesses(check: Checked, mode: Chosen) -> tuple[Guess, ...]:

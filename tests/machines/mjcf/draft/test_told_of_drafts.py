@@ -1,0 +1,57 @@
+"""What a draft says of simulations that run away, of clocks, and of motors that no column tells."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from drafted import drafted
+
+CART = """
+<mujoco model="cart">
+  <option timestep="0.002" integrator="implicitfast"/>
+  <worldbody><body name="cart"><joint name="rail" type="slide" axis="1 0 0"/>
+    <inertial pos="0 0 0" mass="6" diaginertia="0.1 0.1 0.1"/>
+    <body name="rod"><joint name="swing" axis="0 1 0" damping="0.02"/>
+      <inertial pos="0 0 -0.8" mass="0.5" diaginertia="0.001 0.001 0.001"/></body></body></worldbody>
+  <actuator><motor name="belt" joint="rail"/></actuator>
+</mujoco>
+"""
+
+
+def test_a_simulation_that_runs_away_is_told_with_how_far_and_what_may_lack(tmp_path, write):
+    """Of a crane whose model has no friction "0 %" was told, and right columns were suspected."""
+    model, rng = tmp_path / "cart.xml", np.random.default_rng(3)
+    model.write_text(CART)
+    t = 0.01 * np.arange(3000)
+    x, v = 0.05 * (1.0 - np.cos(1.3 * t)), 0.065 * np.sin(1.3 * t)
+    effort = 6.0 * 0.0845 * np.cos(1.3 * t) + np.where(v > 0.0, 3.0, -2.2)
+    place = x + 2e-5 * rng.standard_normal(len(t))
+    angle = 0.0086 * np.cos(1.3 * t) + 4e-4 * rng.standard_normal(len(t))
+    columns = {"t": t, "belt_N": effort, "rail_m": place, "swing_rad": angle}
+    found, _ = drafted(model, write(columns))
+    words = " ".join(found.look)
+    assert "simulated, rail.position runs" in words
+    assert "has a joint no damping or friction in the model?" in words
+    assert "smaller timestep" not in words
+    assert min(found.explained.values()) == 0.0
+
+
+@pytest.mark.parametrize(("factor", "asked"), [(1.0, False), (1000.0, True), (1e-4, True)])
+def test_rows_that_no_machine_is_logged_at_ask_for_the_unit_of_the_clock(
+    swing, write, factor, asked
+):
+    """Milliseconds taken for seconds made a motor's constant of 5e5."""
+    named = {("t [s]" if name == "t" else name): rows for name, rows in swing[1].items()}
+    found, _ = drafted(swing[0], write(named | {"t [s]": factor * swing[1]["t"]}))
+    assert ("apart: is that its unit?" in " ".join(found.look)) is asked
+
+
+def test_a_motor_of_a_tendon_that_no_column_tells_is_no_joints(tmp_path, swing, write):
+    """Its tendon's number was taken for a joint's: there are more tendons than joints."""
+    one = '<fixed name="t{}"><joint joint="joint" coef="1"/></fixed>'
+    tendons = f"<tendon>{one.format(1)}{one.format(2)}</tendon>"
+    model = tmp_path / "pulled.xml"
+    text = swing[0].read_text().replace("<actuator>", f"{tendons}<actuator>", 1)
+    model.write_text(text.replace("</actuator>", '<motor name="pull" tendon="t2"/></actuator>', 1))
+    found, _ = drafted(model, write(swing[1]))
+    assert min(found.explained.values()) > 0.8
