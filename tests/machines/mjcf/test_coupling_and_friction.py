@@ -25,7 +25,7 @@ MODEL = """
     <body name="car"><joint name="c" type="slide"/><geom size="0.1" mass="1"/></body>
   </worldbody>
   <tendon>
-    <fixed name="sum" solreffriction="0.004 1">
+    <fixed name="sum" stiffness="0.3" solreffriction="0.004 1">
       <joint joint="a" coef="1"/><joint joint="b" coef="1"/></fixed>
     <fixed name="mixed"><joint joint="a" coef="1"/><joint joint="c" coef="1"/></fixed>
   </tendon>
@@ -91,7 +91,7 @@ def coupled(folder: Path, *effects: tuple[str, str]) -> Rig:
     return Rig.load(str(folder / "coupled.toml"))
 
 
-KINDS = ("coupling_viscous", "coupling_coulomb", "coupling_inertia")
+KINDS = ("coupling_viscous", "coupling_coulomb", "coupling_inertia", "coupling_spring")
 
 
 @pytest.mark.parametrize("kind", KINDS)
@@ -99,12 +99,15 @@ def test_a_coupling_acts_on_both_joints_alike_and_follows_the_sum_of_their_motio
     forward = MjcfForward.of(coupled(tmp_path, (kind, "sum")))
     (parameter,) = forward.parameters
     programme = Excitation("", T, {n: v[:, None] for n, v in FED.items()})
-    change = forward.simulate(programme, {parameter.name: 0.3}) - forward.simulate(programme, {})
+    rest = parameter.nominal
+    with_it, without = (forward.simulate(programme, {parameter.name: x + rest}) for x in (0.3, 0.0))
+    change = with_it - without
     speed = np.gradient(FED["a"] + FED["b"], 0.001)
     expected = {
         "coupling_viscous": 0.3 * speed,
         "coupling_coulomb": 0.3 * np.sign(speed),
         "coupling_inertia": 0.3 * np.gradient(speed, 0.001),
+        "coupling_spring": 0.3 * (FED["a"] + FED["b"]),
     }[kind]
     inside = slice(50, -50)  # away from the ends, where the low-pass has no neighbours
     clear = np.abs(speed[inside]) > 0.05
@@ -116,14 +119,15 @@ def test_a_coupling_acts_on_both_joints_alike_and_follows_the_sum_of_their_motio
 def test_simulated_forward_a_coupling_is_the_tendon_of_mujoco(tmp_path, kind):
     """What the motion of such a machine needs, computed backwards, is what was fed in."""
     rig = coupled(tmp_path, (kind, "sum"))
-    name = MjcfForward.of(rig).parameters[0].name
+    one = MjcfForward.of(rig).parameters[0]
+    name, size = one.name, one.nominal + 0.2
     torque = {"ta": 2 * np.sin(4 * T), "tb": np.sin(6 * T)}
     fed = {n: v[:, None] for n, v in torque.items()}
     forward = MjcfForward.of(rig, Mode.CONTROL)
-    path = forward.simulate(Excitation("", T, fed), {name: 0.2})
+    path = forward.simulate(Excitation("", T, fed), {name: size})
     back = MjcfForward.of(rig)
     along = Excitation("", T, {"a": path[:, :1], "b": path[:, 1:2]})
-    needed = back.simulate(along, {name: 0.2})
+    needed = back.simulate(along, {name: size})
     off = np.sqrt(np.mean(np.square(needed - np.stack(list(torque.values()), 1))[100:-100]))
     without = np.sqrt(
         np.mean(np.square(back.simulate(along, {}) - np.stack(list(torque.values()), 1))[100:-100])
