@@ -61,7 +61,7 @@ def test_a_joint_that_moves_as_recorded_swings_the_other_and_needs_the_force_tha
 
 
 def test_imposed_motion_swings_the_arm_as_the_equation_of_motion_says(tmp_path):
-    """(I + m l^2) a'' + c a' + m g l sin a = m l x'' cos a of the hanging arm, no torque."""
+    """(I + m l^2) a'' + c a' + k a + m g l sin a = m l x'' cos a of the hanging arm, no torque."""
     lines = (BOTH, f'{BOTH}\nimposed = ["rail"]'), (EACH, HINGE)
     rig = told(tmp_path, "control", *lines)
     x = 0.05 * (1.0 - np.cos(6.0 * TIME))
