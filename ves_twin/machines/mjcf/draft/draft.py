@@ -236,7 +236,8 @@ def _predicted(rig: Rig, log: Path) -> tuple[dict[str, float], list[str]]:
         if share < AWAY:
             ends = (np.sqrt(np.mean(x * x)) for x in (rest, y - y.mean()))
             far, moves = (quantity(float(x), channel.unit, 2) for x in ends)
-            lost.append(f"simulated, {channel.name} runs {far} away (rms) and moves by {moves}")
+            runs = f"runs {far} away (rms) and moves by {moves}" if share > -np.inf else "diverges"
+            lost.append(f"simulated, {channel.name} {runs}")
         elif off > COARSE * channel.sd > 0.0:
             coarse[channel.name] = off / channel.sd, quantity(off, channel.unit, 2)
     step = float(rig.model.opt.timestep)
