@@ -13,6 +13,7 @@ from ves_twin.diagnosis.adequacy import cells
 from ves_twin.diagnosis.aliases import Lookalike, lookalikes
 from ves_twin.diagnosis.assess import Assessment
 from ves_twin.diagnosis.build_up.result import BuildUp, Proved, Size
+from ves_twin.diagnosis.build_up.sizes import half_widths
 from ves_twin.diagnosis.disagreement import Alone
 from ves_twin.diagnosis.explanation import Explanation
 from ves_twin.diagnosis.findable import findable_sizes, twins
@@ -315,19 +316,26 @@ def _tuned(findings: Findings) -> dict[str, Estimate]:
     """Commissioning numbers of the plant at the best fit, with what is known of them then.
 
     Beside a law of what causes leave, sizes of the causes too: they were fitted together with it.
+    Where the model leaves more than noise, its error counts as well.
     """
     fitted = findings.beside or findings.fitted
     fit = fitted.best if fitted else findings.first.commissioning
     if fit is None:
         return {}
-    runs, z = fit.local.runs, float(norm.isf(0.5 * (1.0 - findings.settings.confidence)))
-    known = np.sqrt(np.diag(fit.posterior)) if fit.told is None else fit.told
+    runs, confidence = fit.local.runs, findings.settings.confidence
+    z = float(norm.isf(0.5 * (1.0 - confidence)))
+    if fit.told is not None:
+        half = z * fit.told
+    elif fitted is not None and not fitted.adequate:
+        half = half_widths(fitted.evidence, fit, confidence)
+    else:
+        half = z * np.sqrt(np.diag(fit.posterior))
     free, estimates = set(fit.active[: len(fit.sizes)]), {}
     for n, i in enumerate(fit.active):
         parameter = runs.coordinates[int(i)].parameter
         if i in free or runs.coordinates[int(i)].recording != -1:
             continue
-        value, reach = parameter.nominal + float(fit.shift[i]), z * float(known[n])
+        value, reach = parameter.nominal + float(fit.shift[i]), float(half[n])
         estimates[parameter.name] = Estimate(
             value, value - reach, value + reach, parameter.unit, parameter.nominal, i in fit.held
         )
