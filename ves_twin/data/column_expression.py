@@ -94,5 +94,10 @@ class ColumnExpression:
         return InvalidInputError("formula of columns", came, ALLOWED)
 
 
+def quoted(column: str) -> str:
+    """A column as it stands in a formula."""
+    return column if column.isidentifier() else f"`{column}`"
+
+
 def _is_number(node: ast.expr) -> bool:
     return isinstance(node, ast.Constant) and type(node.value) in (int, float)

@@ -4,18 +4,19 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
-from itertools import combinations
 
 import mujoco
 import numpy as np
 
 from ves_twin.core.types import FloatArray
+from ves_twin.machines.mjcf.draft.changes import DEGREE, changes
 from ves_twin.machines.mjcf.draft.log_columns import LogColumns
 from ves_twin.machines.mjcf.draft.match import Match, Matches
 from ves_twin.machines.mjcf.draft.motion import Motion, band_of, motion_of
 from ves_twin.machines.mjcf.draft.spots import Quantity, is_servo
 from ves_twin.machines.mjcf.inverse import smoothed
 from ves_twin.machines.mjcf.places import driven_joint
+from ves_twin.machines.mjcf.predecessor import predecessor
 
 GAINED = 0.15
 """Share of one joint's power that a change must explain more to be proposed: well above what
@@ -44,8 +45,6 @@ over some periods of a motion."""
 
 FAR = 3.0
 """Factor between an effort and the model's from which on it is told."""
-
-DEGREE = np.pi / 180.0
 
 HALF_TURN = np.pi
 """Angle up to which numbers named degrees may be radians: a joint seldom turns round more."""
@@ -87,7 +86,7 @@ def checked(log: LogColumns, matches: Matches, model: mujoco.MjModel) -> Checked
     positions = matches.of(Quantity.POSITION)
     moved = {m.spot.name for m in positions}
     absent = [model.joint(i).name for i in range(model.njnt) if model.joint(i).name not in moved]
-    band = max((band_of(log.values[m.column], log.period, 0.99) for m in positions), default=1.0)
+    band = max((band_of(log.column(m.column), log.period, 0.99) for m in positions), default=1.0)
     corner = min(4.0 * max(band, 1.0 / (log.period * log.rows)), 0.2 / log.period)
     found, findings = list(matches.found), []
     motion, explained = None, {}
@@ -103,7 +102,7 @@ def checked(log: LogColumns, matches: Matches, model: mujoco.MjModel) -> Checked
         findings += said
         explained = judge.explained(found, motion)
     findings += _beyond(log, found, model)
-    found, said = _speeds(log, found, corner)
+    found, said = _speeds(log, found, corner, model)
     dofs = {model.joint(i).name: int(model.jnt_dofadr[i]) for i in range(model.njnt)}
     return Checked(tuple(found), (*findings, *said), explained, motion, corner, dofs)
 
@@ -152,7 +151,7 @@ class _Judge:
     def motion(self, found: list[Match]) -> Motion:
         """Along the positions as they are matched."""
         positions = {
-            m.spot.name: m.factor * self.log.values[m.column]
+            m.spot.name: m.factor * self.log.column(m.column)
             for m in found
             if m.spot.quantity is Quantity.POSITION
         }
@@ -164,7 +163,8 @@ class _Judge:
         best = self.score(found)
         for _ in range(2 * len(found)):
             driven = {m.spot.joint for m in self.driving(found)}
-            tried = [(self.score(new), new, words) for new, words in _changes(found, driven)]
+            ways = changes(found, driven, self.model)
+            tried = [(self.score(new), new, words) for new, words in ways]
             if not tried:
                 break
             score, new, words = max(tried, key=lambda one: one[0])
@@ -215,7 +215,7 @@ class _Judge:
 
     def fit(self, match: Match, motion: Motion) -> _Fit:
         """Of a recorded effort, in its unit's SI, beside friction."""
-        column = smoothed(self.log.values[match.column], self.log.period, self.corner)
+        column = smoothed(self.log.column(match.column), self.log.period, self.corner)
         y, need = match.factor * column[motion.rows], self.needed(match, motion)
         v = motion.speed[:, self.dof(match)]
         slow = 0.05 * float(np.std(v)) or 1.0
@@ -278,54 +278,12 @@ class _Judge:
         """Share of the power of each effort that the model as it is explains."""
         shares = {}
         for match in self.driving(found):
-            column = smoothed(self.log.values[match.column], self.log.period, self.corner)
+            column = smoothed(self.log.column(match.column), self.log.period, self.corner)
             y = match.factor * column[motion.rows]
             rest = y - self.needed(match, motion)
             power = float(np.sum((y - y.mean()) ** 2)) or 1.0
             shares[match.column] = max(1.0 - float(np.sum((rest - rest.mean()) ** 2)) / power, 0.0)
         return shares
-
-
-def _changes(found: list[Match], driven: set[str]) -> Iterator[tuple[list[Match], str]]:
-    """Ways in which columns may be meant otherwise, each with words for it.
-
-    Positions are exchanged where an effort tells the one joint from the other.
-    """
-    positions = [m for m in found if m.spot.quantity is Quantity.POSITION]
-
-    def other(old: Match, new: Match) -> list[Match]:
-        return [new if m is old else m for m in found]
-
-    for match in positions:
-        words = f"{match.column} counts against {match.spot.label} of the model: it is turned"
-        yield other(match, replace(match, scale=-match.scale)), words
-    for factor, unit in ((DEGREE, "deg"), (0.001, "mm")):
-        kind = "rad" if unit == "deg" else "m"
-        open_ = [m for m in positions if m.spot.unit == kind and not m.told and m.unit == kind]
-        for group in ([[m] for m in open_] + [open_]) if len(open_) > 1 else [[m] for m in open_]:
-            new = [replace(m, unit=unit) if m in group else m for m in found]
-            names = ", ".join(m.column for m in group)
-            yield (
-                new,
-                f"{names}: numbers fit the model as {unit}, not as {kind} (factor {factor:.4g})",
-            )
-    for match in positions:
-        if match.told and match.unit == "deg":
-            words = f"{match.column}: named in deg, the numbers fit the model as rad"
-            yield other(match, replace(match, unit="rad")), words
-    efforts = [m for m in found if m.spot.quantity is Quantity.EFFORT]
-    for one, two in (*combinations(positions, 2), *combinations(efforts, 2)):
-        told = one in efforts or {one.spot.name, two.spot.name} & driven
-        if told and (one.spot.unit, one.unit) == (two.spot.unit, two.unit):
-            a, b = _exchanged(one, two)
-            both = [a if m is one else b if m is two else m for m in found]
-            yield both, f"{one.column} and {two.column} look swapped: taken the other way round"
-
-
-def _exchanged(one: Match, two: Match) -> tuple[Match, Match]:
-    """Both spots with the other's column."""
-    first = replace(two, spot=one.spot, reasons=("fits the model better there",))
-    return first, replace(one, spot=two.spot, reasons=("fits the model better there",))
 
 
 def _other_angle(
@@ -336,7 +294,7 @@ def _other_angle(
         mine = match.spot.quantity is Quantity.POSITION and match.spot.name == joint
         if not (mine and match.told and match.unit in ("deg", "rad")):
             continue
-        most, degrees = float(np.max(np.abs(log.values[match.column]))), match.unit == "deg"
+        most, degrees = float(np.max(np.abs(log.column(match.column)))), match.unit == "deg"
         if most < HALF_TURN if degrees else most > FAR_ROUND:
             other, factor = ("radians", 1.0 / DEGREE) if degrees else ("degrees", DEGREE)
             yield (
@@ -352,7 +310,7 @@ def _beyond(log: LogColumns, found: list[Match], model: mujoco.MjModel) -> Itera
         if joint is None or not model.jnt_limited[joint.id]:
             continue
         low, high = joint.range
-        values = match.factor * log.values[match.column]
+        values = match.factor * log.column(match.column)
         lowest, highest = float(np.min(values)), float(np.max(values))
         if max(low - lowest, highest - high) > high - low:
             yield (
@@ -361,17 +319,23 @@ def _beyond(log: LogColumns, found: list[Match], model: mujoco.MjModel) -> Itera
             )
 
 
-def _speeds(log: LogColumns, found: list[Match], corner: float) -> tuple[list[Match], list[str]]:
+def _speeds(
+    log: LogColumns, found: list[Match], corner: float, model: mujoco.MjModel
+) -> tuple[list[Match], list[str]]:
     """Speeds against the derivative of the position of their joint."""
     said, result = [], []
     positions = {m.spot.name: m for m in found if m.spot.quantity is Quantity.POSITION}
+    speeds = {m.spot.name: m for m in found if m.spot.quantity is Quantity.SPEED}
     for match in found:
         own = positions.get(match.spot.name)
         if match.spot.quantity is not Quantity.SPEED or own is None:
             result.append(match)
             continue
-        v = match.factor * smoothed(log.values[match.column], log.period, corner)
-        q = own.factor * smoothed(log.values[own.column], log.period, corner)
+        before = predecessor(model, match.spot.name, speeds) if own.alone else None
+        if before is not None and match.unit == speeds[before[0]].unit:
+            match = match.less(speeds[before[0]], before[1])
+        v = match.factor * smoothed(log.column(match.column), log.period, corner)
+        q = own.factor * smoothed(log.column(own.column), log.period, corner)
         rate = np.gradient(q, log.period)
         alike, slope = float(np.corrcoef(v, rate)[0, 1]), float(v @ rate / (rate @ rate))
         if abs(alike) < 0.5:

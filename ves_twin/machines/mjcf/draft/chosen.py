@@ -146,7 +146,7 @@ def chosen(
 
 def _band(log: LogColumns, followed: Sequence[Match]) -> float:
     """Band [Hz] of what is compared, within that of an analysis and of the log."""
-    band = BAND * max(band_of(log.values[m.column], log.period, 0.99) for m in followed)
+    band = BAND * max(band_of(log.column(m.column), log.period, 0.99) for m in followed)
     return float(np.clip(band, 0.5 * RATES[0], min(0.5 * RATES[1], 0.25 / log.period)))
 
 
@@ -154,10 +154,10 @@ def _noise(
     log: LogColumns, check: Checked, positions: Sequence[Match]
 ) -> dict[str, tuple[float, str]]:
     """Column -> sd of one row in SI, and how it was told."""
-    moved = [m.factor * log.values[m.column] for m in positions]
+    moved = [m.factor * log.column(m.column) for m in positions]
     rest, found = rest_of(moved, log.period), {}
     for m in check.found:
-        sd, how = noise_of(log.values[m.column], log.period, rest)
+        sd, how = noise_of(log.column(m.column), log.period, rest)
         found[m.column] = (abs(m.factor) * sd, how)
     return found
 
@@ -166,7 +166,7 @@ def _beyond(efforts: Sequence[Match], log: LogColumns, band: float) -> str:
     """That an effort has much of its power above the band in which motion tells it, if one has."""
     shares = {}
     for m in efforts:
-        frequency, power = spectrum(log.values[m.column], log.period)
+        frequency, power = spectrum(log.column(m.column), log.period)
         shares[m.column] = float(np.sum(power[frequency > band]) / max(np.sum(power), 1e-300))
     most = max(shares, key=lambda column: shares[column])
     if shares[most] < LOST:
@@ -207,7 +207,7 @@ def _sensed_home(match: Match, model: mujoco.MjModel, log: LogColumns) -> tuple[
     """What makes a place that is told from elsewhere the model's [its unit]; None if it is."""
     if match.spot.quantity is not Quantity.SENSOR or match.spot.unit != "m":
         return None
-    values, data = match.factor * log.values[match.column], mujoco.MjData(model)
+    values, data = match.factor * log.column(match.column), mujoco.MjData(model)
     mujoco.mj_forward(model, data)
     at = int(model.sensor(match.spot.name).adr[0]) + match.spot.axis
     begin, zero = float(np.mean(values[:FIRST])), float(data.sensordata[at])
@@ -250,7 +250,7 @@ def _home(position: Match, model: mujoco.MjModel, log: LogColumns) -> tuple[floa
     The length that a sliding part has in the model, if the log begins near it; else where it
     begins. None where the log begins near the joint's own zero.
     """
-    values = position.factor * log.values[position.column]
+    values = position.factor * log.column(position.column)
     joint, near = model.joint(position.spot.name), 2.0 * travel(values)
     body, begin = int(joint.bodyid[0]), float(np.mean(values[:FIRST]))
     zero = float(model.qpos0[int(joint.qposadr[0])])
@@ -297,7 +297,7 @@ def _induced(
     gain = abs(float(actuator.gear[0] * actuator.gainprm[0])) or 1.0
     inertia = model.dof_M0[int(joint.dofadr[0])] if felt is None else felt[position.spot.name]
     within = float(inertia) * pull / gain
-    size = float(np.std(effort.factor * log.values[effort.column]))
+    size = float(np.std(effort.factor * log.column(effort.column)))
     return within * np.sqrt(0.5 / (log.period * band)), within / size
 
 

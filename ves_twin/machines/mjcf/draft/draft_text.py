@@ -185,13 +185,13 @@ def _joints(log: LogColumns, check: Checked, mode: Chosen, model: mujoco.MjModel
     for match in check.found:
         if match.spot.quantity is not Quantity.POSITION:
             continue
-        position = match.factor * log.values[match.column]
+        position = match.factor * log.column(match.column)
         sizes = {"speed": _speed(log, match, check.corner), "travel": travel(position)}
         own = efforts.get(match.spot.name)
         if own is not None and is_motor(model, model.actuator(own.spot.name).id):
             drive = model.actuator(own.spot.name)
             gain = abs(float(drive.gear[0] * drive.gainprm[0])) or 1.0
-            sizes = {"effort": typical(gain * own.factor * log.values[own.column]), **sizes}
+            sizes = {"effort": typical(gain * own.factor * log.column(own.column)), **sizes}
         elif check.motion is not None:
             steady = check.motion.steady[:, check.dofs[match.spot.name]]
             sizes = {"effort": typical(steady), **sizes}
@@ -204,7 +204,7 @@ def _joints(log: LogColumns, check: Checked, mode: Chosen, model: mujoco.MjModel
 
 def _speed(log: LogColumns, position: Match, corner: float) -> float:
     """Typical speed of a joint whose position was recorded."""
-    values = smoothed(position.factor * log.values[position.column], log.period, corner)
+    values = smoothed(position.factor * log.column(position.column), log.period, corner)
     return typical(np.gradient(values, log.period))
 
 
@@ -213,7 +213,7 @@ def _spans(log: LogColumns, check: Checked) -> Iterator[str]:
     groups: dict[str, float] = {}
     for match in check.found:
         if match.spot.quantity is Quantity.SENSOR:
-            size = travel(match.factor * log.values[match.column])
+            size = travel(match.factor * log.column(match.column))
             name = signal_name(match)
             groups[name] = max(groups.get(name, 0.0), size)
     for name, size in groups.items():

@@ -12,6 +12,7 @@ from ves_twin.core.errors import InvalidInputError
 from ves_twin.core.types import BoolArray, FloatArray
 from ves_twin.data.clock_fields import clock_fields
 from ves_twin.data.clock_report import GAP, UNEVEN, usual_step
+from ves_twin.data.column_expression import ColumnExpression
 from ves_twin.data.empty_cells import filled, lone
 from ves_twin.data.log import Column, Kind
 from ves_twin.data.open_log import open_log
@@ -61,6 +62,11 @@ class LogColumns:
     def rows(self) -> int:
         """Of every column."""
         return len(next(iter(self.values.values())))
+
+    def column(self, text: str) -> FloatArray:
+        """Rows (n,) of a column, or of a formula of columns as a machine's file may hold one."""
+        found = self.values.get(text)
+        return ColumnExpression(text).value(self.values) if found is None else found
 
     @staticmethod
     def read(path: Path, rate: float | None = None) -> LogColumns:

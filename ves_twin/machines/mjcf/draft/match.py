@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from scipy.optimize import linear_sum_assignment
 
 from ves_twin.core.units import to_unit
+from ves_twin.data.column_expression import quoted
 from ves_twin.data.unit_names import bare_name, spelled
 from ves_twin.machines.mjcf.column import LAB_UNITS
 from ves_twin.machines.mjcf.draft.log_columns import LogColumns
@@ -38,6 +39,7 @@ class Match:
         scale: the spot's number is scale times the column in its unit.
         reasons: why.
         others: what else the column could be, or which column would do as well.
+        alone: the column itself, where `column` is a difference with another.
     """
 
     column: str
@@ -47,6 +49,7 @@ class Match:
     scale: float
     reasons: tuple[str, ...]
     others: tuple[str, ...] = ()
+    alone: str = ""
 
     @property
     def electrical(self) -> bool:
@@ -63,6 +66,12 @@ class Match:
     def prefix(self) -> float:
         """Of an electrical unit: a model's own command is in amperes or volts."""
         return 1e-3 if self.unit in ("mA", "mV") else 1.0
+
+    def less(self, other: Match, along: float) -> Match:
+        """As the difference to another column of the same unit, whose axis points `along` (+-1)."""
+        one, two = (m.alone or m.column for m in (self, other))
+        sign = "-" if along * self.scale * other.scale > 0.0 else "+"
+        return replace(self, column=f"{quoted(one)} {sign} {quoted(two)}", alone=one)
 
     @property
     def factor(self) -> float:

@@ -1,0 +1,104 @@
+"""changes: ways in which the columns of a log may be meant otherwise, each with words for it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import replace
+from itertools import combinations
+
+import mujoco
+import numpy as np
+
+from ves_twin.machines.mjcf.draft.match import Match
+from ves_twin.machines.mjcf.draft.spots import Quantity
+from ves_twin.machines.mjcf.places import driven_joint
+from ves_twin.machines.mjcf.predecessor import predecessor
+
+DEGREE = np.pi / 180.0
+
+Change = tuple[list[Match], str]
+"""All columns as they would be meant, and words for it."""
+
+
+def changes(found: list[Match], driven: set[str], model: mujoco.MjModel) -> Iterator[Change]:
+    """Positions turned, in other units, from the world or before a gear; columns exchanged.
+
+    Positions are exchanged where an effort tells the one joint from the other.
+
+    Args:
+        found: columns as they are meant now.
+        driven: joints whose efforts were recorded.
+        model: that they are held against.
+    """
+    positions = [m for m in found if m.spot.quantity is Quantity.POSITION]
+    for match in positions:
+        words = f"{match.column} counts against {match.spot.label} of the model: it is turned"
+        yield _with(found, {match: replace(match, scale=-match.scale)}), words
+    yield from _in_units(found, positions)
+    yield from _from_the_world(found, positions, model)
+    yield from _before_gears(found, positions, model)
+    efforts = [m for m in found if m.spot.quantity is Quantity.EFFORT]
+    for one, two in (*combinations(positions, 2), *combinations(efforts, 2)):
+        told = one in efforts or {one.spot.name, two.spot.name} & driven
+        if told and (one.spot.unit, one.unit) == (two.spot.unit, two.unit):
+            words = f"{one.column} and {two.column} look swapped: taken the other way round"
+            yield _with(found, {one: _at(two, one), two: _at(one, two)}), words
+
+
+def _with(found: list[Match], new: Mapping[Match, Match]) -> list[Match]:
+    return [new.get(m, m) for m in found]
+
+
+def _at(match: Match, other: Match) -> Match:
+    """With the spot of another."""
+    return replace(match, spot=other.spot, reasons=("fits the model better there",))
+
+
+def _in_units(found: list[Match], positions: list[Match]) -> Iterator[Change]:
+    """Numbers without a told unit in another one; degrees that are radians."""
+    for factor, unit in ((DEGREE, "deg"), (0.001, "mm")):
+        kind = "rad" if unit == "deg" else "m"
+        open_ = [m for m in positions if m.spot.unit == kind and not m.told and m.unit == kind]
+        for group in ([[m] for m in open_] + [open_]) if len(open_) > 1 else [[m] for m in open_]:
+            names = ", ".join(m.column for m in group)
+            words = f"numbers fit the model as {unit}, not as {kind} (factor {factor:.4g})"
+            new = {m: replace(m, unit=unit) for m in group}
+            yield _with(found, new), f"{names}: {words}"
+    for match in positions:
+        if match.told and match.unit == "deg":
+            words = f"{match.column}: named in deg, the numbers fit the model as rad"
+            yield _with(found, {match: replace(match, unit="rad")}), words
+
+
+def _from_the_world(
+    found: list[Match], positions: list[Match], model: mujoco.MjModel
+) -> Iterator[Change]:
+    """Angles as an inclinometer or a camera tells them: a joint's own is a difference of two."""
+    own = {m.spot.name: m for m in positions}
+    new: dict[Match, Match] = {}
+    for joint, match in own.items():
+        before = predecessor(model, joint, own)
+        if before is None or match.alone:
+            continue
+        other, along = own[before[0]], before[1]
+        if match.unit == other.unit and abs(match.scale) == abs(other.scale):
+            new[match] = match.less(other, along)
+    for group in ([[m] for m in new] + [list(new)]) if len(new) > 1 else [[m] for m in new]:
+        names = ", ".join(m.column for m in group)
+        formulas = ", ".join(new[m].column for m in group)
+        words = f"numbers fit the model as measured from the world: {formulas}"
+        yield _with(found, {m: new[m] for m in group}), f"{names}: {words}"
+
+
+def _before_gears(
+    found: list[Match], positions: list[Match], model: mujoco.MjModel
+) -> Iterator[Change]:
+    """Angles of motors, whose gear stands in the model."""
+    gears = {driven_joint(model, i): abs(float(model.actuator_gear[i, 0])) for i in range(model.nu)}
+    for match in positions:
+        gear = gears.get(match.spot.name, 1.0)
+        if gear in (0.0, 1.0) or abs(match.scale) != 1.0:
+            continue
+        words = f"numbers fit the model as those of the motor, before its gear of {gear:g}"
+        new = replace(match, scale=match.scale / gear)
+        yield _with(found, {match: new}), f"{match.column}: {words}"
