@@ -52,6 +52,9 @@ ALIKE = 1.1
 """Times the least share, within which two readings are told together: a torque or the angle of its
 joint turned is often the same."""
 
+TURNS = {"a quarter turn": 0.5 * np.pi, "minus a quarter turn": -0.5 * np.pi, "half a turn": np.pi}
+"""Between the zeros that laboratories have: hanging, upright, level."""
+
 QUIET = 1e-3
 """Speed, as a share of the fastest, over which a sign is smoothed."""
 
@@ -80,7 +83,7 @@ class Implausible:
 class _Reading:
     """Columns read in another way: factors and order of positions and efforts, gravity's sign.
 
-    `less` has positions of which another one, times 1 or -1, is taken off.
+    `less` has positions of which another one, times 1 or -1, is taken off, `zeros` what is added.
     """
 
     name: str
@@ -90,6 +93,7 @@ class _Reading:
     swapped: tuple[str, str] | None = None
     gravity: float = 1.0
     less: Mapping[str, tuple[str, float]] = field(default_factory=dict)
+    zeros: Mapping[str, float] = field(default_factory=dict)
 
 
 def implausible(rig: Rig, recording: Recording) -> Implausible | None:
@@ -217,6 +221,7 @@ class _Seen:
                 yield _Reading(f"{told} swapped", f"the columns of {told}", {}, {}, (one, two))
         yield from self.from_the_world()
         yield from self._before_gears(angles)
+        yield from self._from_another_zero(angles)
         if len(self.efforts) > 1:
             every = dict.fromkeys(self.efforts, -1.0)
             yield _Reading("the other sign of all efforts", "the sign of all efforts", {}, every)
@@ -250,6 +255,16 @@ class _Seen:
                 name = f"{angles[joint]} of the motor, before its gear of {gear:g}"
                 yield _Reading(name, f"the scale of {angles[joint]}", {joint: 1.0 / gear}, {})
 
+    def _from_another_zero(self, angles: Mapping[str, str]) -> Iterator[_Reading]:
+        """Angles that are zero a quarter or half a turn away."""
+        for joint, signal in angles.items():
+            if self.rig.description.signals[signal].unit != "rad":
+                continue
+            for word, turn in TURNS.items():
+                name = f"{word} added to {signal}"
+                key = f"signals.NAME.offset of {signal}: where it is zero"
+                yield _Reading(name, key, {}, {}, zeros={joint: turn})
+
     def _units(self, names: Mapping[str, str]) -> Iterator[tuple[str, float, list[str]]]:
         """Other units, their factors, and who may have them: one signal, or all of one unit."""
         signals = self.rig.description.signals
@@ -265,6 +280,8 @@ class _Seen:
         """Share of the spread of each effort that inverse dynamics and friction leave (c,)."""
         positions = {j: reading.positions.get(j, 1.0) * q for j, q in self.positions.items()}
         efforts = {a: reading.efforts.get(a, 1.0) * u for a, u in self.efforts.items()}
+        for joint, zero in reading.zeros.items():
+            positions[joint] = positions[joint] + zero
         for joint, (before, along) in reading.less.items():
             positions[joint] = positions[joint] - along * self.positions[before]
         if reading.swapped:

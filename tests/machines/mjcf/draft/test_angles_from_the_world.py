@@ -128,3 +128,12 @@ def test_no_cause_at_its_largest_passes_for_an_angle_from_the_world(arm, columns
 
 def ends(parameter):
     return parameter.low, parameter.high
+
+
+def test_a_file_whose_angle_is_zero_elsewhere_is_refused(arm, columns, write):
+    _, rig = drafted(arm, write(columns))
+    log = write(changed(columns, q2=columns["q2"] - 0.5 * np.pi), "zero.csv")
+    found = implausible(rig, read_rig_recording(log, rig))
+    assert found is not None
+    assert "a quarter turn added to lift.position" in found.came
+    assert found.expected == "check signals.NAME.offset of lift.position: where it is zero"

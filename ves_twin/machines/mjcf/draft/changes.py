@@ -12,16 +12,19 @@ import numpy as np
 from ves_twin.machines.mjcf.draft.match import Match
 from ves_twin.machines.mjcf.draft.spots import Quantity
 from ves_twin.machines.mjcf.places import driven_joint
+from ves_twin.machines.mjcf.plausible import TURNS
 from ves_twin.machines.mjcf.predecessor import predecessor
 
 DEGREE = np.pi / 180.0
+
+OTHER_ANGLE = {"deg": "rad", "rad": "deg"}
 
 Change = tuple[list[Match], str]
 """All columns as they would be meant, and words for it."""
 
 
 def changes(found: list[Match], driven: set[str], model: mujoco.MjModel) -> Iterator[Change]:
-    """Positions turned, in other units, from the world or before a gear; columns exchanged.
+    """Positions turned, in other units, from the world, before a gear, from another zero; swaps.
 
     Positions are exchanged where an effort tells the one joint from the other.
 
@@ -37,12 +40,19 @@ def changes(found: list[Match], driven: set[str], model: mujoco.MjModel) -> Iter
     yield from _in_units(found, positions)
     yield from _from_the_world(found, positions, model)
     yield from _before_gears(found, positions, model)
+    yield from _from_another_zero(found, positions)
     efforts = [m for m in found if m.spot.quantity is Quantity.EFFORT]
     for one, two in (*combinations(positions, 2), *combinations(efforts, 2)):
         told = one in efforts or {one.spot.name, two.spot.name} & driven
         if told and (one.spot.unit, one.unit) == (two.spot.unit, two.unit):
-            words = f"{one.column} and {two.column} look swapped: taken the other way round"
-            yield _with(found, {one: _at(two, one), two: _at(one, two)}), words
+            words = f"{one.column} and {two.column} look swapped"
+            new = {one: _at(two, one), two: _at(one, two)}
+            yield _with(found, new), f"{words}: taken the other way round"
+            speeds = {m.spot.name: m for m in found if m.spot.quantity is Quantity.SPEED}
+            if one in positions and {one.spot.name, two.spot.name} <= set(speeds):
+                a, b = speeds[one.spot.name], speeds[two.spot.name]
+                new |= {a: _at(b, a), b: _at(a, b)}
+                yield _with(found, new), f"{words}, their speeds too: taken the other way round"
 
 
 def _with(found: list[Match], new: Mapping[Match, Match]) -> list[Match]:
@@ -65,9 +75,10 @@ def _in_units(found: list[Match], positions: list[Match]) -> Iterator[Change]:
             new = {m: replace(m, unit=unit) for m in group}
             yield _with(found, new), f"{names}: {words}"
     for match in positions:
-        if match.told and match.unit == "deg":
-            words = f"{match.column}: named in deg, the numbers fit the model as rad"
-            yield _with(found, {match: replace(match, unit="rad")}), words
+        if match.told and match.unit in OTHER_ANGLE:
+            unit = OTHER_ANGLE[match.unit]
+            words = f"{match.column}: named in {match.unit}, the numbers fit the model as {unit}"
+            yield _with(found, {match: replace(match, unit=unit)}), words
 
 
 def _from_the_world(
@@ -102,3 +113,13 @@ def _before_gears(
         words = f"numbers fit the model as those of the motor, before its gear of {gear:g}"
         new = replace(match, scale=match.scale / gear)
         yield _with(found, {match: new}), f"{match.column}: {words}"
+
+
+def _from_another_zero(found: list[Match], positions: list[Match]) -> Iterator[Change]:
+    """Angles that are zero where the model's joint is a quarter or half a turn away."""
+    for match in positions:
+        if match.spot.unit != "rad" or match.zero:
+            continue
+        for name, turn in TURNS.items():
+            words = f"{match.column}: zero where the model's joint is at {name}: that is added"
+            yield _with(found, {match: replace(match, zero=turn)}), words

@@ -13,10 +13,10 @@ from ves_twin.machines.mjcf.draft.changes import DEGREE, changes
 from ves_twin.machines.mjcf.draft.log_columns import LogColumns
 from ves_twin.machines.mjcf.draft.match import Match, Matches
 from ves_twin.machines.mjcf.draft.motion import Motion, band_of, motion_of
+from ves_twin.machines.mjcf.draft.rates import differs, rated
 from ves_twin.machines.mjcf.draft.spots import Quantity, is_servo
 from ves_twin.machines.mjcf.inverse import smoothed
 from ves_twin.machines.mjcf.places import driven_joint
-from ves_twin.machines.mjcf.predecessor import predecessor
 
 GAINED = 0.15
 """Share of one joint's power that a change must explain more to be proposed: well above what
@@ -30,6 +30,11 @@ STRONG = 0.3
 
 OFF = 0.1
 """Weight of a decade between an effort and what the model needs: a factor of 57 is no friction."""
+
+SOUND = 0.1
+"""Weight of an effort that the model explains a part of by a likely factor: a torque that follows
+the sign of speed is explained by friction alone, whatever the position's zero (a pendulum that is
+swung up: 0.87 with a zero upright, 0.94 hanging)."""
 
 TURN = 0.02
 """Weight against turning an effort's sign, so that where all else is equal none is turned."""
@@ -45,6 +50,9 @@ over some periods of a motion."""
 
 FAR = 3.0
 """Factor between an effort and the model's from which on it is told."""
+
+ODD = 50.0
+"""Times what the model needs from which on an effort is in another unit, whatever friction does."""
 
 HALF_TURN = np.pi
 """Angle up to which numbers named degrees may be radians: a joint seldom turns round more."""
@@ -102,7 +110,7 @@ def checked(log: LogColumns, matches: Matches, model: mujoco.MjModel) -> Checked
         findings += said
         explained = judge.explained(found, motion)
     findings += _beyond(log, found, model)
-    found, said = _speeds(log, found, corner, model)
+    found, said = rated(log, found, corner, model)
     dofs = {model.joint(i).name: int(model.jnt_dofadr[i]) for i in range(model.njnt)}
     return Checked(tuple(found), (*findings, *said), explained, motion, corner, dofs)
 
@@ -118,6 +126,7 @@ class _Fit:
         work: of the effort along the motion, as a share of the most that it could do.
         free: whether any constant may stand between effort and column.
         against: whether a steady load, as a weight, pulls the other way than the slope says.
+        size: rms of the effort over that of what the model needs.
     """
 
     slope: float
@@ -126,6 +135,7 @@ class _Fit:
     work: float
     free: bool
     against: bool
+    size: float
 
     @property
     def usable(self) -> bool:
@@ -151,7 +161,7 @@ class _Judge:
     def motion(self, found: list[Match]) -> Motion:
         """Along the positions as they are matched."""
         positions = {
-            m.spot.name: m.factor * self.log.column(m.column)
+            m.spot.name: m.factor * self.log.column(m.column) + m.zero
             for m in found
             if m.spot.quantity is Quantity.POSITION
         }
@@ -175,13 +185,14 @@ class _Judge:
         return found, said
 
     def score(self, found: list[Match]) -> float:
-        """Shares explained at all joints, less what factors and turned signs speak against it."""
-        motion, total = self.motion(found), 0.0
+        """Shares explained at all joints, less what factors, signs and speeds have against it."""
+        motion, total = self.motion(found), -differs(self.log, found, self.corner)
         driven = set()
         for match in self.driving(found):
             fit, dof = self.fit(match, motion), self.dof(match)
             driven.add(dof)
             total += fit.share - TURN * (fit.sign < 0) - LOADED * fit.against
+            total += SOUND * (fit.usable and fit.slope > 0.0 and not fit.free)
             if not match.electrical and fit.gain > STRONG and fit.slope:
                 total -= OFF * min(abs(float(np.log10(abs(fit.slope)))), 3.0)
         for dof in set(range(self.model.nv)) - driven - self.pushed(found):
@@ -232,7 +243,8 @@ class _Judge:
         loads = float(slopes[0] * need.mean()), float(y.mean())
         heavy = min(map(abs, loads)) > LOADED * float(np.sqrt(np.mean(y**2)))
         against = gain > TELLS and heavy and loads[0] * loads[1] < 0.0
-        return _Fit(float(slopes[0]), shares[0], gain, work, match.electrical, against)
+        size = float(np.sqrt(np.mean(y**2) / max(float(np.mean(need**2)), 1e-300)))
+        return _Fit(float(slopes[0]), shares[0], gain, work, match.electrical, against, size)
 
     def efforts(self, found: list[Match], motion: Motion) -> tuple[list[Match], list[str]]:
         """With signs and constants of efforts as the motion needs them."""
@@ -267,9 +279,11 @@ class _Judge:
                     f"{match.column} has the wrong sign for this model ({why}): it is turned; or"
                     " the position of its joint counts the other way"
                 )
-            if not fit.free and fit.gain > STRONG and fit.slope > 0.0 and not fit.usable:
+            strong = fit.gain > STRONG and not fit.usable
+            times = abs(fit.slope) if strong else fit.size
+            if not fit.free and (strong or not 1.0 / ODD < times < ODD):
                 said.append(
-                    f"{match.column} is {fit.slope:.3g} times what the model needs: another unit, a"
+                    f"{match.column} is {times:.3g} times what the model needs: another unit, a"
                     " gear or a wrong mass?"
                 )
         return found, said
@@ -310,44 +324,10 @@ def _beyond(log: LogColumns, found: list[Match], model: mujoco.MjModel) -> Itera
         if joint is None or not model.jnt_limited[joint.id]:
             continue
         low, high = joint.range
-        values = match.factor * log.column(match.column)
+        values = match.factor * log.column(match.column) + match.zero
         lowest, highest = float(np.min(values)), float(np.max(values))
         if max(low - lowest, highest - high) > high - low:
             yield (
                 f"{match.column} goes from {lowest:.3g} to {highest:.3g} {match.spot.unit}, joint"
                 f" {match.spot.name} from {low:.3g} to {high:.3g}: another unit?"
             )
-
-
-def _speeds(
-    log: LogColumns, found: list[Match], corner: float, model: mujoco.MjModel
-) -> tuple[list[Match], list[str]]:
-    """Speeds against the derivative of the position of their joint."""
-    said, result = [], []
-    positions = {m.spot.name: m for m in found if m.spot.quantity is Quantity.POSITION}
-    speeds = {m.spot.name: m for m in found if m.spot.quantity is Quantity.SPEED}
-    for match in found:
-        own = positions.get(match.spot.name)
-        if match.spot.quantity is not Quantity.SPEED or own is None:
-            result.append(match)
-            continue
-        before = predecessor(model, match.spot.name, speeds) if own.alone else None
-        if before is not None and match.unit == speeds[before[0]].unit:
-            match = match.less(speeds[before[0]], before[1])
-        v = match.factor * smoothed(log.column(match.column), log.period, corner)
-        q = own.factor * smoothed(log.column(own.column), log.period, corner)
-        rate = np.gradient(q, log.period)
-        alike, slope = float(np.corrcoef(v, rate)[0, 1]), float(v @ rate / (rate @ rate))
-        if abs(alike) < 0.5:
-            said.append(f"{match.column} does not follow {own.column} ({alike:+.2f}): left out")
-            continue
-        if slope < 0.0:
-            match = replace(match, scale=-match.scale)
-            said.append(f"{match.column} counts against {own.column}: it is turned")
-        if not match.told and abs(abs(slope) * DEGREE - 1.0) < 0.2:
-            match = replace(match, unit="deg/s")
-            said.append(f"{match.column}: numbers fit {own.column} as deg/s, not as rad/s")
-        elif not 0.5 < abs(slope) < 2.0:
-            said.append(f"{match.column} is {abs(slope):.3g} times the rate of {own.column}")
-        result.append(match)
-    return result, said

@@ -151,8 +151,9 @@ def _signal(group: list[Match], mode: Chosen) -> str:
     keys["unit"] = _quoted(first.unit if known and not first.electrical else first.spot.unit)
     if first.scale != 1.0:
         keys["scale"] = f"{first.scale:g}"
-    if first.column in mode.homes:
-        keys["offset"] = f"{mode.homes[first.column][0]:.7g}"
+    zero = mode.homes[first.column][0] if first.column in mode.homes else first.zero
+    if zero:
+        keys["offset"] = f"{zero:.7g}"
     if first.spot.quantity in (Quantity.POSITION, Quantity.SPEED):
         keys["joint"] = _quoted(first.spot.name)
         if first.spot.quantity is Quantity.SPEED:

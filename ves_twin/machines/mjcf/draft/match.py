@@ -18,6 +18,7 @@ from ves_twin.machines.mjcf.draft.names import (
     ELECTRICAL,
     ENOUGH,
     Likeness,
+    implied_unit,
     is_setpoint,
     likeness,
 )
@@ -40,6 +41,7 @@ class Match:
         reasons: why.
         others: what else the column could be, or which column would do as well.
         alone: the column itself, where `column` is a difference with another.
+        zero: the spot's number where the column is zero [SI].
     """
 
     column: str
@@ -50,6 +52,7 @@ class Match:
     reasons: tuple[str, ...]
     others: tuple[str, ...] = ()
     alone: str = ""
+    zero: float = 0.0
 
     @property
     def electrical(self) -> bool:
@@ -136,7 +139,12 @@ def _likeness(log: LogColumns, column: str, spot: Spot, spots: Sequence[Spot]) -
     family = [c for c in log.values if re.sub(r"\d+", "#", bare_name(c)) == stem]
     zero = any(re.findall(r"\d+", bare_name(c))[-1:] == ["0"] for c in family)
     zero = zero and not any(re.findall(r"\d+", s.name)[-1:] == ["0"] for s in rivals)
-    return likeness(column, log.units.get(column, ""), spot, len(rivals) == 1, zero)
+    return likeness(column, _unit(log, column), spot, len(rivals) == 1, zero)
+
+
+def _unit(log: LogColumns, column: str) -> str:
+    """As the file or the name says it, or implies it; empty if neither does."""
+    return log.units.get(column, "") or implied_unit(column)
 
 
 def _whole_sensors(chosen: dict[str, Spot], spots: Sequence[Spot]) -> dict[str, Spot]:
@@ -168,7 +176,7 @@ def _match(
     alike: Mapping[tuple[str, Spot], Likeness],
     chosen: Mapping[str, Spot],
 ) -> Match:
-    own, unit = alike[column, spot], spelled(log.units.get(column, ""))
+    own, unit = alike[column, spot], spelled(_unit(log, column))
     near = own.score - RIVAL
     others = [
         f"it could be {s.label}"

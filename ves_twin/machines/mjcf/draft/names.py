@@ -14,13 +14,14 @@ POSITION = (
     " travel encoder enc length rot rotation weg lage winkel"
 )
 SPEED = (
-    "dq qd qdot dqdt vel velocity speed rate omega w v dx dy xd xdot thetadot gyro qv drehzahl"
+    "dq qd qdot dqdt vel velocity speed rate rpm omega w v dx dy xd xdot thetadot gyro qv drehzahl"
     " geschw geschwindigkeit"
 )
 EFFORT = (
     "tau torque trq tq force f fx u effort load moment current i cur amp volt voltage pwm drive"
     " motor control ctrl command input kraft drehmoment strom motorstrom spannung"
 )
+MECHANICAL = "tau torque trq tq force effort load moment kraft drehmoment"
 KIND_WORDS = {
     Quantity.POSITION: frozenset(POSITION.split()),
     Quantity.SPEED: frozenset(SPEED.split()),
@@ -44,6 +45,12 @@ EFFORTS = frozenset({"N", "N*m", "kN", "mN*m", "rad", "m", "rad/s", "m/s"})
 
 VOLTS = re.compile(r"V[_.]?\d*")
 """Names that mean volts of whatever, not a speed."""
+
+IMPLIED = {
+    **dict.fromkeys(("current", "cur", "amp", "amps", "strom", "motorstrom"), "A"),
+    **dict.fromkeys(("volt", "volts", "voltage", "spannung"), "V"),
+}
+"""Words of an electrical quantity -> its unit, where nobody says one."""
 
 OTHER = frozenset({"ddq", "qdd", "acc", "accel", "acceleration", "temp", "temperature"})
 """Words of what neither joints nor motors have."""
@@ -112,6 +119,19 @@ def likeness(column: str, unit: str, spot: Spot, only: bool, zero: bool) -> Like
         evidence.append((ONLY, f"the only {spot.quantity.value} of the model in {spot.unit}"))
     score = sum(weight for weight, _ in evidence) + (WISH if wish else 0.0)
     return Likeness(score, tuple(words for _, words in evidence if words))
+
+
+def implied_unit(column: str) -> str:
+    """The unit that a word of a name implies; empty if it implies none.
+
+    `current_position` is no ampere: a word of another quantity, or of a torque, decides.
+    """
+    words = _words(column)
+    if "rpm" in words:
+        return "rpm"
+    told = [IMPLIED[word] for word in sorted(words) if word in IMPLIED]
+    others = KIND_WORDS[Quantity.POSITION] | KIND_WORDS[Quantity.SPEED] | set(MECHANICAL.split())
+    return "" if not told or words & (others - AXES) else told[0]
 
 
 def _words(column: str) -> frozenset[str]:

@@ -1,0 +1,85 @@
+"""What speeds, and efforts that are none, tell of the columns beside them."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from drafted import changed, drafted, scales
+
+
+@pytest.mark.parametrize(("factor", "unit"), [(57.29578, "deg/s"), (9.549297, "rpm")])
+def test_a_speed_in_another_unit_than_its_name_says_is_converted(swing, write, factor, unit):
+    path, columns = swing
+    log = {{"dq": "dq_rad_s"}.get(n, n): v for n, v in columns.items()}
+    log["dq_rad_s"] = factor * log["dq_rad_s"]
+    found, rig = drafted(path, write(log))
+    assert any(f"dq_rad_s: numbers fit q as {unit}, not as rad/s" in w for w in found.look)
+    assert scales(rig)["joint.speed"] == pytest.approx(1.0 / factor, rel=1e-4)
+
+
+@pytest.mark.parametrize("speeds", [True, False])
+def test_degrees_that_are_named_in_rad_are_told_though_a_motor_constant_is_fitted(
+    arm, columns, write, speeds
+):
+    kept = {n: v for n, v in columns.items() if speeds or not n.startswith("dq")}
+    log = {{"q1": "q1_rad", "tau1": "u1_V"}.get(n, n): v for n, v in kept.items()}
+    found, rig = drafted(arm, write(log | {"q1_rad": np.degrees(log["q1_rad"])}))
+    assert any("q1_rad: named in rad, the numbers fit the model as deg" in w for w in found.look)
+    assert scales(rig)["turn.position"] == pytest.approx(np.pi / 180.0)
+
+
+def test_speeds_go_with_positions_that_are_swapped(arm, columns, write):
+    pairs = {"q2": "q3", "q3": "q2", "dq2": "dq3", "dq3": "dq2"}
+    found, _ = drafted(arm, write(changed(columns, **{n: columns[o] for n, o in pairs.items()})))
+    assert any("q2 and q3 look swapped, their speeds too" in words for words in found.look)
+    assert not any("follow" in words or "the rate of" in words for words in found.look)
+
+
+def test_a_clock_that_is_off_is_asked_after_by_all_speeds(arm, columns, write):
+    found, _ = drafted(arm, write(columns | {"t": 2.0 * columns["t"]}))
+    assert "all speeds are 2 times the rate of their positions: is the clock right?" in found.look
+
+
+def test_an_effort_that_is_the_rate_of_its_position_is_told(swing, write):
+    path, columns = swing
+    found, _ = drafted(path, write(changed(columns, tau=columns["dq"], dq=columns["tau"])))
+    assert "tau is the rate of q: are effort and speed swapped?" in found.look
+
+
+@pytest.mark.parametrize(
+    ("turn", "name"),
+    [(np.pi, "half a turn"), (0.5 * np.pi, "a quarter turn"), (-0.5 * np.pi, "minus a quarter")],
+)
+def test_an_angle_with_another_zero_than_the_model_s_is_told(arm, columns, write, turn, name):
+    found, rig = drafted(arm, write(changed(columns, q2=columns["q2"] - turn)))
+    assert any(f"q2: zero where the model's joint is at {name}" in words for words in found.look)
+    assert rig.description.signals["lift.position"].offset == pytest.approx(turn, rel=1e-6)
+
+
+@pytest.mark.parametrize("name", ["current1", "motor_current_1", "i_cur1"])
+def test_a_current_without_a_unit_is_electrical(arm, columns, write, name):
+    log = {{"tau1": name}.get(n, n): v for n, v in columns.items()}
+    found, rig = drafted(arm, write(log | {name: log[name] / 2.5}))
+    assert any(f"{name} is electrical: 2.5" in words for words in found.look)
+    assert scales(rig)["m1.effort"] == pytest.approx(2.5, rel=0.05)
+
+
+@pytest.mark.parametrize("names", [("current_pos1", "tau1"), ("q1", "current_torque1")])
+def test_what_is_current_is_no_ampere(arm, columns, write, names):
+    log = {dict(zip(("q1", "tau1"), names, strict=True)).get(n, n): v for n, v in columns.items()}
+    found, rig = drafted(arm, write(log))
+    assert not any("electrical" in words for words in found.look)
+    assert {scales(rig)[n] for n in ("turn.position", "m1.effort")} == {1.0}
+
+
+@pytest.mark.parametrize("sign", [1.0, -1.0])
+def test_a_torque_a_thousand_times_off_is_told_whatever_its_sign(arm, columns, write, sign):
+    found, _ = drafted(arm, write(changed(columns, tau2=sign * 1e3 * columns["tau2"])))
+    assert any("times what the model needs: another unit" in words for words in found.look)
+
+
+def test_a_column_of_revolutions_a_minute_is_a_speed(swing, write):
+    path, columns = swing
+    log = {{"dq": "rpm"}.get(n, n): v for n, v in columns.items()}
+    _, rig = drafted(path, write(log | {"rpm": log["rpm"] * 30.0 / np.pi}))
+    assert scales(rig)["joint.speed"] == pytest.approx(np.pi / 30.0)

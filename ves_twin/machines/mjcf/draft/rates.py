@@ -1,0 +1,133 @@
+"""rated, differs: speeds and efforts of a log held against the derivatives of its positions."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import mujoco
+import numpy as np
+
+from ves_twin.machines.mjcf.draft.changes import DEGREE
+from ves_twin.machines.mjcf.draft.log_columns import LogColumns
+from ves_twin.machines.mjcf.draft.match import Match
+from ves_twin.machines.mjcf.draft.spots import Quantity
+from ves_twin.machines.mjcf.inverse import smoothed
+from ves_twin.machines.mjcf.predecessor import predecessor
+
+FOLLOWS = 0.5
+"""Correlation below which a speed is none of its position."""
+
+SAME, ITSELF = 0.2, 0.05
+"""Shares by which a factor may be off to be taken for a unit's, or for one."""
+
+DECADE, APART = 0.1, 0.2
+"""Weight of a decade between a speed and the rate of its position, and of no likeness at all."""
+
+UNITS = {"rad/s": {"deg/s": 1.0 / DEGREE, "rpm": 30.0 / np.pi}, "m/s": {"mm/s": 1e3}}
+"""Unit of a speed -> others, and how many of them make one."""
+
+
+def rated(
+    log: LogColumns, found: list[Match], corner: float, model: mujoco.MjModel
+) -> tuple[list[Match], list[str]]:
+    """Speeds with the signs and units that the rates of their positions tell, and words for them.
+
+    Args:
+        log: whose columns they are.
+        found: columns as they are meant.
+        corner: of the low-pass [Hz].
+        model: of which joints may turn about one axis.
+
+    Returns:
+        The columns, without speeds that follow no position; a sentence for each change.
+    """
+    said, result, slopes = [], [], list[float]()
+    positions = _of(found, Quantity.POSITION)
+    speeds = _of(found, Quantity.SPEED)
+    for match in found:
+        own = positions.get(match.spot.name)
+        if match.spot.quantity is not Quantity.SPEED or own is None:
+            result.append(match)
+            continue
+        before = predecessor(model, match.spot.name, speeds) if own.alone else None
+        if before is not None and match.unit == speeds[before[0]].unit:
+            match = match.less(speeds[before[0]], before[1])
+        alike, slope = ratio(log, match, own, corner)
+        if abs(alike) < FOLLOWS:
+            said.append(f"{match.column} does not follow {own.column} ({alike:+.2f}): left out")
+            continue
+        if slope < 0.0:
+            match = replace(match, scale=-match.scale)
+            said.append(f"{match.column} counts against {own.column}: it is turned")
+        unit = _unit(match, abs(slope))
+        slopes.append(abs(slope))
+        if unit:
+            words = f"numbers fit {own.column} as {unit}, not as {match.unit}"
+            match = replace(match, unit=unit)
+            said.append(f"{match.column}: {words}")
+        elif not 0.6 < abs(slope) < 1.6:
+            rate = f"{abs(slope):.3g} times the rate of {own.column}"
+            said.append(f"{match.column} is {rate}: another unit, or the clock's?")
+        result.append(match)
+    return result, [*said, *_clock(slopes), *_swapped(log, found, corner)]
+
+
+def differs(log: LogColumns, found: Sequence[Match], corner: float) -> float:
+    """What speeds have against positions as they are meant: decades between them, no likeness."""
+    positions, total = _of(found, Quantity.POSITION), 0.0
+    for joint, match in _of(found, Quantity.SPEED).items():
+        if joint not in positions:
+            continue
+        alike, slope = ratio(log, match, positions[joint], corner)
+        factors = [1.0] if match.told else [1.0, *UNITS.get(match.spot.unit, {}).values()]
+        decades = min(abs(float(np.log10(max(abs(slope), 1e-6) / f))) for f in factors)
+        likely = abs(alike) >= FOLLOWS
+        total += APART * (1.0 - abs(alike)) + DECADE * min(decades, 3.0) * likely
+    return total
+
+
+def ratio(log: LogColumns, speed: Match, position: Match, corner: float) -> tuple[float, float]:
+    """Correlation of a column with the rate of a position, and its slope on it, both in SI."""
+    v = speed.factor * smoothed(log.column(speed.column), log.period, corner)
+    q = position.factor * smoothed(log.column(position.column), log.period, corner)
+    rate = np.gradient(q, log.period)
+    power = float(rate @ rate)
+    if not power or not np.ptp(v):
+        return 0.0, 0.0
+    return float(np.corrcoef(v, rate)[0, 1]), float(v @ rate) / power
+
+
+def _of(found: Sequence[Match], quantity: Quantity) -> dict[str, Match]:
+    return {m.spot.name: m for m in found if m.spot.quantity is quantity}
+
+
+def _unit(match: Match, slope: float) -> str:
+    """Another unit whose factor the slope is; empty if it is none's."""
+    units = UNITS.get(match.spot.unit, {})
+    return next((u for u, f in units.items() if abs(slope / f - 1.0) < SAME), "")
+
+
+def _clock(slopes: Sequence[float]) -> list[str]:
+    """That all speeds are the same factor off, where it is no unit's."""
+    if len(slopes) < 2 or np.ptp(slopes) > ITSELF * np.mean(slopes):
+        return []
+    factor = float(np.mean(slopes))
+    if 1.0 / (1.0 + SAME) < factor < 1.0 + SAME or not 0.05 < factor < 20.0:
+        return []
+    return [f"all speeds are {factor:.3g} times the rate of their positions: is the clock right?"]
+
+
+def _swapped(log: LogColumns, found: Sequence[Match], corner: float) -> list[str]:
+    """That an effort is the rate of its joint's position."""
+    positions, said = _of(found, Quantity.POSITION), []
+    for match in found:
+        own = positions.get(match.spot.joint) if match.spot.joint else None
+        if match.spot.quantity is not Quantity.EFFORT or own is None:
+            continue
+        alike, slope = ratio(log, match, own, corner)
+        if abs(alike) > 1.0 - ITSELF and abs(abs(slope) - 1.0) < ITSELF:
+            said.append(
+                f"{match.column} is the rate of {own.column}: are effort and speed swapped?"
+            )
+    return said
