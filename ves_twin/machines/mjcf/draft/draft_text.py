@@ -183,11 +183,17 @@ def _signal(group: list[Match], mode: Chosen) -> str:
 def _joints(log: LogColumns, check: Checked, mode: Chosen, model: mujoco.MjModel) -> Iterator[str]:
     """Typical effort, speed and travel of each joint that was recorded, behind its gear."""
     efforts = {m.spot.joint: m for m in check.found if m.spot.quantity is Quantity.EFFORT}
+    placed = {m.spot.name for m in check.found if m.spot.quantity is Quantity.POSITION}
     for match in check.found:
-        if match.spot.quantity is not Quantity.POSITION:
+        if match.spot.quantity is Quantity.POSITION:
+            position = match.factor * log.column(match.column)
+            speed = _speed(log, match, check.corner)
+        elif match.spot.quantity is Quantity.SPEED and match.spot.name not in placed:
+            rate = match.factor * log.column(match.column)
+            position, speed = log.period * np.cumsum(rate), typical(rate)
+        else:
             continue
-        position = match.factor * log.column(match.column)
-        sizes = {"speed": _speed(log, match, check.corner), "travel": travel(position)}
+        sizes = {"speed": speed, "travel": travel(position)}
         own = efforts.get(match.spot.name)
         if own is not None and is_motor(model, model.actuator(own.spot.name).id):
             drive = model.actuator(own.spot.name)
