@@ -48,6 +48,8 @@ def percent(share: float | None) -> str:
     """A share as percent with two digits; "-" for none."""
     if share is None or not math.isfinite(share):
         return UNSURE
+    if abs(share) >= 0.995:
+        return f"{100.0 * share:.0f} %"
     return f"{100.0 * share:.2g} %" if abs(share) >= 1e-4 else "< 0.01 %"
 
 

@@ -17,6 +17,8 @@ def refusal(verdict: Verdict) -> str:
         return "the held-out recordings show nothing that it could improve"
     if not gain.by_causes:
         return "the held-out recordings are explained better without the cause: they lack it"
+    if gain.grown:
+        return "the rms errors on held-out recordings grow with it"
     if not gain.passed:
         return f"its gain on held-out recordings is not clear of zero (from {gain.low:.2f})"
     if ahead is not None and not ahead.carries_on:

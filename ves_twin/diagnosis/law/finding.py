@@ -96,6 +96,8 @@ def _gated(gain: Gain | None) -> str:
         return ""
     if gain.share is None:
         return "the held-out recordings show nothing that it could improve"
+    if gain.grown:
+        return "the rms errors on held-out recordings grow with it"
     if gain.share < GATE or gain.low is None or gain.low <= 0.0:
         return f"it takes only {100.0 * gain.share:.0f} % of the held-out excess away"
     return ""

@@ -230,6 +230,8 @@ def _doubt(verdict: Verdict) -> str:
     if verdict.unconfirmed and gain is not None:
         if not gain.by_causes:
             return "The held-out recordings are explained better without it."
+        if gain.grown:
+            return "The rms errors on held-out recordings grow with it."
         return "The held-out recordings do not confirm it."
     if loose:
         return _loose(verdict, loose)

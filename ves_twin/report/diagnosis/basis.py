@@ -70,7 +70,8 @@ def gain_words(verdict: Verdict) -> str:
     gain = verdict.gain
     if gain is None or gain.share is None:
         return ""
-    if verdict.verdict not in (Kind.PARTIAL, Kind.UNKNOWN) or not gain.errors:
+    both = verdict.verdict in (Kind.PARTIAL, Kind.UNKNOWN) or gain.grown
+    if not both or not gain.errors:
         return taken_words(gain) + _lost_words(verdict)
     share, low, high = _taken(gain)
     span = f" ({low} to {high})" if low else ""
@@ -136,6 +137,8 @@ def gain_sentence(verdict: Verdict) -> str:
         return f"Gain of the extended plant: {said}."
     if not gain.by_causes:
         return f"Gain: {said}. But the same rig without the cause predicts them better."
+    if gain.grown:
+        return f"Gain: {said}. That is none, since the rms errors grow."
     return f"Gain: {said}. That is no clear gain."
 
 
