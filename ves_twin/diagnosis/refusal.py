@@ -11,6 +11,8 @@ def refusal(verdict: Verdict) -> str:
     It must gain on held-out recordings, and ahead in time where its sizes belong to a stretch.
     """
     gain, ahead = verdict.gain, verdict.forecast
+    if verdict.proved and all(one.ended for one in verdict.proved):
+        return "what was fitted ends its range, and stands for something else"
     if gain is None:
         return "there were no held-out recordings to prove it on"
     if gain.share is None:
