@@ -23,3 +23,16 @@ def test_held_out_rms_counts_measured_rows_only():
     for channel, sd in enumerate(SD):
         _, after = verdict.gain.errors[f"out.{channel}"]
         assert after == pytest.approx(sd, rel=0.5)
+
+
+def test_a_gain_is_finite_where_most_stretches_have_no_row():
+    """Drawn again, stretches without a sample made 0/0, and verdict.json could not be written."""
+    hidden = {"friction.size": 0.1}
+    once = record(np.random.default_rng(1), hidden, spread=0.0)
+    other = record(np.random.default_rng(2), hidden, spread=0.0, fed=programme(9))
+    out = other["out"].copy()
+    out[100:480] = np.nan
+    holed = replace(other, signals={**other.signals, "out": out})
+    verdict = diagnose(Toy(), [once], held_out=[holed], settings=QUICK)
+    assert np.all(np.isfinite([verdict.gain.share, verdict.gain.low, verdict.gain.high]))
+    assert '"verdict": "named"' in verdict.to_json()

@@ -156,7 +156,7 @@ def held_out_gain(
     mean_before, mean_after = before.sum() / lengths.sum(), after.sum() / lengths.sum()
     without = float(better.without(extended).energies(measured, own).sum() / lengths.sum())
     excess = mean_before - floor
-    if excess < INVISIBLE:
+    if not excess >= INVISIBLE:  # nor is there any where no row is compared
         return Gain(None, None, None, float(mean_before), float(mean_after), errors, without)
     # each resample by its own excess: where stretches differ in size, before and after go together
     shares = (b - a) / n / np.maximum(b / n - floor, LEAST_EXCESS * excess)

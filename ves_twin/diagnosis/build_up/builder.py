@@ -9,7 +9,7 @@ import numpy as np
 
 from ves_twin.core.types import FloatArray
 from ves_twin.diagnosis.build_up.best_proved import best_proved, most_promising
-from ves_twin.diagnosis.build_up.discrepancy import discrepancy
+from ves_twin.diagnosis.build_up.discrepancy import SHRINKAGE, discrepancy
 from ves_twin.diagnosis.build_up.halves import Halves, halves_at
 from ves_twin.diagnosis.build_up.in_full import in_full
 from ves_twin.diagnosis.build_up.next_of_kin import next_of_kin
@@ -76,14 +76,21 @@ class Builder:
         self.desk.progress(0.0, "choosing causes")
         return replace(both, regression=replace(both.regression, barred=self.barred))
 
-    def evidence(self, residual: FloatArray, memory: bool = True) -> Evidence:
+    def evidence(self, residual: FloatArray, memory: bool = True, alone: bool = False) -> Evidence:
         """The fitted half with the discrepancy that a residual shows.
 
         Sizes that are told are fitted without its memory, by plain squares: where model error is
         a law of the motion and no noise, whitening in time weighs instants that a model gets wrong
         most, and plain squares alone aim at the error that is told. Intervals count the memory.
+
+        Args:
+            residual: what the model leaves.
+            memory: whether it is whitened in time.
+            alone: whether each channel is by itself. What causes that are not proved leave goes
+                along in many channels, and pulled a seventh axis's friction from 10 to 2.7.
         """
-        whitening = discrepancy(self.fitted.runs, residual, EVEN, memory)
+        shrinkage = 1.0 if alone else SHRINKAGE
+        whitening = discrepancy(self.fitted.runs, residual, EVEN, memory, shrinkage)
         return Evidence(self.fitted.runs, self.fitted.measured, whitening)
 
     def offers(

@@ -11,8 +11,8 @@ from ves_twin.diagnosis.runs import Runs
 from ves_twin.diagnosis.whitening import ORDER, Whitening, prediction_filters
 
 SHRINKAGE = 0.1
-"""Share of the innovations' covariance that is taken without its correlations between channels:
-keeps it regular where channels are many and rows few. Chosen on TX40."""
+"""Usual share of the innovations' covariance that is taken without its correlations between
+channels: keeps it regular where channels are many and rows few. Chosen on TX40."""
 
 WHITE = 0.01
 """White noise that is added to the discrepancy, as a share of its variance: limits the filter's
@@ -20,7 +20,11 @@ range to 20 dB, beyond which slow causes would be whitened away. Chosen on TX40 
 
 
 def discrepancy(
-    runs: Runs, residual: FloatArray, white: float = WHITE, memory: bool = True
+    runs: Runs,
+    residual: FloatArray,
+    white: float = WHITE,
+    memory: bool = True,
+    shrinkage: float = SHRINKAGE,
 ) -> Whitening:
     """Whitening by which a residual is white: sensor noise and model error together.
 
@@ -32,7 +36,8 @@ def discrepancy(
         runs: whose rows these are.
         residual: measured less predicted (rows, c).
         white: noise that is added, as a share of the variance.
-        memory: whether rows are whitened in time; plain squares of each channel's size if not.
+        memory: whether rows are whitened in time; plain squares if not.
+        shrinkage: share that is taken channel by channel, without correlations; 1: all of it.
     """
     covariance = _autocovariance(runs, residual)
     channels = [runs.forward.channels[c] for c in runs.columns]
@@ -57,7 +62,7 @@ def discrepancy(
     quietest = np.sum(prediction_filters(declared) * declared, axis=1)
     spread += np.diag(np.maximum(quietest - np.diag(spread), 0.0))
     own = np.diag(np.diag(spread))
-    root = np.linalg.cholesky((1.0 - SHRINKAGE) * spread + SHRINKAGE * own)
+    root = np.linalg.cholesky((1.0 - shrinkage) * spread + shrinkage * own)
     return replace(plain, mixing=np.tile(np.linalg.inv(root), (copies, 1, 1)))
 
 
