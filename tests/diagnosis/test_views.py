@@ -7,6 +7,7 @@ import pytest
 from pendulum import MASS, PLANT, STEP
 
 from ves_twin.diagnosis.both_views import both_views
+from ves_twin.diagnosis.build_up.result import Proved
 from ves_twin.diagnosis.forward import Excitation
 from ves_twin.diagnosis.gain import Gain
 from ves_twin.diagnosis.refusal import refusal
@@ -86,6 +87,21 @@ def test_an_extension_that_cannot_be_carried_on_is_a_candidate_on_every_rig():
     assert refusal(replace(proven, forecast=held)) == ""
     assert "held-out" in refusal(FIRM)
     assert "not beyond their end" in Ves2Machine().refusal(replace(proven, forecast=lost))
+
+
+def test_what_bare_errors_or_ranges_speak_against_is_a_candidate():
+    grown = Gain(0.5, 0.4, 0.6, 4.0, 2.0, {"q": (0.1, 0.14), "v": (0.3, 0.6)})
+    assert (
+        refusal(replace(FIRM, gain=grown)) == "the rms errors on held-out recordings grow with it"
+    )
+    sound = Gain(0.9, 0.8, 1.0, 2.0, 1.1)
+    ended = Proved("body_place", "wrist.z", {}, 0.01, 8, {}, True, ended=True)
+    only, beside = (replace(FIRM, gain=sound, proved=p) for p in ((ended,), (ended, PROVED)))
+    assert refusal(only) == "what was fitted ends its range, and stands for something else"
+    assert refusal(beside) == ""
+
+
+PROVED = Proved("coulomb_friction", "elbow", {}, 0.001, 8, {}, True)
 
 
 @pytest.mark.parametrize(
