@@ -236,15 +236,20 @@ class _Seen:
         less = {joint: before for joint, before in found.items() if before}
         for group in [[joint] for joint in less] + ([list(less)] if len(less) > 1 else []):
             told = ", ".join(angles[joint] for joint in group)
-            formulas = " and ".join(self._formula(angles[j], angles[less[j][0]]) for j in group)
+            formulas = " and ".join(self._formula(j, *less[j]) for j in group)
             own = {joint: less[joint] for joint in group}
             key = f"signals.NAME.columns: a formula as {formulas}"
             yield _Reading(f"{told} measured from the world", key, {}, {}, less=own)
 
-    def _formula(self, one: str, two: str) -> str:
-        """The difference of two signals' columns, as a machine's file may hold it."""
-        signals = self.rig.description.signals
-        return " - ".join(quoted(signals[name].columns[0]) for name in (one, two))
+    def _formula(self, joint: str, before: str, along: float) -> str:
+        """The difference of two joints' columns, as a machine's file may hold it."""
+        told, forward = self.rig.description, MjcfForward.of(self.rig)
+        names = [forward.position_of(one) for one in (joint, before)]
+        signs = {c.joint: c.sign for c in told.compare.values() if c.of == "position" and c.joint}
+        one, two = (quoted(told.signals[name].columns[0]) for name in names)
+        turned = np.prod([told.signals[name].scale for name in names])
+        turned *= signs.get(joint, 1) * signs.get(before, 1) * along
+        return f"{one} {'-' if turned > 0.0 else '+'} {two}"
 
     def _before_gears(self, angles: Mapping[str, str]) -> Iterator[_Reading]:
         """Angles of motors, whose gear stands in the model."""

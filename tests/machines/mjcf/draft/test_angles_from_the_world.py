@@ -84,15 +84,19 @@ def test_joints_in_order_are_left_alone(arm, columns, write):
     assert np.all(np.array(list(scales(rig).values())) == 1.0)
 
 
+@pytest.mark.parametrize(("turned", "sign"), [(1.0, "-"), (-1.0, "+")])
 def test_a_file_that_takes_world_angles_for_joint_angles_is_refused_with_the_formula(
-    arm, columns, write
+    arm, columns, write, turned, sign
 ):
-    _, rig = drafted(arm, write(columns))
-    log = write(changed(columns, q3=columns["q2"] + columns["q3"]), "world.csv")
+    """Of which one axis counts the other way, too."""
+    q2 = turned * columns["q2"]
+    _, rig = drafted(arm, write(changed(columns, q2=q2, dq2=turned * columns["dq2"])))
+    world = columns["q2"] + columns["q3"]
+    log = write(changed(columns, q2=q2, q3=world), "world.csv")
     found = implausible(rig, read_rig_recording(log, rig))
     assert found is not None
     assert found.came.endswith("with bend.position measured from the world")
-    assert found.expected == "check signals.NAME.columns: a formula as q3 - q2"
+    assert found.expected == f"check signals.NAME.columns: a formula as q3 {sign} q2"
 
 
 def test_a_file_that_takes_the_motor_s_angle_for_the_joint_s_is_refused(tmp_path, columns, write):
