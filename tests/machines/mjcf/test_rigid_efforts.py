@@ -118,8 +118,8 @@ def test_small_departures_are_as_exact_for_their_size(rng):
 
 
 def test_a_direction_is_computed_once(rng, monkeypatch):
-    passes, inner = [], rigid_efforts._inverted
-    monkeypatch.setattr(rigid_efforts, "_inverted", lambda *a: passes.append(0) or inner(*a))
+    passes, inner = [], rigid_efforts.inverted
+    monkeypatch.setattr(rigid_efforts, "inverted", lambda *a: passes.append(0) or inner(*a))
     model = arm()
     efforts = RigidEfforts(model, *motion(model, rng))
     counts = []

@@ -10,6 +10,7 @@ from scipy.stats import norm
 from ves_twin.core.types import FloatArray
 from ves_twin.diagnosis.gain import Gain
 from ves_twin.diagnosis.held_out import HeldOut
+from ves_twin.diagnosis.law.asked import HALF, Asked, asked_of_motion
 from ves_twin.diagnosis.law.band import band_of_form
 from ves_twin.diagnosis.law.candidate import Closed, Table
 from ves_twin.diagnosis.law.fit_law import LawFit
@@ -63,7 +64,8 @@ def law_finding(search: Search, held: HeldOut | None, progress: Progress = silen
     progress(0.0, "trying the law on held-out recordings")
     gain = _gain(search, held) if held else None
     progress(0.5, "the band of the law")
-    reason = search.reason or _gated(gain)
+    asked = asked_of_motion(law, best, held.seen) if held else None
+    reason = search.reason or _gated(gain) or refuted(asked)
     along = _along(search, law)
     return LawFinding(
         claimed=not reason,
@@ -101,6 +103,15 @@ def _gated(gain: Gain | None) -> str:
     if gain.share < GATE or gain.low is None or gain.low <= 0.0:
         return f"it takes only {100.0 * gain.share:.0f} % of the held-out excess away"
     return ""
+
+
+def refuted(asked: Asked | None) -> str:
+    """Why the motion itself speaks against the law; empty where it does not, or cannot tell."""
+    if asked is None or asked.most > HALF:
+        return ""
+    share, sd = 100.0 * asked.share, 100.0 * asked.sd
+    found = f"{share:.0f} % (+- {sd:.0f} %)"
+    return f"inverse dynamics finds {found} of its effort in the held-out motion"
 
 
 def _gain(search: Search, held: HeldOut) -> Gain:

@@ -6,25 +6,20 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.interpolate import CubicSpline
-from scipy.signal import savgol_filter
 
 from ves_twin.core.types import FloatArray
 from ves_twin.diagnosis.evidence import Evidence
 from ves_twin.diagnosis.law.candidate import Candidate, Table
 from ves_twin.diagnosis.law.fit_law import LawFit
+from ves_twin.diagnosis.law.missing import missing_along, smooth_channels
 from ves_twin.diagnosis.law.place import LawForward, LawPlace
-from ves_twin.diagnosis.law.screen import smooth_candidates, values_of
+from ves_twin.diagnosis.law.screen import smooth_candidates
 from ves_twin.diagnosis.law.smoothness import Smoothness, best_of, projected
-from ves_twin.diagnosis.runs import Runs
 from ves_twin.effects.law import LawKind, joints_of, variable_along
 
 LOUD = 1e4
 """Chi^2 a sample from which a simulation without the law is far from the motion that was measured:
 at 10^6 the linear screen took time for speed in trials, below 10^3 it was right in 30 of 30."""
-
-WINDOW, DEGREE = 9, 4
-"""Of the Savitzky-Golay filter on the analysis grid: 0.09 s at 100 Hz."""
 
 QUIET = 0.01
 """Effort that counts as noise, as a share of what a law is expected to have."""
@@ -95,8 +90,8 @@ class _Shown:
     @staticmethod
     def of(evidence: Evidence, plant: LawForward, joints: Mapping[str, LawPlace]) -> _Shown | None:
         runs = evidence.runs
-        measured = [_measured(evidence, k) for k in range(len(runs.programmes))]
-        base = _efforts(runs, plant, measured, runs.origin)
+        motion = smooth_channels(runs, np.asarray(evidence.measured, float))
+        base = missing_along(runs, plant, motion, runs.origin)
         if base is None or not joints.keys() <= base[0].keys():
             return None
         scale = {name: QUIET * place.scale for name, place in joints.items()}
@@ -107,7 +102,7 @@ class _Shown:
         here, columns = stacked(base[0]), []
         for i in runs.nuisances:
             shift = runs.depart(runs.origin, np.array([i]), runs.sd[i])
-            moved = _efforts(runs, plant, measured, shift)
+            moved = missing_along(runs, plant, motion, shift)
             if moved is not None:
                 columns.append(stacked(moved[0]) - here)
         return _Shown(joints, here, np.stack(columns, axis=1), base[1])
@@ -130,35 +125,3 @@ class _Shown:
 def _mean(gram: FloatArray, slope: FloatArray, smooth: Smoothness, table: Table) -> FloatArray:
     prior = np.linalg.inv(smooth.size**2 * table.kernels[smooth.length])
     return np.asarray(np.linalg.solve(gram + prior, slope))
-
-
-def _measured(evidence: Evidence, recording: int) -> dict[str, FloatArray]:
-    """Channels of a recording, smooth, at the rows of its programme."""
-    runs = evidence.runs
-    rows, at = evidence.measured[runs.slices[recording]], runs.times[recording]
-    time = runs.programmes[recording].time
-    smooth = savgol_filter(rows.astype(float), WINDOW, DEGREE, axis=0)
-    names = [runs.forward.channels[c].name for c in runs.columns]
-    curves = CubicSpline(at, smooth, axis=0)(np.clip(time, at[0], at[-1]))
-    return dict(zip(names, curves.T, strict=True))
-
-
-def _efforts(
-    runs: Runs,
-    plant: LawForward,
-    measured: Sequence[Mapping[str, FloatArray]],
-    shift: FloatArray,
-) -> tuple[dict[str, FloatArray], dict[str, FloatArray]] | None:
-    """Missing efforts and variables on the grids of all recordings; None where nothing tells."""
-    pieces = []
-    for k, values in enumerate(values_of(runs, shift)):
-        told = plant.missing(runs.programmes[k], values, measured[k])
-        if told is None:
-            return None
-        rows = np.searchsorted(runs.programmes[k].time, runs.times[k][WINDOW:-WINDOW])
-        pieces.append([{name: x[rows] for name, x in part.items()} for part in told])
-    efforts, path = (
-        {name: np.concatenate([piece[n][name] for piece in pieces]) for name in pieces[0][n]}
-        for n in range(2)
-    )
-    return efforts, path

@@ -47,7 +47,7 @@ def efforts_of_motion(work: Work) -> tuple[dict[str, FloatArray], dict[str, Floa
     told, model = work.rig.description, work.model
     moved = _moved_of(work)
     found, asked = {}, [one.actuator for one in told.compare.values() if one.actuator]
-    commands = _commands(work, asked, moved)
+    commands = needed_commands(work, asked, moved)
     for name, compared in told.compare.items():
         if compared.actuator:
             found[name] = compared.sign * commands[compared.actuator][:, None]
@@ -65,8 +65,12 @@ def efforts_along(
     pull: FloatArray,
 ) -> dict[str, FloatArray]:
     """The command (n,) that each actuator needs along qpos (n, nq), qvel and qacc (n, nv)."""
-    moved = inverted(_rigid(work.model), position, speed, pull)
-    return _commands(work, actuators, moved)
+    return needed_commands(work, actuators, moved_along(work, position, speed, pull))
+
+
+def moved_along(work: Work, position: FloatArray, speed: FloatArray, pull: FloatArray) -> Moved:
+    """Rigid-body efforts along qpos (n, nq), qvel and qacc (n, nv)."""
+    return inverted(_rigid(work.model), position, speed, pull)
 
 
 def _rigid(model: mujoco.MjModel) -> mujoco.MjModel:
@@ -147,7 +151,7 @@ def _single(work: Work) -> list[tuple[str, str]]:
     return [(j, s) for j, s in joints.items() if work.programme.drive[s].shape[1] == 1]
 
 
-def _commands(work: Work, names: Sequence[str], moved: Moved) -> dict[str, FloatArray]:
+def needed_commands(work: Work, names: Sequence[str], moved: Moved) -> dict[str, FloatArray]:
     """The command (n,) of each actuator, less what it picks up of those to others."""
     talking = [e.parts for e, _ in work.effects if type(e).pick_up is not Effect.pick_up]
     every = dict.fromkeys([*names, *(other for _, *others in talking for other in others)])
@@ -163,9 +167,15 @@ def _commands(work: Work, names: Sequence[str], moved: Moved) -> dict[str, Float
 
 def _needed(work: Work, name: str, moved: Moved) -> FloatArray:
     """What must reach an actuator (n,)."""
-    model = work.model
-    actuator = model.actuator(name)
-    joint = model.joint(int(actuator.trnid[0]))
+    actuator = work.model.actuator(name)
+    joint = work.model.joint(int(actuator.trnid[0])).name
+    gain = float(actuator.gear[0]) * float(actuator.gainprm[0])
+    return np.asarray(needed_effort(work, joint, moved) / gain)
+
+
+def needed_effort(work: Work, name: str, moved: Moved) -> FloatArray:
+    """What must act at a joint of one coordinate (n,)."""
+    model, joint = work.model, work.model.joint(name)
     dof = int(joint.dofadr[0])
     speed = moved.speed[:, dof]
     effort = moved.effort[:, dof] + work.carried(joint.name, moved.effort[:, dof], speed)
@@ -176,10 +186,9 @@ def _needed(work: Work, name: str, moved: Moved) -> FloatArray:
     if any(law.kind is LawKind.EFFORT for law in work.laws):
         along = variables(model, work.programme.time, np.hstack([moved.position, moved.speed]))
         effort = effort - work.lawful(joint.name, along)
-    gain = float(actuator.gear[0]) * float(actuator.gainprm[0])
     if work.rig.description.drive.held:
         effort = shifted(effort, work.programme.time, -0.5 * work.programme.period)
-    return np.asarray(effort / gain)
+    return np.asarray(effort)
 
 
 def _states(motion: _Motion) -> tuple[FloatArray, FloatArray, FloatArray]:

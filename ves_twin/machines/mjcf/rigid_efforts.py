@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import copy
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from threading import RLock
 
 import mujoco
@@ -47,17 +47,16 @@ that carries a payload would count it in millions of units, and their round-off.
 
 @dataclass(frozen=True)
 class Moved:
-    """Positions (n, nq), speeds and rigid-body efforts (n, nv), sensors (n, all) of a motion."""
+    """Positions (n, nq), speeds and rigid-body efforts (n, nv), sensors (n, all) of a motion.
+
+    Of its own model: whether a contact, limit or equality was at work.
+    """
 
     position: FloatArray
     speed: FloatArray
     effort: FloatArray
     sensed: FloatArray
-
-
-def inverted(model: mujoco.MjModel, q: FloatArray, v: FloatArray, a: FloatArray) -> Moved:
-    """MuJoCo's inverse dynamics row by row."""
-    return _inverted(model, q, v, a)[0]
+    bound: bool
 
 
 class RigidEfforts:
@@ -79,9 +78,9 @@ class RigidEfforts:
 
     def __init__(self, model: mujoco.MjModel, q: FloatArray, v: FloatArray, a: FloatArray) -> None:
         self.model, self.speed, self.pull = copy.copy(model), v, a
-        self._base, bound = _inverted(model, q, v, a)
+        self._base = inverted(model, q, v, a)
         size = 80 * model.nbody * len(q) * (model.nv + model.nsensordata)
-        self.linear = not bound and _is_linear(model) and size <= LARGEST
+        self.linear = not self._base.bound and _is_linear(model) and size <= LARGEST
         self._phi = inertials(model)
         self._unit = _units(self._phi)
         self._known: dict[tuple[int, int], tuple[FloatArray, FloatArray]] = {}
@@ -97,7 +96,7 @@ class RigidEfforts:
             of_effort, of_sensor = self._direction(body, number)
             effort = effort + departure[body, number] * of_effort
             sensed = sensed + departure[body, number] * of_sensor
-        return Moved(base.position, base.speed, effort, sensed)
+        return replace(base, effort=effort, sensed=sensed)
 
     def _of_joints(self, model: mujoco.MjModel) -> FloatArray:
         """What other rotors and springs take (n, nv)."""
@@ -128,7 +127,7 @@ class RigidEfforts:
         more = STIFFER * np.max(self.model.dof_M0)
         there.dof_armature[:] += more
         set_inertials(there, body, begin)
-        moved, _ = _inverted(there, self._base.position, self.speed, self.pull)
+        moved = inverted(there, self._base.position, self.speed, self.pull)
         left = moved.effort - more * self.pull - effort
         return left / STEP, (moved.sensed - sensed) / STEP
 
@@ -152,10 +151,8 @@ def _is_linear(model: mujoco.MjModel) -> bool:
     return told and not (discrete or loose or fluid or model.nflex or model.nplugin)
 
 
-def _inverted(
-    model: mujoco.MjModel, q: FloatArray, v: FloatArray, a: FloatArray
-) -> tuple[Moved, bool]:
-    """Efforts row by row, and whether any constraint was at work."""
+def inverted(model: mujoco.MjModel, q: FloatArray, v: FloatArray, a: FloatArray) -> Moved:
+    """MuJoCo's inverse dynamics row by row."""
     data, bound = mujoco.MjData(model), False
     efforts, sensed = np.zeros((len(q), model.nv)), np.zeros((len(q), model.nsensordata))
     position, speed, pull = data.qpos, data.qvel, data.qacc
@@ -167,4 +164,4 @@ def _inverted(
         bound = bound or data.nefc > 0
         if sensing:
             sensed[k] = sensor
-    return Moved(q, v, efforts, sensed), bound
+    return Moved(q, v, efforts, sensed, bound)
