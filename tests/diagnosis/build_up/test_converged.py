@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 from linear import Linear, recorded, seen
 
+from ves_twin.diagnosis.build_up.bench import STRAINED
 from ves_twin.diagnosis.build_up.converged import _descended, converged
-from ves_twin.diagnosis.build_up.proof import STRAINED
 from ves_twin.diagnosis.evidence import Evidence
 from ves_twin.diagnosis.forward import Excitation
 from ves_twin.diagnosis.forward_wrapper import ForwardWrapper

@@ -44,7 +44,7 @@ def test_nothing_enters_where_nothing_is_and_the_proof_stays_as_it_was(chosen):
 
 def test_what_was_tried_in_vain_counts_for_the_rate_of_what_enters():
     """A gap before the offset: of the others at its target the first does not pass."""
-    hidden = {"spring@a:size": 0.1, "spring@b:size": 1.0}
+    hidden = {"spring@a:size": 0.15, "spring@b:size": 1.0}
     before, after, labels = proofs(hidden, {"offset@a", "spring@b"})
     entered = {labels[n] for n in after.proved} - {labels[n] for n in before.proved}
     assert len(entered) == 1

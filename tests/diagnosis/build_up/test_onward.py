@@ -12,7 +12,7 @@ from ves_twin.core.budget import Budget
 from ves_twin.core.workers import Workers
 from ves_twin.diagnosis.build_up import best_proved as best_proved_module
 from ves_twin.diagnosis.build_up import in_full as in_full_module
-from ves_twin.diagnosis.build_up import proof as proof_module
+from ves_twin.diagnosis.build_up import judges as judges_module
 from ves_twin.diagnosis.build_up import trials as trials_module
 from ves_twin.diagnosis.build_up.best_proved import best_proved
 from ves_twin.diagnosis.build_up.build_up import _counted
@@ -220,7 +220,7 @@ def test_a_rejected_cause_makes_room_for_the_one_that_it_stood_for(forward, monk
 
     By one-step errors: in plain ones it takes away half of what the delay does.
     """
-    monkeypatch.setattr(proof_module, "ERRORS", ((True, False),))
+    monkeypatch.setattr(judges_module, "ERRORS", ((True, False),))
 
     def kinds(selector, _):
         barred = "actuator_asymmetry@valve" in selector.regression.barred

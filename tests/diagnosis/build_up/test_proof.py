@@ -8,13 +8,14 @@ import numpy as np
 import pytest
 from linear import KINDS, Linear, drawn, halves, motion, recorded, seen, shape
 
-from ves_twin.diagnosis.build_up import proof as proof_module
+from ves_twin.diagnosis.build_up import judges as judges_module
+from ves_twin.diagnosis.build_up.bench import STRAINED, Bench
 from ves_twin.diagnosis.build_up.discrepancy import discrepancy
 from ves_twin.diagnosis.build_up.halves import halves_at, split
 from ves_twin.diagnosis.build_up.inseparable import inseparable
 from ves_twin.diagnosis.build_up.nearest import nearest
 from ves_twin.diagnosis.build_up.paired import Difference, paired
-from ves_twin.diagnosis.build_up.proof import FALSE_SHARE, STRAINED, Bench, prove
+from ves_twin.diagnosis.build_up.proof import FALSE_SHARE, prove
 from ves_twin.diagnosis.build_up.report import report_of
 from ves_twin.diagnosis.build_up.select import Selector
 from ves_twin.diagnosis.build_up.spanned import spanned_by
@@ -341,17 +342,21 @@ def test_held_out_rows_without_a_sample_prove_nothing():
     assert proof.dropped == dict.fromkeys(chosen, 1.0)
 
 
-@pytest.mark.parametrize(
-    ("kind", "size", "memory"), [("coulomb", 0.1, True), ("viscous", 0.2, False)]
-)
-def test_each_choice_is_proved_by_the_errors_that_show_it_better(kind, size, memory):
+def test_each_cause_is_proved_by_the_errors_that_show_it_better():
     """One-step errors where it has edges, plain ones where it is as slow as the model error."""
-    rms = np.sqrt(np.mean(np.square(shape(kind, motion(1).drive["q"][:, 0]))))
-    two = halves(Linear((kind,)), {f"{kind}@a:size": size / rms}, 12, error=0.2)
-    proof = prove(two.regression, two.held, [0])
-    assert proof.proved == (0,)
-    whitening = proof.bench.fit.whitening
-    assert bool(np.any(whitening.filters[..., 1:])) is memory
+    hidden = {"coulomb@a": (0.1, True), "viscous@b": (0.4, False)}
+    kinds, moved = ("coulomb", "viscous"), motion(1).drive["q"]
+    rms = [np.sqrt(np.mean(np.square(shape(k, moved[:, c])))) for c, k in enumerate(kinds)]
+    sizes = {f"{label}:size": hidden[label][0] / r for label, r in zip(hidden, rms, strict=True)}
+    two = halves(Linear(kinds), sizes, 14, error=0.2)
+    labels = [trial.cause.label for trial in two.regression.trials]
+    proof = prove(two.regression, two.held, [labels.index(label) for label in hidden])
+    judges = {labels[n]: proof.judges.of_trial(n) for n in proof.proved}
+    assert {label: bench.memory for label, bench in judges.items()} == {
+        label: memory for label, (_, memory) in hidden.items()
+    }
+    for bench in judges.values():
+        assert bool(np.any(bench.fit.whitening.filters[..., 1:])) is bench.memory
 
 
 @pytest.mark.parametrize(("without", "stays"), [(0.2, True), (0.9, False)])
@@ -361,11 +366,11 @@ def test_what_passes_beside_more_is_not_lost_as_they_go(monkeypatch, without, st
     labels = [trial.cause.label for trial in two.regression.trials]
     first, second = labels.index("viscous@a"), labels.index("coulomb@a")
 
-    def each(_, kept):
+    def each(_, kept, asked):
         p = {first: 0.06, second: 0.001 if first in kept else without}
-        return {n: Difference(p[n], 1.0, 20) for n in kept}
+        return {n: Difference(p[n], 1.0, 20) for n in asked}
 
-    monkeypatch.setattr(proof_module, "_each", each)
+    monkeypatch.setattr(judges_module, "_each", each)
     found = prove(two.regression, two.held, [first, second], more=6)
     assert (second in found.proved) is stays
     assert first in found.dropped
@@ -379,13 +384,13 @@ def test_large_errors_widen_the_scale_where_they_count_by_their_squares():
     held = replace(two.held, target=target)
     fit = two.regression.fit([0], memory=False)
     kinds = ((False, False), (False, True))
-    robust, even = (Bench(fit, held, two.regression, kind).scale([0]) for kind in kinds)
-    plain = Bench(fit, two.held, two.regression, (False, True)).scale([0])
+    robust, even = (Bench(fit, held, two.regression, *kind).scale([0]) for kind in kinds)
+    plain = Bench(fit, two.held, two.regression, False, True).scale([0])
     assert np.all(even > 2.5 * plain)
     assert np.all(robust < 1.4 * plain)
 
 
-@pytest.mark.parametrize("errors", proof_module.ERRORS)
+@pytest.mark.parametrize("errors", judges_module.ERRORS)
 def test_what_spans_a_cause_is_told_by_independent_rows_whatever_proves_it(monkeypatch, errors):
     """Friction that is less than the model error: dry friction does as well beside slow error."""
     rms = np.sqrt(np.mean(np.square(shape("viscous", motion(1).drive["q"][:, 0]))))
@@ -394,7 +399,7 @@ def test_what_spans_a_cause_is_told_by_independent_rows_whatever_proves_it(monke
     assert 0.1 * rms < 0.2
     labels = [trial.cause.label for trial in two.regression.trials]
     there = labels.index("viscous@a")
-    monkeypatch.setattr(proof_module, "ERRORS", (errors,))
+    monkeypatch.setattr(judges_module, "ERRORS", (errors,))
     proof = prove(two.regression, two.held, [there])
     assert proof.proved == (there,)
     assert [labels[n] for n in spanned_by(proof, there)] == ["coulomb@a"]

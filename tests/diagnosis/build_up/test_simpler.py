@@ -10,7 +10,8 @@ import pytest
 from linear import JOINTS, PERIOD, Linear, recorded, seen
 
 from ves_twin.diagnosis.build_up.halves import halves_at
-from ves_twin.diagnosis.build_up.proof import ERRORS, prove
+from ves_twin.diagnosis.build_up.judges import ERRORS, Judges
+from ves_twin.diagnosis.build_up.proof import prove
 from ves_twin.diagnosis.build_up.simpler import simpler
 from ves_twin.diagnosis.build_up.trials import Trial
 from ves_twin.diagnosis.forward import Excitation, Hypothesis, Parameter
@@ -92,8 +93,8 @@ def test_a_simpler_cause_that_was_dropped_before_counts_once_and_is_proved_now()
     assert after.tested == before.tested
 
 
-@pytest.mark.parametrize("errors", ERRORS)
-def test_what_takes_a_causes_place_is_proved_by_the_errors_that_proved_the_cause(errors):
+@pytest.mark.parametrize("kind", ERRORS)
+def test_what_takes_a_causes_place_is_proved_by_the_errors_that_proved_the_cause(kind):
     """Not by those that would show it best by itself: two proofs would then be compared."""
     plant, hidden = Falling(), {"falling@a:level": 0.8, "falling@a:speed": 30.0}
     one, two = (seen(plant, recorded(plant, hidden, seed)) for seed in (5, 6))
@@ -102,6 +103,8 @@ def test_what_takes_a_causes_place_is_proved_by_the_errors_that_proved_the_cause
     halves = halves_at(one, two, one.runs.origin, plant.hypotheses, present)
     trials = halves.regression.trials
     falling = next(n for n, trial in enumerate(trials) if trial in present)
-    after = simpler(prove(halves.regression, halves.held, [falling], errors=errors))
+    judges = Judges.of(halves.regression, [falling], (kind,))
+    after = simpler(prove(halves.regression, halves.held, [falling], judges=judges))
     assert [trials[n].cause.label for n in after.proved] == ["coulomb@a"]
-    assert after.bench.errors == errors
+    (bench,) = after.judges.benches
+    assert (bench.memory, bench.even) == kind

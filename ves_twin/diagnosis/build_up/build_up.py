@@ -75,7 +75,7 @@ def build_up(desk: FitContext, start: Explanation, fitted: Dataset, held: Datase
     if not proof.tested:
         return None
     desk.progress(0.0, "fitting what is proved, and its intervals")
-    evidence = builder.evidence(proof.bench.fit.residual, memory=False, alone=True)
+    evidence = builder.evidence(proof.bench.fit.residual, memory=False)
     proof, final = _at_work(halves, simpler(proof), point, evidence, held, found.fit)
     proof, final = within_range(proof, final, point, evidence)
     before = in_full(halves.regression, (), point, evidence)
@@ -127,9 +127,8 @@ def _near(builder: Builder, halves: Halves, proof: Proof) -> Fit | None:
     trials = nearest(proof.bench, Selector(regression).best())
     if not trials:
         return None
-    evidence = builder.evidence(regression.fit(trials).residual, memory=False, alone=True)
-    bench = replace(proof.bench, fit=regression.solve(trials, proof.bench.fit.whitening))
-    few = replace(proof, proved=trials, bench=bench)
+    evidence = builder.evidence(regression.fit(trials).residual, memory=False)
+    few = replace(proof, proved=trials, judges=proof.judges.fitted(trials))
     left, fit = _at_work(halves, few, origin, evidence, builder.held)
     return fit if left.proved else None
 

@@ -9,7 +9,7 @@ import numpy as np
 
 from ves_twin.core.types import FloatArray
 from ves_twin.diagnosis.build_up.best_proved import best_proved, most_promising
-from ves_twin.diagnosis.build_up.discrepancy import SHRINKAGE, discrepancy
+from ves_twin.diagnosis.build_up.discrepancy import discrepancy, usual_shrinkage
 from ves_twin.diagnosis.build_up.halves import Halves, halves_at
 from ves_twin.diagnosis.build_up.in_full import in_full
 from ves_twin.diagnosis.build_up.next_of_kin import next_of_kin
@@ -76,7 +76,7 @@ class Builder:
         self.desk.progress(0.0, "choosing causes")
         return replace(both, regression=replace(both.regression, barred=self.barred))
 
-    def evidence(self, residual: FloatArray, memory: bool = True, alone: bool = False) -> Evidence:
+    def evidence(self, residual: FloatArray, memory: bool = True) -> Evidence:
         """The fitted half with the discrepancy that a residual shows.
 
         Sizes that are told are fitted without its memory, by plain squares: where model error is
@@ -86,13 +86,9 @@ class Builder:
         Args:
             residual: what the model leaves.
             memory: whether it is whitened in time.
-            alone: whether each channel of a motion is by itself. What missed causes leave goes
-                along in many channels: five axes' frictions pulled that of a sixth from 10 to
-                2.7 N m s/rad (a Schunk LWA 4P). Poses at rest share a drift (a wrist's sensor).
         """
-        moving = not all(programme.poses for programme in self.fitted.runs.programmes)
-        shrinkage = 1.0 if alone and moving else SHRINKAGE
-        whitening = discrepancy(self.fitted.runs, residual, EVEN, memory, shrinkage)
+        runs = self.fitted.runs
+        whitening = discrepancy(runs, residual, EVEN, memory, usual_shrinkage(runs, memory))
         return Evidence(self.fitted.runs, self.fitted.measured, whitening)
 
     def offers(

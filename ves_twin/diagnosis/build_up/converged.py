@@ -7,7 +7,7 @@ from scipy.linalg import cho_factor, cho_solve
 from scipy.optimize import OptimizeResult, least_squares
 
 from ves_twin.core.types import FloatArray, SingleArray
-from ves_twin.diagnosis.build_up.proof import STRAINED
+from ves_twin.diagnosis.build_up.bench import STRAINED
 from ves_twin.diagnosis.evidence import Evidence
 from ves_twin.diagnosis.forward import Hypothesis
 from ves_twin.diagnosis.linearise import linearise

@@ -21,7 +21,8 @@ def exchanged(proof: Proof, trial: int, other: int) -> Proof:
     names = [other if n == trial else n for n in proof.proved]
     new = other not in proof.dropped  # the others were put to proof
     more = proof.tested - len(names) + new
-    tried = prove(bench.regression, bench.held, names, more, bench.errors)
+    judges = proof.judges.like(trial, other, names)
+    tried = prove(bench.regression, bench.held, names, more, judges)
     if set(tried.proved) != set(names):
         return replace(proof, tested=tried.tested)
     dropped = {n: p for n, p in proof.dropped.items() if n != other}

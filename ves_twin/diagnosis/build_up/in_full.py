@@ -7,8 +7,8 @@ from collections.abc import Sequence
 import numpy as np
 
 from ves_twin.core.types import FloatArray
+from ves_twin.diagnosis.build_up.bench import STRAINED
 from ves_twin.diagnosis.build_up.converged import converged
-from ves_twin.diagnosis.build_up.proof import STRAINED
 from ves_twin.diagnosis.build_up.regression import Regression
 from ves_twin.diagnosis.evidence import Evidence
 from ves_twin.diagnosis.forward import Hypothesis

@@ -8,9 +8,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from ves_twin.core.types import FloatArray
+from ves_twin.diagnosis.build_up.bench import Bench
 from ves_twin.diagnosis.build_up.discrepancy import apart
 from ves_twin.diagnosis.build_up.paired import paired
-from ves_twin.diagnosis.build_up.proof import FALSE_SHARE, Bench
+from ves_twin.diagnosis.build_up.proof import FALSE_SHARE
 from ves_twin.diagnosis.build_up.regression import Half
 
 KNOTS = 7

@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from ves_twin.diagnosis.build_up.proof import Bench
+from ves_twin.diagnosis.build_up.bench import Bench
 
 
 def nearest(bench: Bench, few: Sequence[Sequence[int]]) -> tuple[int, ...]:

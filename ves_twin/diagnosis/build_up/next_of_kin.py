@@ -25,7 +25,7 @@ def next_of_kin(proof: Proof) -> Proof:
     likely = [n for n, p in proof.dropped.items() if p <= NULL_FROM]
     for n in sorted(likely, key=lambda one: proof.dropped[one]):
         for other in _likest(told, n):
-            tried = _beside(told, other, in_vain)
+            tried = _beside(told, n, other, in_vain)
             if other in tried.proved and len(tried.proved) > len(told.proved):
                 told, in_vain = tried, {}
                 break
@@ -34,11 +34,12 @@ def next_of_kin(proof: Proof) -> Proof:
     return told
 
 
-def _beside(proof: Proof, other: int, in_vain: Mapping[int, float]) -> Proof:
+def _beside(proof: Proof, dropped: int, other: int, in_vain: Mapping[int, float]) -> Proof:
     """The proof with another trial beside all of it, those before it tried in vain."""
     bench, names = proof.bench, [*proof.proved, other]
     more = proof.tested - len(proof.proved) + len(in_vain)
-    tried = prove(bench.regression, bench.held, names, more, bench.errors)
+    judges = proof.judges.like(dropped, other, names)
+    tried = prove(bench.regression, bench.held, names, more, judges)
     return replace(tried, dropped={**proof.dropped, **in_vain, **tried.dropped})
 
 

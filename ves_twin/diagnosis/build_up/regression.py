@@ -10,7 +10,7 @@ from itertools import pairwise
 import numpy as np
 
 from ves_twin.core.types import BoolArray, FloatArray, IntArray, SingleArray
-from ves_twin.diagnosis.build_up.discrepancy import discrepancy
+from ves_twin.diagnosis.build_up.discrepancy import discrepancy, usual_shrinkage
 from ves_twin.diagnosis.build_up.products import Products
 from ves_twin.diagnosis.build_up.trial_columns import TrialColumns
 from ves_twin.diagnosis.build_up.trials import Trial
@@ -208,11 +208,12 @@ class Regression:
         """
         columns, scale = self.design(chosen)
         target = self.half.target
+        shrinkage = usual_shrinkage(self.half.runs, memory)
         whitening, residual = start, target
         if whitening is None:
             residual = self._plainly(columns, scale)
         for _ in range(rounds):
-            whitening = discrepancy(self.half.runs, residual, memory=memory)
+            whitening = discrepancy(self.half.runs, residual, memory=memory, shrinkage=shrinkage)
             found = self.solve(chosen, whitening)
             residual = found.residual
         return self.solve(chosen, whitening) if rounds == 0 and whitening else found

@@ -8,11 +8,12 @@ from dataclasses import replace
 import numpy as np
 
 from ves_twin.core.types import BoolArray, FloatArray, SingleArray
+from ves_twin.diagnosis.build_up.bench import Bench
 from ves_twin.diagnosis.build_up.halves import Halves
 from ves_twin.diagnosis.build_up.inseparable import inseparable
 from ves_twin.diagnosis.build_up.leftover_laws import Law, by_channel, laws_left, same_motion
 from ves_twin.diagnosis.build_up.memory import memory
-from ves_twin.diagnosis.build_up.proof import FALSE_SHARE, Bench, Proof
+from ves_twin.diagnosis.build_up.proof import FALSE_SHARE, Proof
 from ves_twin.diagnosis.build_up.regression import Half
 from ves_twin.diagnosis.build_up.result import TOGETHER, BuildUp, Left, Proved
 from ves_twin.diagnosis.build_up.spanned import spanned_by

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
 
+from ves_twin.diagnosis.build_up.bench import Bench
 from ves_twin.diagnosis.build_up.exchanged import exchanged
 from ves_twin.diagnosis.build_up.paired import loss
-from ves_twin.diagnosis.build_up.proof import Bench, Proof
+from ves_twin.diagnosis.build_up.proof import Proof
 from ves_twin.diagnosis.build_up.stand_ins import SIGNIFICANT
 
 INEFFECTIVE = 0.1
@@ -44,8 +44,7 @@ def _fewer(proof: Proof, trial: int) -> list[int]:
     if not others:
         return []
     rest = [k for k in kept if k != trial]
-    fit = regression.solve([*kept, *others], proof.bench.fit.whitening)
-    bench = replace(proof.bench, fit=fit)
+    bench = proof.judges.fitted([*kept, *others]).of_trial(trial)
     worse = {k: _worse(bench, rest, trial, k) for k in others}
     limit = INEFFECTIVE * proof.differences[trial].total
     return sorted((k for k in others if worse[k] <= limit), key=lambda k: worse[k])

@@ -8,7 +8,8 @@ from itertools import combinations
 import numpy as np
 
 from ves_twin.core.types import FloatArray, IntArray
-from ves_twin.diagnosis.build_up.proof import Bench, Proof
+from ves_twin.diagnosis.build_up.bench import Bench
+from ves_twin.diagnosis.build_up.proof import Proof
 
 MOST = 3
 """Causes that are tried together: viscous friction on the sum of two speeds is that of each joint,

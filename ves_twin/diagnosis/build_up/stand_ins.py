@@ -5,8 +5,9 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import replace
 
+from ves_twin.diagnosis.build_up.bench import Bench
 from ves_twin.diagnosis.build_up.paired import loss
-from ves_twin.diagnosis.build_up.proof import Bench, Proof
+from ves_twin.diagnosis.build_up.proof import Proof
 
 TRIED = 12
 """Causes by falling gain that are tried in the place of each proved one."""
@@ -26,20 +27,19 @@ def stand_ins(proof: Proof) -> dict[int, list[int]]:
     regression = proof.bench.regression
     trials, kept = regression.trials, list(proof.proved)
     others = regression.rest(kept)
-    fit = regression.solve(kept, proof.bench.fit.whitening)
-    bench = replace(proof.bench, fit=fit)
-    scale = bench.scale(kept)
-    beside = loss(bench.innovations(kept), scale)
+    judges = proof.judges.fitted(kept)
     found: dict[int, list[int]] = {}
     for n in kept:
-        rest = [k for k in kept if k != n]
+        bench, rest = judges.of_trial(n), [k for k in kept if k != n]
+        scale, whitening = bench.scale(kept), bench.fit.whitening
+        beside = loss(bench.innovations(kept), scale)
         likely = _likely(bench, rest, others)
-        wider = replace(bench, fit=regression.solve([*kept, *likely], fit.whitening))
+        wider = replace(bench, fit=regression.solve([*kept, *likely], whitening))
         found[n] = []
         for k in likely:
             if trials[k].cause.label in {trials[m].cause.label for m in found[n]}:
                 continue
-            alone = regression.solve([*rest, k], fit.whitening)
+            alone = regression.solve([*rest, k], whitening)
             if regression.impossible(k, alone.shares[regression.places([*rest, k])[k]]):
                 continue
             worse = loss(wider.innovations([*rest, k]), scale)
