@@ -10,6 +10,7 @@ import numpy as np
 from ves_twin.core.recording.recording import Recording
 from ves_twin.diagnosis.assess import pull_limit
 from ves_twin.diagnosis.build_up.build_up import Built, build_up
+from ves_twin.diagnosis.build_up.builder import Start
 from ves_twin.diagnosis.build_up.halves import split
 from ves_twin.diagnosis.explain import explain
 from ves_twin.diagnosis.explanation import Explanation
@@ -19,6 +20,7 @@ from ves_twin.diagnosis.forecast import forecast
 from ves_twin.diagnosis.forward import Forward
 from ves_twin.diagnosis.gain import Gain
 from ves_twin.diagnosis.held_out import HeldOut
+from ves_twin.diagnosis.inverse_start import inverse_start
 from ves_twin.diagnosis.on_line import on_line
 from ves_twin.diagnosis.preprocess import Dataset
 from ves_twin.diagnosis.profile import profiled
@@ -40,6 +42,9 @@ Where no more than two are asked for, they may have what choosing does not take.
 
 AT_LIMIT = 1.0 + 1e-9
 """Rounding of a commissioning error that a fit has held at its limit."""
+
+MORE = 2.0
+"""Chi^2 a sample from which an explanation that passes leaves more than noise."""
 
 MANY_FROM = 2
 """Causes beyond which more may be at work than a search of single ones and pairs can see."""
@@ -107,14 +112,12 @@ def decide(
     if found.far:
         return Conclusion(found, Kind.UNKNOWN, before=found.commissioning)
     built, cut = None, False
-    if not found.adequate and many:
-        evidence = desk.first.evidence
-        fitted = Dataset(evidence.runs, evidence.measured, ())
-        if held is None:
-            cut = True
-            fitted, rest = split(fitted)
-            held = HeldOut(rest, whitening_of(rest.runs, standstill), desk.settings)
-        built = build_up(desk, found, fitted, held.seen)
+    if many:
+        fitted, rest = _parted(desk, held, standstill)
+        begin = _begin(desk, fitted, found)
+        if begin is not None or not found.adequate:
+            cut, held = held is None, rest
+            built = build_up(desk, found, fitted, rest.seen, begin)
     if built is not None and built.report.proved:
         return _proved(desk, forward, recordings, held, standstill, built, cut)
     if built is not None and held is not None and built.found is not found:
@@ -132,6 +135,31 @@ def decide(
     kind = _kind(found, gains, limit)
     ahead = _ahead(desk, forward, recordings, found, standstill) if kind.names_causes else None
     return Conclusion(found, kind, gains[0] if gains else None, ahead, built, cut, before)
+
+
+def _begin(desk: FitContext, fitted: Dataset, found: Explanation) -> Start | None:
+    """A start by the measured motion, nearer than an explanation that leaves more than noise.
+
+    A simulation may be off by a share of what a cause changes, which is radians where swings are
+    out of step: one cause passed for all that a lively arm of three had.
+    """
+    best = found.best
+    if not found.adequate:
+        return inverse_start(desk, fitted, found.commissioning)
+    leaves_noise = best.chi2 < MORE * len(best.residual)
+    return None if leaves_noise else inverse_start(desk, fitted, best)
+
+
+def _parted(
+    desk: FitContext, held: HeldOut | None, standstill: Recording | None
+) -> tuple[Dataset, HeldOut]:
+    """What is fitted and what proves it: stretches of the record where nothing was held out."""
+    evidence = desk.first.evidence
+    fitted = Dataset(evidence.runs, evidence.measured, ())
+    if held is not None:
+        return fitted, held
+    fitted, rest = split(fitted)
+    return fitted, HeldOut(rest, whitening_of(rest.runs, standstill), desk.settings)
 
 
 def _proved(

@@ -158,14 +158,17 @@ class Runs:
         several = len(self.programmes) > 1
         if several and (there := self._last.get(key)) is not None:
             return there
-        parts = ((self.coordinates[i].parameter, float(shift[i])) for i in own)
-        values = {parameter.name: parameter.nominal + move for parameter, move in parts}
         programme, grid = self.programmes[recording], self.grids[recording]
-        rows = self.forward.simulate(programme, values, refined)
+        rows = self.forward.simulate(programme, self.values(recording, shift), refined)
         found = grid.reduce(rows[:, list(self.columns)])
         if several:
             self._last.keep(key, found)
         return found
+
+    def values(self, recording: int, shift: FloatArray) -> dict[str, float]:
+        """Parameter -> value in a recording, at a vector of departures."""
+        parts = ((self.coordinates[i].parameter, float(shift[i])) for i in self._own[recording])
+        return {parameter.name: parameter.nominal + move for parameter, move in parts}
 
     def columns_at(self, point: FloatArray, compute: Callable[[], SingleArray]) -> SingleArray:
         """Columns about a point (k, rows, channels), as they were if they were asked for before.

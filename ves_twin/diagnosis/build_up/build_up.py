@@ -11,7 +11,7 @@ from scipy.stats import norm
 from ves_twin.core.types import FloatArray
 from ves_twin.diagnosis.adequacy import cells, misfit
 from ves_twin.diagnosis.build_up.averaged import averaged_half_widths
-from ves_twin.diagnosis.build_up.builder import Builder
+from ves_twin.diagnosis.build_up.builder import Builder, Start
 from ves_twin.diagnosis.build_up.halves import Halves, carried_point
 from ves_twin.diagnosis.build_up.idle import idle
 from ves_twin.diagnosis.build_up.in_full import in_full
@@ -54,7 +54,13 @@ class Built:
     held: Dataset
 
 
-def build_up(desk: FitContext, start: Explanation, fitted: Dataset, held: Dataset) -> Built | None:
+def build_up(
+    desk: FitContext,
+    start: Explanation,
+    fitted: Dataset,
+    held: Dataset,
+    begin: Start | None = None,
+) -> Built | None:
     """Choose causes on one half of the data, prove each on the other.
 
     Args:
@@ -62,13 +68,14 @@ def build_up(desk: FitContext, start: Explanation, fitted: Dataset, held: Datase
         start: the best single cause, or pair, in units of noise.
         fitted: recordings that sizes come from.
         held: recordings that prove them.
+        begin: where choosing begins; the model as it is if None.
 
     Returns:
         What is proved and what is left; None where the library has nothing to offer.
     """
     builder = Builder(desk, fitted, held)
     desk.progress(0.0, "building up")
-    found = builder.best()
+    found = builder.best(begin)
     halves, point, budget = found.halves, found.point, builder.fitted.runs.budget
     budget.stage(1.0)
     proof = _counted(found)

@@ -48,6 +48,14 @@ ANEW = "causes chosen anew about their own fit"
 
 
 @dataclass(frozen=True)
+class Start:
+    """A point to build up from (coordinates,), and the trials that are at work there."""
+
+    point: FloatArray
+    present: tuple[Trial, ...] = ()
+
+
+@dataclass(frozen=True)
 class Builder:
     """A record between its halves.
 
@@ -161,7 +169,7 @@ class Builder:
             linear = regression.solve(chosen, evidence.whitening).residual
             off = regression.half.rms(residual - linear)
             least, point = left, fit.shift
-            present = _present([regression.trials[n] for n in chosen], fit)
+            present = present_in([regression.trials[n] for n in chosen], fit)
             halves = self.halves(point, present)
             kept = _places(halves, present)
             if np.all(off <= MOVED * regression.half.rms(linear)) or last == ROUNDS - 1:
@@ -193,7 +201,7 @@ class Builder:
             return []
         barred = replace(self, barred=self.barred | offer.rejected)
         trials = offer.halves.regression.trials
-        present = _present([trials[n] for n in offer.proof.proved], offer.fit)
+        present = present_in([trials[n] for n in offer.proof.proved], offer.fit)
         halves = barred.halves(offer.fit.shift, present)
         return barred.offers(halves, offer.fit.shift, present, offer.known)
 
@@ -215,7 +223,7 @@ class Builder:
         chosen, known = best_proved(halves, Selector(regression).best(), known)
         return [self.offer(halves, point, chosen, known)] if chosen else []
 
-    def best(self) -> Offer:
+    def best(self, start: Start | None = None) -> Offer:
         """The choice whose proved causes predict held-out rows best.
 
         Causes of every offer count for the rate; those that `best_proved` tried count where its
@@ -224,12 +232,16 @@ class Builder:
         Where the best of the first ones proves nothing, another that does is gone on from: what
         takes the place of its rejected causes may predict better than nothing at all (the place of
         a double pendulum's lower link).
+
+        Args:
+            start: where choosing begins; the model as it is if None.
         """
-        origin = self.fitted.runs.origin
-        halves = self.halves(origin, ())
-        trials, causes = halves.regression.trials, self.desk.first.screen.bank.hypotheses
-        builder = replace(self, told=Library.after(causes, trials, self._dear))
-        offers = builder.offers(halves, origin)
+        begin = start or Start(self.fitted.runs.origin)
+        halves, builder = self.halves(begin.point, begin.present), self
+        if start is None:
+            trials, causes = halves.regression.trials, self.desk.first.screen.bank.hypotheses
+            builder = replace(self, told=Library.after(causes, trials, self._dear))
+        offers = builder.offers(halves, begin.point, begin.present)
         found, known = preferred(offers), offers[-1].known
         named = [offer for offer in offers if offer.proof.proved]
         base = preferred(named) if named and not found.proof.proved else found
@@ -244,14 +256,14 @@ class Builder:
             builder = replace(builder, barred=builder.barred | base.rejected)
             base = found = other
         found = replace(found, known=known)
-        return preferred([found, *self.few(halves, origin, known)])
+        return preferred([found, *self.few(halves, begin.point, known)])
 
 
 def _places(halves: Halves, present: Sequence[Trial]) -> list[int]:
     return [n for n, trial in enumerate(halves.regression.trials) if trial in present]
 
 
-def _present(trials: Sequence[Trial], fit: Fit) -> tuple[Trial, ...]:
+def present_in(trials: Sequence[Trial], fit: Fit) -> tuple[Trial, ...]:
     """The same causes at the sizes of a fit; those that came to nothing are gone."""
     found, start = [], 0
     for trial in trials:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -9,11 +10,10 @@ from scipy.optimize import lsq_linear
 
 from ves_twin.core.types import FloatArray
 from ves_twin.diagnosis.build_up.halves import carried_point
+from ves_twin.diagnosis.by_motion import along_motion, by_motion, missing_at
 from ves_twin.diagnosis.law.fit_law import LawFit
-from ves_twin.diagnosis.law.missing import WINDOW, missing_along, smooth_channels, smoothed
 from ves_twin.diagnosis.law.place import LawForward
 from ves_twin.diagnosis.preprocess import Dataset
-from ves_twin.diagnosis.runs import Runs
 from ves_twin.effects.law import Law, LawKind, LawShape, joints_of, variable_along
 
 FAR = 3.0
@@ -79,42 +79,43 @@ def asked_of_motion(law: Law, found: LawFit, held: Dataset) -> Asked | None:
     fit = found.fit
     lawful = replace(held.runs, forward=fit.local.runs.forward)
     point = carried_point(fit.local.runs, lawful, fit.shift)
-    rows = np.asarray(lawful.one(point), float)
+    rows = lawful.one(point)
     noise = np.array([plant.channels[c].sd for c in held.runs.columns])
-    noisy = rows + noise * np.random.default_rng(0).standard_normal(rows.shape)
+    rng = np.random.default_rng(0)
+    noisy = np.asarray(rows + noise * rng.standard_normal(rows.shape), np.float32)
     without = carried_point(fit.local.runs, held.runs, fit.shift)
-    shown = _asked(law, held.runs, plant, noisy, without) if np.isfinite(noisy).all() else None
+    shown = _asked(law, replace(held, measured=noisy), without) if np.isfinite(rows).all() else None
     if shown is None or shown.least < HALF:
         return None
-    real = _asked(law, held.runs, plant, np.asarray(held.measured, float), without)
+    real = _asked(law, held, without)
     return None if real is None else Asked(real.share / shown.share, real.sd / shown.share)
 
 
-def _asked(
-    law: Law, runs: Runs, plant: LawForward, rows: FloatArray, point: FloatArray
-) -> Asked | None:
-    """Of channels (rows, c) as a motion."""
-    motion = smooth_channels(runs, rows)
-    base = missing_along(runs, plant, motion, point)
-    joints = joints_of(law.place)
-    if base is None or not {joint for joint, _ in joints} <= base[0].keys():
+def _asked(law: Law, seen: Dataset, point: FloatArray) -> Asked | None:
+    """Of recordings at a point of their plant."""
+    told = by_motion(seen)
+    if told is None:
         return None
-    effort = _seen(law.at(*(variable_along(name, base[1]) for name in law.of)), runs)
-    columns = [[sign * effort for _, sign in joints]]
-    for i in runs.nuisances:
-        moved = runs.depart(point, np.array([i]), point[i] + runs.sd[i])
-        there = missing_along(runs, plant, motion, moved)
-        if there is not None:
-            columns.append([base[0][joint] - there[0][joint] for joint, _ in joints])
-    design, target = np.array(columns), np.array([base[0][joint] for joint, _ in joints])
-    moving = np.any(design != 0.0, axis=(1, 2))
-    return _share(design[moving], target) if moving[0] else None
+    runs, joints = told.runs, joints_of(law.place)
+    names = [channel.name for channel in runs.forward.channels]
+    at = [names.index(missing_at(joint)) for joint, _ in joints if missing_at(joint) in names]
+    if len(at) < len(joints):
+        return None
 
+    def effort(path: Mapping[str, FloatArray]) -> FloatArray:
+        one = law.at(*(variable_along(name, path) for name in law.of))
+        return np.stack([sign * one for _, sign in joints], axis=1)
 
-def _seen(effort: FloatArray, runs: Runs) -> FloatArray:
-    """An effort (n,) as it is seen in filtered motions, recording by recording."""
-    ends = np.cumsum([len(time) - 2 * WINDOW for time in runs.times])
-    return np.concatenate([smoothed(part) for part in np.split(effort, ends[:-1])])
+    base = runs.one(point)[:, at]
+    moved = [runs.depart(point, np.array([i]), point[i] + runs.sd[i]) for i in runs.nuisances]
+    design = np.stack(
+        [along_motion(told, point, effort), *(runs.one(there)[:, at] - base for there in moved)]
+    )
+    rows = runs.kept[:, at[0]] & np.isfinite(design).all(axis=(0, 2))
+    moving = np.any(design[:, rows] != 0.0, axis=(1, 2))
+    if not moving[0]:
+        return None
+    return _share(design[moving][:, rows].transpose(0, 2, 1), -base[rows].T.astype(float))
 
 
 def _share(design: FloatArray, target: FloatArray) -> Asked:

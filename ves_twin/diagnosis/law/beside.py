@@ -67,14 +67,20 @@ class Beside(ForwardWrapper):
         """See `LawForward`."""
         return self.forward.visited(programme, self._with_causes(values), laws)
 
+    @property
+    def band(self) -> float:
+        """See `Invertible`."""
+        return self.forward.band
+
     def missing(
         self,
         programme: Excitation,
         values: Mapping[str, float],
         measured: Mapping[str, FloatArray],
+        as_nominal: bool = False,
     ) -> tuple[Mapping[str, FloatArray], Mapping[str, FloatArray]] | None:
         """See `LawForward`."""
-        return self.forward.missing(programme, self._with_causes(values), measured)
+        return self.forward.missing(programme, self._with_causes(values), measured, as_nominal)
 
     def _with_causes(self, values: Mapping[str, float]) -> dict[str, float]:
         return {p.name: p.nominal for p in self.sizes} | dict(values)

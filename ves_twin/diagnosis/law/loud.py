@@ -7,14 +7,15 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ves_twin.core.types import FloatArray
+from ves_twin.core.types import FloatArray, SingleArray
+from ves_twin.diagnosis.by_motion import along_motion, by_motion, missing_at, motions
 from ves_twin.diagnosis.evidence import Evidence
 from ves_twin.diagnosis.law.candidate import Candidate, Table
 from ves_twin.diagnosis.law.fit_law import LawFit
-from ves_twin.diagnosis.law.missing import missing_along, smooth_channels
-from ves_twin.diagnosis.law.place import LawForward, LawPlace
+from ves_twin.diagnosis.law.place import LawPlace
 from ves_twin.diagnosis.law.screen import smooth_candidates
 from ves_twin.diagnosis.law.smoothness import Smoothness, best_of, projected
+from ves_twin.diagnosis.preprocess import Dataset
 from ves_twin.effects.law import LawKind, joints_of, variable_along
 
 LOUD = 1e4
@@ -54,17 +55,24 @@ def loud_screen(evidence: Evidence, none: LawFit, places: Sequence[LawPlace]) ->
     Returns:
         Nothing where the record is not loud, or its motion is not measured.
     """
-    plant = evidence.runs.forward
-    if none.temper < LOUD or not isinstance(plant, LawForward):
+    if none.temper < LOUD:
         return []
-    joints = {p.name: p for p in places if p.kind is LawKind.EFFORT and _single(p)}
-    shown = _Shown.of(evidence, plant, joints)
-    if shown is None:
+    told = by_motion(Dataset(evidence.runs, evidence.measured, ()))
+    joints = [p for p in places if p.kind is LawKind.EFFORT and _single(p)]
+    if told is None or not {missing_at(p.name) for p in joints} <= {*_names(told)}:
         return []
-    ends = {name: (float(np.min(x)), float(np.max(x))) for name, x in shown.path.items()}
-    of_efforts = [one for one in smooth_candidates([*joints.values()], ends)]
-    found = [shown.suspect(one) for one in of_efforts if isinstance(one, Table)]
+    paths = motions(told, told.runs.origin)
+    every = {name: np.concatenate([path[name] for path in paths]) for name in paths[0]}
+    ends = {name: (float(np.min(x)), float(np.max(x))) for name, x in every.items()}
+    shown = _Shown.of(told, {missing_at(p.name): QUIET * p.scale for p in joints})
+    found = [
+        shown.suspect(one) for one in smooth_candidates(joints, ends) if isinstance(one, Table)
+    ]
     return sorted(found, key=lambda one: -one.gain)
+
+
+def _names(told: Dataset) -> list[str]:
+    return [channel.name for channel in told.runs.forward.channels]
 
 
 def _single(place: LawPlace) -> bool:
@@ -73,51 +81,50 @@ def _single(place: LawPlace) -> bool:
 
 @dataclass(frozen=True)
 class _Shown:
-    """Efforts that are missing, of all joints one after the other.
+    """Efforts that are missing, in units of their noise.
 
     Attributes:
-        joints: places, in that order.
-        efforts: over QUIET of each joint's expected size (joints * n,).
-        errors: change for one commissioning sd (joints * n, k).
-        path: variables (n,).
+        told: recordings by their motion.
+        scale: channel -> sd of its noise.
+        efforts: (samples,).
+        errors: what one sd of each commissioning error takes away (samples, k).
     """
 
-    joints: Mapping[str, LawPlace]
+    told: Dataset
+    scale: Mapping[str, float]
     efforts: FloatArray
     errors: FloatArray
-    path: Mapping[str, FloatArray]
 
     @staticmethod
-    def of(evidence: Evidence, plant: LawForward, joints: Mapping[str, LawPlace]) -> _Shown | None:
-        runs = evidence.runs
-        motion = smooth_channels(runs, np.asarray(evidence.measured, float))
-        base = missing_along(runs, plant, motion, runs.origin)
-        if base is None or not joints.keys() <= base[0].keys():
-            return None
-        scale = {name: QUIET * place.scale for name, place in joints.items()}
+    def of(told: Dataset, scale: Mapping[str, float]) -> _Shown:
+        runs, empty = told.runs, np.zeros(0)
+        first = _Shown(told, scale, empty, empty)
+        base, origin = runs.one(runs.origin), runs.origin
+        moved = [runs.depart(origin, np.array([i]), runs.sd[i]) for i in runs.nuisances]
+        errors = [first.flat(runs.one(there) - base) for there in moved]
+        return _Shown(told, scale, first.flat(-base), np.stack(errors, axis=1))
 
-        def stacked(efforts: Mapping[str, FloatArray]) -> FloatArray:
-            return np.concatenate([efforts[name] / scale[name] for name in joints])
-
-        here, columns = stacked(base[0]), []
-        for i in runs.nuisances:
-            shift = runs.depart(runs.origin, np.array([i]), runs.sd[i])
-            moved = missing_along(runs, plant, motion, shift)
-            if moved is not None:
-                columns.append(stacked(moved[0]) - here)
-        return _Shown(joints, here, np.stack(columns, axis=1), base[1])
+    def flat(self, rows: FloatArray | SingleArray) -> FloatArray:
+        """Samples of rows (rows, channels) that count, in units of noise."""
+        names = _names(self.told)
+        at, sd = [names.index(name) for name in self.scale], np.array([*self.scale.values()])
+        return np.asarray((rows[:, at] / sd)[self.told.runs.kept[:, at]], float)
 
     def suspect(self, table: Table) -> LoudSuspect:
         """One table."""
-        x = variable_along(table.of[0].name, self.path)
-        hats = np.stack([np.interp(x, table.knots, row) for row in np.eye(len(table.knots))])
-        columns = np.zeros((len(self.joints), len(x), len(hats)))
-        own = [*self.joints].index(table.place.name)
-        columns[own] = hats.T / (QUIET * table.place.scale)
-        flat = columns.reshape(-1, len(hats))
+        own = _names(self.told).index(missing_at(table.place.name))
+        width = len(_names(self.told))
+
+        def hats(path: Mapping[str, FloatArray]) -> FloatArray:
+            x = variable_along(table.of[0].name, path)
+            return np.stack([np.interp(x, table.knots, row) for row in np.eye(len(table.knots))]).T
+
+        rows = along_motion(self.told, self.told.runs.origin, hats)
+        columns = np.zeros((rows.shape[1], len(rows), width))
+        columns[:, :, own] = rows.T
+        flat = np.stack([self.flat(column) for column in columns], axis=1)
         temper = max(1.0, float(np.mean(np.square(self.efforts))))
-        # a commissioning error takes away what it adds
-        gram, slope = projected(flat, -self.errors, self.efforts, temper)
+        gram, slope = projected(flat, self.errors, self.efforts, temper)
         smooth = best_of(gram, slope, table)
         return LoudSuspect(table, _mean(gram, slope, smooth, table), smooth.gain)
 

@@ -7,7 +7,8 @@ from dataclasses import dataclass
 from typing import Protocol, runtime_checkable
 
 from ves_twin.core.types import FloatArray
-from ves_twin.diagnosis.forward import Excitation, Forward
+from ves_twin.diagnosis.forward import Excitation
+from ves_twin.diagnosis.invertible import Invertible
 from ves_twin.effects.law import Law, LawKind
 
 STEP = 0.02
@@ -49,7 +50,7 @@ class LawPlace:
 
 
 @runtime_checkable
-class LawForward(Forward, Protocol):
+class LawForward(Invertible, Protocol):
     """A `Forward` in which laws can act: two more verbs, and a simulation that takes laws."""
 
     def simulate(
@@ -68,20 +69,3 @@ class LawForward(Forward, Protocol):
         self, programme: Excitation, values: Mapping[str, float], laws: Sequence[Law] = ()
     ) -> Mapping[str, FloatArray]:
         """What moves (n,), by name: every variable of the places that is no sum and no play."""
-
-    def missing(
-        self,
-        programme: Excitation,
-        values: Mapping[str, float],
-        measured: Mapping[str, FloatArray],
-    ) -> tuple[Mapping[str, FloatArray], Mapping[str, FloatArray]] | None:
-        """Efforts by joint that a measured motion asks for beyond the plant's, and variables.
-
-        Args:
-            programme: what was fed in.
-            values: parameter -> value.
-            measured: channels (n,) at the programme's rows, smooth.
-
-        Returns:
-            None where the channels do not tell the motion, or the motion is what is fed in.
-        """

@@ -80,14 +80,7 @@ def both(
 
 def values_of(runs: Runs, shift: FloatArray) -> list[dict[str, float]]:
     """Parameter -> value of the plant, of each recording."""
-    found: list[dict[str, float]] = [
-        {
-            axis.parameter.name: axis.parameter.nominal + float(shift[i])
-            for i, axis in enumerate(runs.coordinates)
-            if axis.recording in (-1, k)
-        }
-        for k in range(len(runs.programmes))
-    ]
+    found = [runs.values(k, shift) for k in range(len(runs.programmes))]
     forward = runs.forward
     return [forward.of_plant(one) for one in found] if isinstance(forward, WithLaw) else found
 

@@ -188,11 +188,17 @@ class MjcfForward:
         """Joints and compared columns at which a law may act."""
         return law_places(self.rig, self.channels, self.mode)
 
+    @property
+    def band(self) -> float:
+        """Corner [Hz] of the low-pass before positions are differentiated."""
+        return self.rig.description.drive.smoothing
+
     def missing(
         self,
         programme: Excitation,
         values: Mapping[str, float],
         measured: Mapping[str, FloatArray],
+        as_nominal: bool = False,
     ) -> tuple[Mapping[str, FloatArray], Mapping[str, FloatArray]] | None:
         """Efforts by joint that a measured motion asks for beyond the model; see `LawForward`."""
         model, told = self.rig.model, self.rig.description
@@ -207,7 +213,7 @@ class MjcfForward:
         driven = [self.joint_of(name) for name in told.drive.actuators]
         if not single.issuperset(driven) or len(set(driven)) != len(driven):
             return None
-        return missing_efforts(Work.begin(self.rig, programme, values), positions)
+        return missing_efforts(Work.begin(self.rig, programme, values), positions, as_nominal)
 
     def _moved(
         self, work: Work, refined: bool

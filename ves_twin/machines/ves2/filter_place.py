@@ -90,14 +90,20 @@ class WithFilterPlaces(ForwardWrapper):
         """Variables of the rig with the filter where the scenario has it."""
         return self.forward.visited(programme, _of_the_rig(values), laws)
 
+    @property
+    def band(self) -> float:
+        """As the rig."""
+        return self.forward.band
+
     def missing(
         self,
         programme: Excitation,
         values: Mapping[str, float],
         measured: Mapping[str, FloatArray],
+        as_nominal: bool = False,
     ) -> None:
         """As the rig."""
-        self.forward.missing(programme, _of_the_rig(values), measured)
+        self.forward.missing(programme, _of_the_rig(values), measured, as_nominal)
 
     @cached_property
     def _others(self) -> dict[FilterPlace, RigForward]:

@@ -169,11 +169,17 @@ class RigForward:
         """Rods, joints of the arm, the platform, and compared columns."""
         return law_places(self.plant)
 
+    @property
+    def band(self) -> float:
+        """All of it: nothing is differentiated."""
+        return float("inf")
+
     def missing(
         self,
         programme: Excitation,
         values: Mapping[str, float],
         measured: Mapping[str, FloatArray],
+        as_nominal: bool = False,
     ) -> None:
         """None: VES II moves by set-points, and what its valves make of them is not recorded."""
 
