@@ -272,7 +272,7 @@ def test_what_a_longer_choice_loses_is_taken_from_the_way(forward, monkeypatch):
         found = prove(regression, held, chosen, more)
         return replace(found, proved=()) if odd in chosen else found
 
-    monkeypatch.setattr(best_proved_module, "prove", failing)
+    monkeypatch.setattr(best_proved_module, "weighed", failing)
     sets = [[], short[:1], short, [*short, odd]]
     found, known = best_proved(halves, sets, frozenset({"another"}))
     assert found == list(prove(halves.regression, halves.held, short).proved)

@@ -8,7 +8,7 @@ from dataclasses import replace
 from ves_twin.core.types import FloatArray
 from ves_twin.diagnosis.build_up.halves import Halves
 from ves_twin.diagnosis.build_up.offer import least_left
-from ves_twin.diagnosis.build_up.proof import prove
+from ves_twin.diagnosis.build_up.weighed import weighed
 
 
 def best_proved(
@@ -48,7 +48,7 @@ def _best(
     numbers = {tuple(some): n for n, some in reversed(list(enumerate(sets))) if some}
     for chosen, number in sorted(numbers.items(), key=lambda item: item[1]):
         labels = frozenset(regression.trials[n].cause.label for n in chosen)
-        proof = prove(regression, held, chosen, more=len(known - labels))
+        proof = weighed(regression, held, chosen, len(known - labels))
         if proof.proved:
             fit = regression.solve(proof.proved, proof.bench.fit.whitening)
             found.append((number, list(proof.proved), known | labels))

@@ -17,13 +17,14 @@ from ves_twin.diagnosis.build_up.idle import idle
 from ves_twin.diagnosis.build_up.in_full import in_full
 from ves_twin.diagnosis.build_up.nearest import nearest
 from ves_twin.diagnosis.build_up.offer import Offer
-from ves_twin.diagnosis.build_up.proof import Proof, prove
+from ves_twin.diagnosis.build_up.proof import Proof
 from ves_twin.diagnosis.build_up.regression import Regression
 from ves_twin.diagnosis.build_up.report import report_of
 from ves_twin.diagnosis.build_up.result import UNFINISHED, BuildUp
 from ves_twin.diagnosis.build_up.select import Selector
 from ves_twin.diagnosis.build_up.simpler import simpler
 from ves_twin.diagnosis.build_up.sizes import half_widths
+from ves_twin.diagnosis.build_up.weighed import weighed
 from ves_twin.diagnosis.build_up.within_range import within_range
 from ves_twin.diagnosis.evidence import Evidence
 from ves_twin.diagnosis.explanation import Explanation
@@ -82,7 +83,7 @@ def build_up(
     if not proof.tested:
         return None
     desk.progress(0.0, "fitting what is proved, and its intervals")
-    evidence = builder.evidence(proof.bench.fit.residual, memory=False)
+    evidence = builder.evidence(proof.bench.fit.residual, memory=False, apart=proof.judges.apart)
     proof, final = _at_work(halves, simpler(proof), point, evidence, held, found.fit)
     proof, final = within_range(proof, final, point, evidence)
     before = in_full(halves.regression, (), point, evidence)
@@ -147,7 +148,7 @@ def _counted(offer: Offer) -> Proof:
     more = len(offer.known - {trials[n].cause.label for n in chosen})
     if len(chosen) + more == proof.tested:
         return proof
-    return prove(offer.halves.regression, offer.halves.held, chosen, more=more)
+    return weighed(offer.halves.regression, offer.halves.held, chosen, more)
 
 
 def _on(whitening: Whitening, runs: Runs) -> Whitening:

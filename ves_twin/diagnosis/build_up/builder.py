@@ -15,9 +15,9 @@ from ves_twin.diagnosis.build_up.in_full import in_full
 from ves_twin.diagnosis.build_up.next_of_kin import next_of_kin
 from ves_twin.diagnosis.build_up.offer import Offer, preferred
 from ves_twin.diagnosis.build_up.plain_selector import PlainSelector
-from ves_twin.diagnosis.build_up.proof import prove
 from ves_twin.diagnosis.build_up.select import Selector
 from ves_twin.diagnosis.build_up.trials import Library, Trial
+from ves_twin.diagnosis.build_up.weighed import weighed
 from ves_twin.diagnosis.evidence import Evidence
 from ves_twin.diagnosis.fit_context import FitContext
 from ves_twin.diagnosis.preprocess import Dataset
@@ -84,7 +84,7 @@ class Builder:
         self.desk.progress(0.0, "choosing causes")
         return replace(both, regression=replace(both.regression, barred=self.barred))
 
-    def evidence(self, residual: FloatArray, memory: bool = True) -> Evidence:
+    def evidence(self, residual: FloatArray, memory: bool = True, apart: bool = True) -> Evidence:
         """The fitted half with the discrepancy that a residual shows.
 
         Sizes that are told are fitted without its memory, by plain squares: where model error is
@@ -94,9 +94,10 @@ class Builder:
         Args:
             residual: what the model leaves.
             memory: whether it is whitened in time.
+            apart: whether channels of a motion are by themselves where it is not.
         """
         runs = self.fitted.runs
-        whitening = discrepancy(runs, residual, EVEN, memory, usual_shrinkage(runs, memory))
+        whitening = discrepancy(runs, residual, EVEN, memory, usual_shrinkage(runs, memory, apart))
         return Evidence(self.fitted.runs, self.fitted.measured, whitening)
 
     def offers(
@@ -184,8 +185,9 @@ class Builder:
         self.desk.progress(0.0, f"putting {len(chosen)} causes to proof")
         labels = frozenset(halves.regression.trials[n].cause.label for n in chosen)
         more = len(known - labels)
-        proof = next_of_kin(prove(halves.regression, halves.held, chosen, more))
-        evidence = self.evidence(proof.bench.fit.residual, memory=False)
+        proof = next_of_kin(weighed(halves.regression, halves.held, chosen, more))
+        apart = proof.judges.apart
+        evidence = self.evidence(proof.bench.fit.residual, memory=False, apart=apart)
         fit = in_full(halves.regression, proof.proved, point, evidence)
         tried = (halves.regression.trials[n].cause.label for n in (*proof.proved, *proof.dropped))
         return Offer.of(halves, point, proof, fit, known.union(tried))

@@ -19,7 +19,7 @@ WHITE = 0.01
 range to 20 dB, beyond which slow causes would be whitened away. Chosen on TX40 and the damper."""
 
 
-def usual_shrinkage(runs: Runs, memory: bool) -> float:
+def usual_shrinkage(runs: Runs, memory: bool, apart: bool = True) -> float:
     """Share of the covariance without correlations: all of it for plain squares of a motion.
 
     What missed causes leave goes along in many channels: five axes' frictions pulled that of a
@@ -27,7 +27,7 @@ def usual_shrinkage(runs: Runs, memory: bool) -> float:
     poses at rest share a drift (a wrist's sensor).
     """
     moving = not all(programme.poses for programme in runs.programmes)
-    return 1.0 if moving and not memory else SHRINKAGE
+    return 1.0 if moving and apart and not memory else SHRINKAGE
 
 
 def discrepancy(

@@ -41,20 +41,23 @@ class Judges:
     Attributes:
         benches: by each kind; the first shows all trials together best.
         judge: trial -> number of its bench.
+        apart: whether plain errors weigh each channel of a motion by itself.
     """
 
     benches: tuple[Bench, ...]
     judge: Mapping[int, int]
+    apart: bool = True
 
     @staticmethod
     def of(
         regression: Regression,
         chosen: Sequence[int],
         kinds: Sequence[tuple[bool, bool]] | None = None,
+        apart: bool = True,
     ) -> Judges:
         """Those that show all together best on the fitted half, others where they are CLEARER."""
         kinds, enough = kinds or ERRORS, LIMIT / max(len(chosen), 1)
-        fits = _fits(regression, chosen, {memory for memory, _ in kinds})
+        fits = _fits(regression, chosen, {memory for memory, _ in kinds}, apart)
         benches = [
             Bench(fits[memory], regression.half, regression, memory, even) for memory, even in kinds
         ]
@@ -69,7 +72,8 @@ class Judges:
             return best if found[best] < CLEARER * found[0] else 0
 
         order = sorted(range(len(benches)), key=together)
-        return Judges(tuple(benches[k] for k in order), {n: clearest(n) for n in chosen})
+        judge = {n: clearest(n) for n in chosen}
+        return Judges(tuple(benches[k] for k in order), judge, apart)
 
     @property
     def first(self) -> Bench:
@@ -87,9 +91,9 @@ class Judges:
     def like(self, trial: int, other: int, chosen: Sequence[int]) -> Judges:
         """With another trial that is judged as one is, and the discrepancy beside other ones."""
         regression = self.first.regression
-        fits = _fits(regression, chosen, {one.memory for one in self.benches})
+        fits = _fits(regression, chosen, {one.memory for one in self.benches}, self.apart)
         benches = tuple(replace(one, fit=fits[one.memory]) for one in self.benches)
-        return Judges(benches, {**self.judge, other: self.judge[trial]})
+        return replace(self, benches=benches, judge={**self.judge, other: self.judge[trial]})
 
     def fitted(self, kept: Sequence[int]) -> Judges:
         """With other trials fitted, the discrepancy as it is."""
@@ -111,9 +115,9 @@ class Judges:
 
 
 def _fits(
-    regression: Regression, chosen: Sequence[int], memories: set[bool]
+    regression: Regression, chosen: Sequence[int], memories: set[bool], apart: bool
 ) -> dict[bool, LinearFit]:
-    return {memory: regression.fit(chosen, memory=memory) for memory in memories}
+    return {memory: regression.fit(chosen, memory=memory, apart=apart) for memory in memories}
 
 
 def _each(bench: Bench, kept: Sequence[int], asked: Sequence[int]) -> dict[int, Difference]:

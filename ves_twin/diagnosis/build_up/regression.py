@@ -197,6 +197,7 @@ class Regression:
         start: Whitening | None = None,
         rounds: int = ROUNDS,
         memory: bool = True,
+        apart: bool = True,
     ) -> LinearFit:
         """Amplitudes and the discrepancy that they leave, in turn.
 
@@ -205,10 +206,11 @@ class Regression:
             start: discrepancy to begin with; plain squares if None.
             rounds: how often it is learnt anew.
             memory: whether it has a memory; only the size of each channel if not.
+            apart: whether channels of a motion are by themselves where it has none.
         """
         columns, scale = self.design(chosen)
         target = self.half.target
-        shrinkage = usual_shrinkage(self.half.runs, memory)
+        shrinkage = usual_shrinkage(self.half.runs, memory, apart)
         whitening, residual = start, target
         if whitening is None:
             residual = self._plainly(columns, scale)
