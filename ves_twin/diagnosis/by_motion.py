@@ -144,6 +144,13 @@ def _holes(runs: Runs, band: float, kept: BoolArray) -> tuple[BoolArray, ...]:
     return tuple(found)
 
 
+def _by_motion(found: Dataset) -> ByMotion:
+    forward = found.runs.forward
+    if not isinstance(forward, ByMotion):
+        raise TypeError(f"{type(forward).__name__} is not seen by its motion")
+    return forward
+
+
 def motions(found: Dataset, point: FloatArray) -> list[Mapping[str, FloatArray]]:
     """Variables of laws along each recording, by name (n,).
 
@@ -151,9 +158,7 @@ def motions(found: Dataset, point: FloatArray) -> list[Mapping[str, FloatArray]]
         found: of `by_motion`.
         point: departures of the plant (coordinates,).
     """
-    runs, forward = found.runs, found.runs.forward
-    if not isinstance(forward, ByMotion):
-        raise TypeError(f"{type(forward).__name__} is not seen by its motion")
+    runs, forward = found.runs, _by_motion(found)
     told = [forward.told(one, runs.values(k, point)) for k, one in enumerate(runs.programmes)]
     return [one[1] if one else {} for one in told]
 
@@ -168,9 +173,7 @@ def along_motion(
         point: departures of the plant (coordinates,).
         effort: (n, k) of the variables of laws, by name.
     """
-    runs, forward = found.runs, found.runs.forward
-    if not isinstance(forward, ByMotion):
-        raise TypeError(f"{type(forward).__name__} is not seen by its motion")
+    runs, forward = found.runs, _by_motion(found)
     triples = zip(runs.programmes, runs.grids, motions(found, point), strict=True)
     return np.concatenate(
         [

@@ -17,7 +17,6 @@ or evenly, by their rms. Plain errors are large where a model is wrong: by the m
 for little (oil that is a spring, where a cylinder's load changes: p of 0.5 for 0.03), by the rms
 a double pendulum's link is lost. Squares of one-step errors lost TX40's coupling."""
 
-
 LIMIT = 0.05
 """p, divided by their number, below which a test adds nothing to how well all are shown."""
 
@@ -34,9 +33,9 @@ and Althoff). Chosen on these two."""
 class Judges:
     """Benches by several kinds of errors, and which of them judges each trial.
 
-    None serves all: a slow cause hardly shows in one-step errors (viscous friction beside rotors of
-    a light arm), and plain errors have few independent rows. What the fitted half says of it costs
-    held-out rows nothing.
+    None serves all: a slow cause hardly shows in one-step errors (viscous frictions of a six-axis
+    arm), and plain errors have few independent rows. What the fitted half says of it costs held-out
+    rows nothing.
 
     Attributes:
         benches: by each kind; the first shows all trials together best.
