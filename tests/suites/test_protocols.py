@@ -246,7 +246,7 @@ def test_a_rig_in_order_cut_out_of_its_motion_is_in_order(tmp_path):
     write_answers({}, tmp_path / "answers.json")
 
 
-@pytest.mark.slow
+@pytest.mark.nightly
 def test_two_processes_answer_as_one_does_each_a_case_of_its_own(tmp_path):
     folder, _ = made(tmp_path, counts={Hidden.NONE: 2, Hidden.SINGLE: 1})
     told = []

@@ -110,6 +110,7 @@ def test_the_files_tell_nothing_of_it(suite):
         assert not any(family in told for family in Family)
 
 
+@pytest.mark.nightly
 def test_a_case_is_answered_and_scored(suite):
     folder, truths = suite
     path = folder.with_name("answers.json")

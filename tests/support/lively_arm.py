@@ -57,19 +57,21 @@ def lively(folder: Path, joint: str = "") -> Rig:
     return Rig.load(str(folder / "lively.toml"))
 
 
-def torque(seconds: float, seed: int) -> tuple[np.ndarray, np.ndarray]:
-    """Times [s] at 100 Hz, and a torque [N m] that swings the arm by radians: (n,), (n, 1)."""
+def torque(seconds: float, seed: int, level: float) -> tuple[np.ndarray, np.ndarray]:
+    """Times [s] at 100 Hz, and a torque of three tones of a level [N m]: (n,), (n, 1)."""
     rng = np.random.default_rng(seed)
     time = 0.01 * np.arange(round(100 * seconds))
     phase = rng.uniform(0.0, 6.3, 3)
     tones = np.sin(np.array([5.0, 7.3, 11.0])[:, None] * time + phase[:, None])
-    return time, (0.25 * np.sum(tones, axis=0))[:, None]
+    return time, (level * np.sum(tones, axis=0))[:, None]
 
 
-def measured(rig: Rig, values: dict[str, float], seconds: float, seed: int) -> Recording:
-    """What a machine with hidden values shows, with noise."""
+def measured(
+    rig: Rig, values: dict[str, float], seconds: float, seed: int, level: float = 0.25
+) -> Recording:
+    """What a machine with hidden values shows, with noise; tones of 0.25 N m swing it by radians."""
     forward = MjcfForward.of(rig)
-    time, u = torque(seconds, seed)
+    time, u = torque(seconds, seed, level)
     rest = {name: np.zeros_like(u) for name in ("a.position", "b.position")}
     rows = forward.simulate(Excitation("", time, {"motor.effort": u, **rest}), values)
     rows = rows + 0.002 * np.random.default_rng(seed).standard_normal(rows.shape)

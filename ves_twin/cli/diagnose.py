@@ -185,6 +185,7 @@ def _text(found: Diagnosis, folder: Path) -> str:
     from ves_twin.report.diagnosis.basis import gain_words, rests_on
     from ves_twin.report.diagnosis.coarse_step import coarse_sentence
     from ves_twin.report.diagnosis.law import law_sentences
+    from ves_twin.report.diagnosis.out_of_step import out_of_step_sentence
     from ves_twin.report.diagnosis.proved import (
         inseparable_sentences,
         near_sentence,
@@ -194,13 +195,14 @@ def _text(found: Diagnosis, folder: Path) -> str:
     from ves_twin.report.diagnosis.words import ambiguity_sentences, interval_words, name_of
 
     verdict = found.verdict
+    doubts = coarse_sentence(verdict), out_of_step_sentence(verdict)
     lines = [
         f"verdict   {verdict.verdict.value}: {verdict_sentence(verdict)}",
         *(f"          {text}" for text in ambiguity_sentences(verdict)),
         f"how sure  {confidence_sentence(verdict)}",
         f"next      {next_step(verdict)}",
         f"rests on  {rests_on(verdict.basis)}",
-        *(f"          {text}" for text in filter(None, [coarse_sentence(verdict)])),
+        *(f"          {text}" for text in filter(None, doubts)),
     ]
     for cause in () if verdict.proved else verdict.causes:
         for name, size in cause.largest.items():

@@ -130,6 +130,7 @@ def assemble_verdict(
         tolerance_scale=findings.scale,
         naming_odds=findings.settings.odds,
         widened=findings.widened,
+        misfit_in_order=limits.in_order,
     )
     verdict = Verdict(
         verdict=kind,

@@ -35,6 +35,10 @@ STRANGE = 1.5
 """chi^2 for each sample beside the best hypothesis above which it is not taken for the cause."""
 
 
+ASTRAY = 2.0
+"""chi^2 for each sample that noise and fitted commissioning errors do not leave."""
+
+
 @dataclass(frozen=True)
 class Assessment:
     """A record before any cause is fitted.
@@ -92,6 +96,11 @@ class Assessment:
         """The score beyond which something is there, `effect` being what noise does."""
         return effect + self.allowance
 
+    @property
+    def astray(self) -> bool:
+        """Whether more than noise is left, whatever simulated rigs in order leave."""
+        return float(self.left @ self.left) > ASTRAY * float(np.sum(self.screen.whitening.freedom))
+
     def exceeds(self, effect: float, misfit: float, pull: float) -> bool:
         """Whether something is there."""
         louder = self.score > self.limit(effect)
@@ -126,7 +135,7 @@ def assess(
     runs = bank.base.runs
     shaped = Prewhitened(bank, whitening)
     first = replace(first_look(measured, shaped), bends=bends)
-    if not first.exceeds(effect, level, pull):
+    if not (first.astray or first.exceeds(effect, level, pull)):
         return first
     look = first
     looks = ((0, GLANCE), (0, ITERATIONS), (ROUNDS, ITERATIONS))
@@ -140,7 +149,7 @@ def assess(
         own = whitening.adapted(whitening.apply(bare_residual(look.evidence, fit)))
         look = _look(Evidence(runs, measured, own), Screen(bank, own, shaped=shaped), fit)
         look = replace(look, bends=bends)
-        if not look.exceeds(effect, level, pull):
+        if not (look.astray or look.exceeds(effect, level, pull)):
             break
         if look.score <= BEYOND * look.limit(effect):
             continue

@@ -54,8 +54,9 @@ class ByMotion(ForwardWrapper):
     @property
     def channels(self) -> tuple[Channel, ...]:
         """An effort of each joint."""
+        unit = self.forward.effort_unit
         pairs = enumerate(self.noise.items())
-        return tuple(Channel(missing_at(joint), "", k, "N*m", sd) for k, (joint, sd) in pairs)
+        return tuple(Channel(missing_at(j), "", k, unit(j), sd) for k, (j, sd) in pairs)
 
     def simulate(
         self, programme: Excitation, values: Mapping[str, float], refined: bool = False

@@ -99,7 +99,7 @@ def decide(
     Args:
         desk: the record before any cause, over a threshold.
         forward: the plant, tuned to its rig where there is a baseline.
-        recordings: all, fitted and held out.
+        recordings: all, fitted and held out, which a forecast is tried on; none: it is not.
         held: those held out.
         standstill: tells the noise; the declared one is taken without it.
     """
@@ -189,7 +189,7 @@ def _ahead(
     standstill: Recording | None,
 ) -> Gain | None:
     """Gain ahead in time, where a cause's sizes belong to a stretch of it."""
-    if not any(cause.transient for cause in found.best.causes):
+    if not (recordings and any(cause.transient for cause in found.best.causes)):
         return None
     workers = desk.first.screen.bank.base.runs.workers
     return forecast(forward, recordings, found.best, desk.settings, standstill, workers)

@@ -22,6 +22,9 @@ class Invertible(Forward, Protocol):
     def band(self) -> float:
         """Corner [Hz] of the low-pass behind which its motion is differentiated."""
 
+    def effort_unit(self, joint: str) -> str:
+        """N or N*m, as a joint slides or turns."""
+
     def missing(
         self,
         programme: Excitation,

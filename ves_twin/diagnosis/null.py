@@ -59,6 +59,8 @@ class Thresholds:
         misfit: of the largest cell score.
         effects, misfits: the null samples they come from.
         bends: relative error of what fitted commissioning errors explain; simulated rigs have it.
+        in_order: largest cell score of simulated rigs in order: the level, or the median of the few
+            that there was time for; None where none was simulated.
     """
 
     effect: float
@@ -66,6 +68,7 @@ class Thresholds:
     effects: FloatArray
     misfits: FloatArray
     bends: float = 0.0
+    in_order: float | None = None
 
 
 def noise_floor(bank: SignatureLibrary, alpha: float) -> float:
@@ -76,6 +79,13 @@ def noise_floor(bank: SignatureLibrary, alpha: float) -> float:
 def chance_floor(count: int, alpha: float) -> float:
     """chi^2 of the best of so many independent causes that white noise passes with alpha."""
     return float(chi2.isf(alpha / max(count, 1), 1))
+
+
+def noise_thresholds(bank: SignatureLibrary, whitening: Whitening, alpha: float) -> Thresholds:
+    """Levels that white noise passes with probability alpha, commissioning errors known well."""
+    samples = len(whitening.apply(bank.base.prediction))
+    count, none = len(cells(whitening, np.zeros(samples))), np.zeros(0)
+    return Thresholds(noise_floor(bank, alpha), misfit_floor(count, alpha), none, none)
 
 
 def null_thresholds(
@@ -106,22 +116,23 @@ def null_thresholds(
         progress: told how far it is.
         simulated: rigs by the forward; else by its linearisation.
     """
-    floor = noise_floor(bank, alpha)
-    samples = len(whitening.apply(bank.base.prediction))
-    floor_misfit = misfit_floor(len(cells(whitening, np.zeros(samples))), alpha)
-    study = _NullStudy(bank, whitening, floor, floor_misfit, alpha, simulated)
+    floor = noise_thresholds(bank, whitening, alpha)
+    study = _NullStudy(bank, whitening, floor.effect, floor.misfit, alpha, simulated)
     seeds = np.random.SeedSequence(seed).spawn(count)
-    found = _in_time(study, seeds, progress) if simulated else None
-    if found is None:
-        simulated = False
+    found = _in_time(study, seeds, progress) if simulated else []
+    few, simulated = [misfit for _, misfit in found], len(found) == count
+    if not simulated:
         found = list(_draws(replace(study, simulated=False), seeds, progress))
     drawn = np.array(found)
+    level = max(floor.misfit, _tail(drawn[:, 1], alpha))
+    some = float(np.median(few)) if few else None
     return Thresholds(
-        max(floor, _tail(drawn[:, 0], alpha)),
-        max(floor_misfit, _tail(drawn[:, 1], alpha)),
+        max(floor.effect, _tail(drawn[:, 0], alpha)),
+        level,
         drawn[:, 0],
         drawn[:, 1],
         0.0 if simulated else BENDS,
+        level if simulated else some,
     )
 
 
@@ -170,8 +181,8 @@ class _NullStudy:
 
 def _in_time(
     study: _NullStudy, seeds: list[np.random.SeedSequence], progress: Progress
-) -> list[tuple[float, float]] | None:
-    """Simulated rigs; None where all of them would take more than AFFORDABLE of the time.
+) -> list[tuple[float, float]]:
+    """Simulated rigs; the first ones where all would take more than AFFORDABLE of the time.
 
     The first FEW tell: batches of several processes come back when most of the time is gone.
     """
@@ -185,11 +196,9 @@ def _in_time(
         drawn.append(one)
         if (budget.spent - begun) * len(seeds) > AFFORDABLE * share * len(drawn):
             break
-    else:
-        if len(drawn) == len(seeds):
-            return drawn
-    budget.leave_out(LINEAR)
-    return None
+    if len(drawn) < len(seeds):
+        budget.leave_out(LINEAR)
+    return drawn
 
 
 def _draws(
@@ -237,8 +246,9 @@ def cached_thresholds(
     kept = read_arrays(path)
     if kept is not None:
         effect, level = float(kept["effect"]), float(kept["misfit"])
-        bends = 0.0 if settings.simulated_nulls else BENDS
-        return Thresholds(effect, level, kept["effects"], kept["misfits"], bends)
+        linear = not settings.simulated_nulls
+        told = (BENDS, None) if linear else (0.0, level)
+        return Thresholds(effect, level, kept["effects"], kept["misfits"], *told)
     found = compute()
     if settings.simulated_nulls and found.bends:
         return found  # another day may have the time

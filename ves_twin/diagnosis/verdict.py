@@ -148,7 +148,8 @@ class Basis:
     "unknown" otherwise: a simulated one, or one that does not say where it comes from.
     `baseline_differs` is the largest difference of the baseline's inputs from those of the record,
     of their range. `left_out` names what there was no time for. `pieces` is how many the measured
-    recordings were cut into, each simulated from its own start; 0: they were whole.
+    recordings were cut into, each simulated from its own start; 0: they were whole. `by_motion`
+    says that efforts which the measured motion lacks were compared, and no simulation.
     """
 
     noise: str
@@ -159,6 +160,7 @@ class Basis:
     baseline_differs: float | None = None
     left_out: tuple[str, ...] = ()
     pieces: int = 0
+    by_motion: bool = False
 
 
 @dataclass(frozen=True)
@@ -183,6 +185,8 @@ class Statistics:
 
     `naming_odds` are those at which a rival is dropped; `widened` is the factor on the declared
     tolerances with which this was found, above 1 where recordings of rigs in order ask for it.
+    `misfit_in_order` is what simulated rigs in order leave, where it is so far above noise that it
+    tells nothing; the thresholds are then those of noise.
     """
 
     effect: float
@@ -195,6 +199,7 @@ class Statistics:
     tolerance_scale: float | None = None
     naming_odds: float | None = None
     widened: float = 1.0
+    misfit_in_order: float | None = None
 
 
 @dataclass(frozen=True)
@@ -280,6 +285,8 @@ class Verdict:
             case Kind.UNKNOWN:
                 if self.lawful:
                     return self.lawful
+                if self.statistics.misfit_in_order is not None:
+                    return "Nothing can be told: machines in order fall as far out of step."
                 hint = f"; the nearest of its causes is {self.suspect}" if self.suspect else ""
                 return f"Something is wrong that the library does not explain{hint}."
             case _:

@@ -89,33 +89,6 @@ def told(two, proof):
     return report_of(two, proof, (left, proof.bench.residual(proof.proved)))
 
 
-def rates(draws: int, count: int) -> tuple[int, int, int]:
-    """False and true names that are proved, and hidden ones, over draws."""
-    wrong = right = hid = 0
-    for seed in range(draws):
-        hidden = drawn(np.random.default_rng(100 + seed), count) if count else {}
-        names, _ = found(halves(PLANT, hidden, 50 + seed))
-        wrong += len(names - set(hidden))
-        right += len(names & set(hidden))
-        hid += len(hidden)
-    return wrong, right, hid
-
-
-def test_nothing_is_proved_where_nothing_is_hidden():
-    wrong, _, _ = rates(6, 0)
-    assert wrong <= 1
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("count", [0, 3, pytest.param(6, marks=pytest.mark.nightly)])
-def test_the_false_discovery_rate_is_kept_over_draws(count):
-    wrong, right, hid = rates(40, count)
-    # three sd of a binomial above the rate
-    allowed = FALSE_SHARE * max(right + wrong, 40)
-    assert wrong <= allowed + 3.0 * np.sqrt(allowed)
-    assert right >= 0.85 * hid
-
-
 def test_a_twin_is_a_stand_in_and_takes_the_firm_name_away():
     plant = Linear((*KINDS, "twin"))
     two = halves(plant, {"viscous@a:size": 0.5, "coulomb@b:size": 0.6}, 4)

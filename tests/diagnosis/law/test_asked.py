@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 from dragged_arm import fitted, seen
 
+from ves_twin.diagnosis.build_up.halves import split
 from ves_twin.diagnosis.law.asked import HALF, Asked, asked_of_motion
 from ves_twin.diagnosis.law.finding import refuted
 from ves_twin.effects.law import Law, LawKind, LawShape
@@ -25,6 +26,14 @@ def test_the_share_of_a_law_that_is_in_a_motion_is_found(share):
     assert asked is not None
     assert asked.share == pytest.approx(share, abs=0.05)
     assert asked.sd < 0.1
+
+
+def test_a_law_is_asked_of_stretches_of_the_very_record_that_it_is_fitted_to():
+    """There the held-out half has the programmes of the fitted one, and no number of the law."""
+    _, rest = split(seen(5))
+    asked = asked_of_motion(law(), fitted(), rest)
+    assert asked is not None
+    assert asked.share == pytest.approx(1.0, abs=0.1)  # half of the rows
 
 
 def test_a_law_that_a_motion_has_none_of_is_refuted_with_the_figure():

@@ -9,6 +9,7 @@ import pytest
 from ves_twin.core.errors import InvalidInputError
 from ves_twin.core.recording.recording import Recording, RecordingInfo
 from ves_twin.diagnosis.forward import Excitation
+from ves_twin.diagnosis.preprocess import preprocess
 from ves_twin.diagnosis.settings import Settings
 from ves_twin.machines.diagnose import diagnose
 from ves_twin.machines.load import open_machine
@@ -114,6 +115,20 @@ def test_pieces_are_of_one_length_near_the_horizon_and_lose_no_row(tmp_path, row
     assert max(lengths) - min(lengths) <= 1
 
 
+@pytest.mark.parametrize(
+    ("horizon", "period", "count"), [(1, 0.01, 6), (1, 0.001, 5), (0.2, 0.01, 30)]
+)
+def test_pieces_are_longer_where_they_would_have_too_few_rows_of_the_analysis(
+    tmp_path, horizon, period, count
+):
+    rig = Rig.load(str(rig_in(tmp_path, f", horizon = {horizon}")))
+    whole = recording_of(round(6.0 / period), period)
+    found = pieces(rig, whole)
+    assert len(found) == count
+    if count < 30:  # those of 0.2 s are refused: more than a third longer is another horizon
+        preprocess(MjcfForward.of(rig), found)
+
+
 def test_each_piece_has_the_rows_of_its_lead_before_it(tmp_path):
     rig = Rig.load(str(rig_in(tmp_path, ", horizon = 2, lead = 0.1")))
     found = pieces(rig, recording_of(810))
@@ -174,7 +189,7 @@ def test_in_pieces_a_hidden_friction_of_a_machine_that_falls_over_is_found(tmp_p
     path = rig_in(tmp_path, ", horizon = 1.5")
     machine = open_machine(str(path))
     fit, held = (machine.read(str(logged(tmp_path, seed))) for seed in (1, 2))
-    told = diagnose([fit], machine, held_out=[held], settings=Settings(nulls=40)).verdict
+    told = diagnose([fit], machine, held_out=[held], settings=Settings(nulls=4)).verdict
     found = {f"{cause.effect}@{cause.target}": cause for cause in told.causes}
     (level,) = found["coulomb_friction@wheel"].parameters.values()
     assert level.value == pytest.approx(FRICTION, rel=0.05)

@@ -25,7 +25,7 @@ def record(seed, programme="train", hidden=None):
     return BLIND.record(rig, programme, np.random.default_rng(seed))
 
 
-@pytest.mark.slow
+@pytest.mark.nightly
 def test_what_is_always_there_is_no_fault_and_what_came_is_named(settings):
     sick = record(1, hidden={SPRING: 0.02})
     assert diagnose(PLANT, [sick], settings=settings).verdict is not Kind.NAMED

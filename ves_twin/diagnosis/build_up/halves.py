@@ -82,15 +82,17 @@ def split(seen: Dataset) -> tuple[Dataset, Dataset]:
 
 
 def carried_point(runs: Runs, other: Runs, point: FloatArray) -> FloatArray:
-    """A point in other recordings: what is drawn anew for each is nominal there."""
-    if other.programmes is runs.programmes:
+    """A point in other recordings, or of another forward: what is drawn anew there is nominal."""
+    same = other.programmes is runs.programmes
+    if same and len(other.coordinates) == len(runs.coordinates):
         return point
     shared = {
-        axis.parameter.name: point[i]
+        (axis.parameter.name, axis.recording): point[i]
         for i, axis in enumerate(runs.coordinates)
-        if axis.recording == -1
+        if same or axis.recording == -1
     }
-    return np.array([shared.get(axis.parameter.name, 0.0) for axis in other.coordinates])
+    keys = [(axis.parameter.name, axis.recording) for axis in other.coordinates]
+    return np.array([shared.get(key, 0.0) for key in keys])
 
 
 def _half(

@@ -70,11 +70,13 @@ def _unfollowed(half: Half, measured: SingleArray, left: FloatArray) -> BoolArra
 
     A simulation that is out of step is worse than none: what stiffens or brakes it improves the
     prediction, whatever is wrong (a satellite's mass centre, 20 times too far off).
+    Efforts that a motion lacks are measured as zeros: there is nothing to follow.
     """
     runs = half.runs
     noise = np.array([runs.forward.channels[c].sd for c in runs.columns])
     rms = half.rms(_swings(half, left))
-    return np.asarray((rms > half.rms(_swings(half, measured))) & (rms > LOUD * noise))
+    moves = half.rms(_swings(half, measured))
+    return np.asarray((moves > 0.0) & (rms > moves) & (rms > LOUD * noise))
 
 
 def _swings(half: Half, rows: FloatArray | SingleArray) -> FloatArray:

@@ -72,6 +72,10 @@ class Beside(ForwardWrapper):
         """See `Invertible`."""
         return self.forward.band
 
+    def effort_unit(self, joint: str) -> str:
+        """See `Invertible`."""
+        return self.forward.effort_unit(joint)
+
     def missing(
         self,
         programme: Excitation,

@@ -193,6 +193,10 @@ class MjcfForward:
         """Corner [Hz] of the low-pass before positions are differentiated."""
         return self.rig.description.drive.smoothing
 
+    def effort_unit(self, joint: str) -> str:
+        """N or N*m, as a joint slides or turns."""
+        return "N*m" if joint_units(self.rig.model, joint)[0] == "rad" else "N"
+
     def missing(
         self,
         programme: Excitation,

@@ -9,6 +9,8 @@ import numpy as np
 
 from ves_twin.core.errors import InvalidInputError
 from ves_twin.core.recording.recording import POSES, Recording
+from ves_twin.diagnosis.grid import AnalysisGrid
+from ves_twin.diagnosis.preprocess import FEWEST_ROWS
 from ves_twin.machines.mjcf.description import Mode
 from ves_twin.machines.mjcf.machine import Rig
 from ves_twin.machines.mjcf.places import SINGLE
@@ -16,6 +18,9 @@ from ves_twin.machines.mjcf.started import lead_rows
 
 MEASURED = "measured"
 """Start of a joint that any row can tell."""
+
+LONGEST = 4.0 / 3.0
+"""Of a horizon that a piece may be."""
 
 
 def pieces(rig: Rig, recording: Recording) -> tuple[Recording, ...]:
@@ -44,7 +49,7 @@ def pieces(rig: Rig, recording: Recording) -> tuple[Recording, ...]:
     _check_starts(rig)
     lead = lead_rows(rig, time)
     step = (float(time[-1]) - float(time[0])) / (len(time) - 1)
-    count = round((len(time) - lead) * step / drive.horizon)
+    count = _count(len(time) - lead, step, drive.horizon)
     if count < 2:
         return (recording,)
     ends = np.linspace(lead, len(time), count + 1).round().astype(int)
@@ -54,6 +59,15 @@ def pieces(rig: Rig, recording: Recording) -> tuple[Recording, ...]:
         signals = {name: values[rows] for name, values in recording.signals.items()}
         found.append(replace(recording, time=time[rows], signals=signals))
     return tuple(found)
+
+
+def _count(rows: int, step: float, horizon: float) -> int:
+    """Of pieces about a horizon long; longer by a third where it takes that for enough rows."""
+    grid = AnalysisGrid.of(step)
+    count = round(rows * step / horizon)
+    most = rows // ((FEWEST_ROWS - 1) * grid.factor + len(grid.taps))
+    within = most > 0 and rows * step / most <= LONGEST * horizon
+    return min(count, most) if within else count
 
 
 def _check_starts(rig: Rig) -> None:

@@ -95,6 +95,10 @@ class WithFilterPlaces(ForwardWrapper):
         """As the rig."""
         return self.forward.band
 
+    def effort_unit(self, joint: str) -> str:
+        """As the rig."""
+        return self.forward.effort_unit(joint)
+
     def missing(
         self,
         programme: Excitation,

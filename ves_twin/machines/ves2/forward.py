@@ -174,6 +174,10 @@ class RigForward:
         """All of it: nothing is differentiated."""
         return float("inf")
 
+    def effort_unit(self, joint: str) -> str:
+        """Joints of the arm turn, legs slide."""
+        return "N" if joint.startswith("leg") else "N*m"
+
     def missing(
         self,
         programme: Excitation,

@@ -11,6 +11,7 @@ from ves_twin.report.diagnosis.basis import gain_words, taken_share
 from ves_twin.report.diagnosis.coarse_step import finer
 from ves_twin.report.diagnosis.law import worth_sentence
 from ves_twin.report.diagnosis.limits import next_sentences
+from ves_twin.report.diagnosis.out_of_step import shorter
 from ves_twin.report.diagnosis.strained import strained_sentence
 from ves_twin.report.diagnosis.words import (
     TOLD,
@@ -109,6 +110,8 @@ def _otherwise(verdict: Verdict) -> str:
 
 def next_step(verdict: Verdict) -> str:
     """What to do next: the first thing that would make it surer, else what to do about it."""
+    if verdict.lacks and shorter(verdict):
+        return shorter(verdict)
     if verdict.verdict is not Kind.NOTHING and finer(verdict):
         return finer(verdict)
     if tone(verdict) == "good":
@@ -175,6 +178,11 @@ def _unknown(verdict: Verdict) -> str:
         )
     if verdict.lawful:
         return verdict.lawful
+    if verdict.statistics.misfit_in_order is not None:
+        return (
+            "Nothing can be told: simulated machines in order fall as far out of step with the"
+            " model as this one."
+        )
     if strange:
         names = ", ".join(strange[:TOLD])
         return (
@@ -190,7 +198,8 @@ def _beyond(verdict: Verdict) -> str:
     left = figures.misfit if figures.misfit_after is None else figures.misfit_after
     times = left / max(figures.misfit_threshold, 1e-30)
     if times > 1.0:
-        text = f"What is left is {times:.2g} times the most that machines in order leave"
+        most = "noise leaves" if figures.misfit_in_order else "machines in order leave"
+        text = f"What is left is {times:.2g} times the most that {most}"
         shares = {n: e.after_si / e.spread for n, e in verdict.residuals.items() if e.spread > 0.0}
         if not shares:
             return f"{text}."

@@ -7,6 +7,7 @@ from ves_twin.diagnosis.gain import Gain
 from ves_twin.diagnosis.tolerances import FEWEST
 from ves_twin.diagnosis.verdict import Basis, Kind, Verdict
 from ves_twin.report.diagnosis.coarse_step import coarse_sentence
+from ves_twin.report.diagnosis.out_of_step import out_of_step_sentence
 
 NEARLY_ALL = 0.99
 """Share from which more digits tell nobody anything."""
@@ -173,7 +174,7 @@ def basis_sentences(verdict: Verdict) -> tuple[str, ...]:
         *_repeats(basis),
         *_pieces(basis),
         *_left_out(basis),
-        *filter(None, [coarse_sentence(verdict)]),
+        *filter(None, [coarse_sentence(verdict), out_of_step_sentence(verdict)]),
     )
 
 

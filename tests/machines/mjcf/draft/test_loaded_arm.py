@@ -12,7 +12,7 @@ from ves_twin.machines.diagnose import diagnose
 from ves_twin.machines.load import open_machine
 from ves_twin.machines.new_machine import new_machine
 
-QUICK = Settings(nulls=40)
+QUICK = Settings(nulls=4)
 """Thresholds matter little where causes stand out by thousands of chi^2."""
 
 LOADED = 3.0
@@ -42,6 +42,7 @@ def logged(folder, seed):
     return path
 
 
+@pytest.mark.nightly
 def test_an_end_of_three_times_its_mass_is_named_by_its_mass(arm, tmp_path):
     fit, held = (logged(tmp_path, seed) for seed in (11, 12))
     path = new_machine(arm, [fit, held], tmp_path / "my.toml").path

@@ -157,9 +157,18 @@ class _Fit:
         return self.gain > TELLS and (self.free or 1.0 / FAR < abs(self.slope) < FAR)
 
     @property
+    def by_slope(self) -> bool:
+        """Whether the slope tells the sign, and not the work.
+
+        One joint of several may brake for all of a motion: where the model is right about most of
+        the effort, its slope counts.
+        """
+        return self.usable and (abs(self.work) < DRIVES or self.right)
+
+    @property
     def sign(self) -> int:
         """Of the slope, else of the work: a machine that only takes energy never gives any."""
-        if self.usable and abs(self.work) < DRIVES:
+        if self.by_slope:
             return int(np.sign(self.slope)) or 1
         return -1 if self.work < -WORKS else 1
 
@@ -246,14 +255,21 @@ class _Judge:
 
     def needed(self, match: Match, motion: Motion) -> FloatArray:
         """Command (m,) that the model needs of a motor along a motion."""
+        return np.asarray(motion.effort[:, self.dof(match)] / self.gain(match))
+
+    def gain(self, match: Match) -> float:
+        """Effort at the joint for a command of 1."""
         actuator = self.model.actuator(match.spot.name)
-        gain = float(actuator.gear[0] * actuator.gainprm[0]) or 1.0
-        return np.asarray(motion.effort[:, self.dof(match)] / gain)
+        return float(actuator.gear[0] * actuator.gainprm[0]) or 1.0
+
+    def recorded(self, match: Match, motion: Motion) -> FloatArray:
+        """A recorded effort (m,) in SI, at the motion's rows."""
+        column = smoothed(self.log.column(match.column), self.log.period, self.corner)
+        return np.asarray(match.factor * column[motion.rows])
 
     def fit(self, match: Match, motion: Motion) -> _Fit:
         """Of a recorded effort, in its unit's SI, beside friction."""
-        column = smoothed(self.log.column(match.column), self.log.period, self.corner)
-        y, need = match.factor * column[motion.rows], self.needed(match, motion)
+        y, need = self.recorded(match, motion), self.needed(match, motion)
         v = motion.speed[:, self.dof(match)]
         slow = 0.05 * float(np.std(v)) or 1.0
         friction = np.stack([v, np.tanh(v / slow), np.ones_like(v)], axis=1)
@@ -273,6 +289,14 @@ class _Judge:
         alone = 1.0 - min(float(np.var(y - need)), float(np.var(y + need))) * len(y) / power
         told = match.electrical, against, size, alone
         return _Fit(float(slopes[0]), shares[0], gain, work, *told)
+
+    def power(self, found: list[Match], motion: Motion) -> float:
+        """Mean of what all efforts give to their joints [W]: what friction takes, so above 0."""
+        total = 0.0
+        for match in self.driving(found):
+            effort = self.gain(match) * self.recorded(match, motion)
+            total += float(np.mean(motion.speed[:, self.dof(match)] * effort))
+        return total
 
     def efforts(self, found: list[Match], motion: Motion) -> tuple[list[Match], list[str]]:
         """With signs and constants of efforts as the motion needs them."""
@@ -300,6 +324,11 @@ class _Judge:
                     f" model{turned}; put the motor's constant there"
                 )
                 said += _other_angle(self.log, found, match.spot.joint, scale, unit)
+            elif fit.sign < 0 and not fit.by_slope and self.power(found, motion) > 0.0:
+                said.append(
+                    f"{match.column} brakes its joint more than it drives it (work {fit.work:.0%}):"
+                    " look whether its sign is right; in a motion of several joints it may be"
+                )
             elif fit.sign < 0:
                 found[i] = replace(match, scale=-match.scale)
                 why = f"slope {fit.slope:.2f}" if fit.usable else f"work {fit.work:.0%}"
@@ -320,8 +349,7 @@ class _Judge:
         """Share of the power of each effort that the model as it is explains."""
         shares = {}
         for match in self.driving(found):
-            column = smoothed(self.log.column(match.column), self.log.period, self.corner)
-            y = match.factor * column[motion.rows]
+            y = self.recorded(match, motion)
             rest = y - self.needed(match, motion)
             power = float(np.sum((y - y.mean()) ** 2)) or 1.0
             shares[match.column] = max(1.0 - float(np.sum((rest - rest.mean()) ** 2)) / power, 0.0)

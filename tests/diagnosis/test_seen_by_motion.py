@@ -1,0 +1,84 @@
+"""Where simulations fall out of step, causes are proved by the efforts that the motion lacks."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import pytest
+from lively_arm import lively, measured
+
+from ves_twin.core.recording.recording import Recording
+from ves_twin.core.workers import Workers
+from ves_twin.diagnosis import view as view_module
+from ves_twin.diagnosis.assess import assess, pull_limit
+from ves_twin.diagnosis.null import noise_thresholds
+from ves_twin.diagnosis.runs import silent
+from ves_twin.diagnosis.settings import Settings
+from ves_twin.diagnosis.verdict import Verdict
+from ves_twin.diagnosis.view import Material, View
+from ves_twin.machines.mjcf.forward import MjcfForward
+from ves_twin.report.diagnosis.basis import basis_sentences
+
+HIDDEN = {"coulomb_friction@a:level": 0.057, "coulomb_friction@b:level": 0.03}
+WHIRLS = 0.45
+"""Tones of the motor [N m] by which the second link goes round."""
+
+
+def out_of_step(measured, bank, whitening, settings, progress):
+    """As `looked` where simulated rigs in order leave a thousand sigma, without simulating any."""
+    limits = replace(noise_thresholds(bank, whitening, settings.alpha), in_order=1000.0)
+    pull = pull_limit(bank, settings.alpha)
+    return limits, assess(measured, bank, whitening, limits.effect, limits.misfit, pull)
+
+
+@pytest.fixture(scope="module")
+def forward(tmp_path_factory: pytest.TempPathFactory) -> MjcfForward:
+    return MjcfForward.of(lively(tmp_path_factory.mktemp("lively")))
+
+
+def view(forward: MjcfForward, recordings: list[Recording]) -> View:
+    one, other = recordings
+    material = Material((one,), (other,), None, (), (), (), None)
+    settings = Settings(causes=12, laws=False)
+    return View.of(forward, material, settings, Workers(1), silent)
+
+
+def recorded(forward: MjcfForward, hidden: dict[str, float]) -> list[Recording]:
+    values = {p.name: p.nominal for p in forward.parameters} | hidden
+    return [measured(forward.rig, values, 5.0, seed, WHIRLS) for seed in (61, 62)]
+
+
+@pytest.fixture(scope="module")
+def verdict(forward: MjcfForward) -> Verdict:
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(view_module, "looked", out_of_step)
+        seen = view(forward, recorded(forward, HIDDEN)).seen_by_motion(silent)
+    assert seen is not None
+    return seen.verdict(silent)
+
+
+def test_frictions_of_an_arm_that_whirls_are_proved_with_their_sizes(verdict):
+    proved = {one.label: one for one in verdict.proved}
+    assert proved.keys() == {"coulomb_friction@a", "coulomb_friction@b"}
+    for label, one in proved.items():
+        (size,) = one.parameters.values()
+        assert size.low <= HIDDEN[f"{label}:level"] <= size.high
+        assert size.value == pytest.approx(HIDDEN[f"{label}:level"], rel=0.25)
+
+
+def test_the_report_says_that_efforts_were_compared_and_why(verdict):
+    assert verdict.basis.by_motion
+    assert verdict.residuals.keys() == {"a.missing", "b.missing"}
+    assert verdict.gain is not None
+    assert all(after < before for before, after in verdict.gain.errors.values())
+    (told,) = (text for text in basis_sentences(verdict) if "out of step" in text)
+    assert "compared are the efforts that the measured motion lacks" in told
+
+
+def test_what_simulations_can_follow_is_not_seen_by_its_motion(forward, monkeypatch):
+    def followed(*given: object) -> tuple[object, object]:
+        limits, first = out_of_step(*given)
+        return replace(limits, in_order=None), first
+
+    monkeypatch.setattr(view_module, "looked", followed)
+    assert view(forward, recorded(forward, {})).seen_by_motion(silent) is None

@@ -1,0 +1,35 @@
+"""out_of_step_sentence, shorter: rigs in order that leave so much that none is in order for it."""
+
+from __future__ import annotations
+
+from ves_twin.core.quantity import digits
+from ves_twin.diagnosis.verdict import Verdict
+
+
+def out_of_step_sentence(verdict: Verdict) -> str:
+    """What machines in order leave here, and what that means; empty where they come to noise."""
+    most = verdict.statistics.misfit_in_order
+    if most is None:
+        return ""
+    instead = (
+        "compared are the efforts that the measured motion lacks, joint by joint (.missing)"
+        if verdict.basis.by_motion
+        else "this record was judged by noise alone"
+    )
+    return (
+        "Simulations fall out of step here: machines in order, simulated with errors within the"
+        f" declared tolerances, leave up to {digits(most)} sigma in a band or stretch of time. That"
+        f" tells nothing, so {instead}."
+    )
+
+
+def shorter(verdict: Verdict) -> str:
+    """What to do about it; empty where they come to noise."""
+    if verdict.statistics.misfit_in_order is None:
+        return ""
+    if verdict.basis.pieces:
+        return "Take shorter pieces (drive.horizon in the machine's file), and diagnose again."
+    return (
+        "Simulate pieces of it that begin from what was measured (drive.horizon in the machine's"
+        " file, of 100 rows or more), or record a slower motion, and diagnose again."
+    )
