@@ -19,8 +19,14 @@ from ves_twin.diagnosis.verdict import (
     Statistics,
     Verdict,
 )
-from ves_twin.report.diagnosis.answer import confidence_sentence
+from ves_twin.report.diagnosis.answer import (
+    confidence_sentence,
+    next_step,
+    verdict_sentence,
+)
 from ves_twin.report.diagnosis.limits import blind_causes
+from ves_twin.report.diagnosis.out_of_step import out_of_step_sentence
+from ves_twin.report.diagnosis.strained import tuned_words
 
 FIGURES = Statistics(1.0, 2.0, 9.0, 5.0)
 SIZE = Estimate(92e3, 88e3, 96e3, "N/m", 1e5)
@@ -68,7 +74,7 @@ def test_firm_names_are_told_with_a_law_that_nobody_looked_for(firm, left_out, w
 )
 def test_held_out_recordings_of_another_motion_are_told(there, held_out, warned):
     """Two frictions of a series elastic joint were not proved, as a chirp hid them."""
-    gain = Gain(0.2, 0.1, 0.3, 9.0, 8.0, errors={"force": (there, 1.5)})
+    gain = Gain(0.2, 0.1, 0.3, 9.0, 8.0, errors={"force": (2.5, there)})
     error = ChannelError(9.0, 8.0, 0.6, 0.5, "N", 2.0, tolerances_si=0.58)
     plain = verdict()
     told = replace(
@@ -78,4 +84,32 @@ def test_held_out_recordings_of_another_motion_are_told(there, held_out, warned)
         basis=replace(plain.basis, held_out=held_out),
     )
     words = confidence_sentence(told)
-    assert ("3.1 times as far off as on the fitted ones (force)" in words) is warned
+    assert ("3.6 times as far off as the fitted ones (force)" in words) is warned
+
+
+@pytest.mark.parametrize(
+    ("pull", "high", "told"), [(-3.8, 96e3, True), (-1.2, 96e3, False), (-3.8, 104e3, False)]
+)
+def test_numbers_of_the_model_that_left_their_tolerance_are_told(pull, high, told):
+    """The mass of a pendubot's first link, 3.8 declared sd off and right, stood in a file alone."""
+    plain = verdict()
+    tuned = {"joint_spring@slide:stiffness": replace(SIZE, pull=pull, high=high)}
+    words = tuned_words(replace(plain, tuned=tuned))
+    assert ("3.8 declared tolerances from the model's 100 kN/m" in words) is told
+    assert told or not words
+
+
+def test_a_simulation_that_falls_out_of_step_is_told_and_what_was_done_instead():
+    plain = verdict()
+    far = replace(FIGURES, misfit_in_order=220.0)
+    by_noise = replace(plain, statistics=far)
+    by_motion = replace(by_noise, basis=replace(plain.basis, by_motion=True))
+    assert not out_of_step_sentence(plain)
+    assert "this record was judged by noise alone" in out_of_step_sentence(by_noise)
+    assert "compared are the efforts that the measured motion lacks" in out_of_step_sentence(
+        by_motion
+    )
+    assert "drive.horizon" in next_step(by_noise)
+    unknown = replace(by_noise, verdict=Kind.UNKNOWN, causes=(), proved=())
+    assert verdict_sentence(unknown).startswith("Nothing can be told")
+    assert "times the most that noise leaves" in confidence_sentence(unknown)

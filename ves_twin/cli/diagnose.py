@@ -192,6 +192,7 @@ def _text(found: Diagnosis, folder: Path) -> str:
         proof_sentence,
         proved_line,
     )
+    from ves_twin.report.diagnosis.strained import tuned_words
     from ves_twin.report.diagnosis.words import ambiguity_sentences, interval_words, name_of
 
     verdict = found.verdict
@@ -207,11 +208,11 @@ def _text(found: Diagnosis, folder: Path) -> str:
     for cause in () if verdict.proved else verdict.causes:
         for name, size in cause.largest.items():
             lines.append(f"size      {name_of(cause)}: {name}, 90 % {interval_words(size)}")
-    if gain_words(verdict):
-        lines.append(f"gain      {gain_words(verdict)}")
+    said = {"tuned": tuned_words(verdict), "gain": gain_words(verdict)}
+    lines += [f"{name:<10}{words}" for name, words in said.items() if words]
     if verdict.law is not None:
-        said = law_sentences(verdict.law)
-        first, *rest = said[2:] if verdict.law.claimed else said
+        every = law_sentences(verdict.law)
+        first, *rest = every[2:] if verdict.law.claimed else every
         lines += [f"law       {first}", *(f"          {text}" for text in rest)]
     if verdict.put_to_proof is not None:
         lines += ["", f"  {proof_sentence(verdict)}", *map(proved_line, verdict.proved)]

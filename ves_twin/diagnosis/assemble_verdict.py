@@ -337,9 +337,9 @@ def _tuned(findings: Findings) -> dict[str, Estimate]:
         if i in free or runs.coordinates[int(i)].recording != -1:
             continue
         value, reach = parameter.nominal + float(fit.shift[i]), float(half[n])
-        estimates[parameter.name] = Estimate(
-            value, value - reach, value + reach, parameter.unit, parameter.nominal, i in fit.held
-        )
+        ends = value - reach, value + reach, parameter.unit, parameter.nominal
+        pull = float(fit.shift[i]) / parameter.sd if parameter.sd > 0.0 else None
+        estimates[parameter.name] = Estimate(value, *ends, i in fit.held, pull)
     return estimates
 
 

@@ -194,9 +194,19 @@ class Excitation(ReadOnly):
             expected = (
                 "equidistant rows; window in the machine's file or experiment, or rate in a map"
             )
-            raise InvalidInputError("recording time", "uneven or too few rows", expected)
+            raise InvalidInputError("recording time", _uneven(recording.time), expected)
         fed = {signal: recording[signal] for signal in drive}
         return Excitation(name, recording.time, fed, False, rate)
+
+
+def _uneven(time: FloatArray) -> str:
+    """What is wrong with times (n,) [s] that are not equidistant."""
+    if len(time) < 3:
+        return f"{len(time)} rows"
+    steps = np.diff(time)
+    usual = float(np.median(steps))
+    worst = int(np.argmax(np.abs(steps - usual)))
+    return f"a step of {steps[worst]:.3g} s after {time[worst]:.4g} s, of {usual:.3g} s as a rule"
 
 
 class Forward(Protocol):

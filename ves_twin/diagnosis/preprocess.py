@@ -109,7 +109,7 @@ def _check_length(runs: Runs) -> None:
         fewest = FEWEST_POSES if programme.poses else FEWEST_ROWS
         if len(time) < fewest:
             what = f"rows of {programme.name} at {1.0 / grid.step:.3g} Hz"
-            expected = f"at least {fewest}: a longer recording, or longer stretches of it"
+            expected = f"at least {fewest}: a longer recording, stretch or piece (drive.horizon)"
             raise InvalidInputError(what, len(time), expected)
 
 

@@ -62,7 +62,7 @@ class Estimate:
     `nominal` is where the departure counts from: the model's value, so that value - nominal holds
     the commissioning error too; with a baseline, what this rig had then. `at_limit`: an end of its
     range, or of 5 sd of its tolerance, holds it there; it stands for something else, and the
-    interval counts noise alone.
+    interval counts noise alone. `pull` is the departure in declared sd, of what has a tolerance.
     """
 
     value: float
@@ -71,6 +71,7 @@ class Estimate:
     unit: str
     nominal: float
     at_limit: bool = False
+    pull: float | None = None
 
     @property
     def words(self) -> str:

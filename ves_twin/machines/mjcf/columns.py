@@ -18,7 +18,9 @@ from ves_twin.data.column_expression import ColumnExpression
 from ves_twin.data.empty_cells import FEW, MOST, filled, lone
 from ves_twin.data.log import Kind, Log
 from ves_twin.data.open_log import open_log
+from ves_twin.data.unwrapped import unwrapped
 from ves_twin.machines.mjcf.description import Mode, RigDescription
+from ves_twin.machines.mjcf.joint_units import joint_units
 from ves_twin.machines.mjcf.machine import Rig
 from ves_twin.machines.mjcf.signals import rig_signals
 from ves_twin.machines.mjcf.turned import turned
@@ -35,9 +37,9 @@ def read_rig_recording(path: Path, rig: Rig) -> Recording:
     """A recording of a rig.
 
     Rows outside the file's `window` are left out before anything is refused. A FEW rows together
-    that lack a number are filled, which is said. Where stamps jitter
-    by more than UNEVEN of a step, every signal is read at even rows: measurements straight
-    between the rows, commands of the nearest row.
+    that lack a number are filled, and an angle that is told within one turn is unwrapped, which is
+    said. Where stamps jitter by more than UNEVEN of a step, every signal is read at even rows:
+    measurements straight between the rows, commands of the nearest row.
 
     Args:
         path: of any format that `ves-twin inspect` reads.
@@ -56,10 +58,16 @@ def read_rig_recording(path: Path, rig: Rig) -> Recording:
     time, inside = _times(table, told, path)
     poses = told.clock.poses
     empty = np.zeros(table.rows, bool) if poses else _lacking(table, told, inside)
-    time, signals = time[inside], dict[str, FloatArray]()
+    time, signals, said = time[inside], dict[str, FloatArray](), list[str]()
     for name, column in told.signals.items():
         whole = [table.column(c, inside, path, held(rig, name), poses) for c in column.columns]
         signals[name] = np.asarray(column.scale * np.stack(whole, axis=1) + column.offset)
+        if not poses and _turns(rig, name):
+            angle, wraps = unwrapped(signals[name][:, 0], 2.0 * np.pi)
+            signals[name] = angle[:, None]
+            said += [f"{path.name}: {name} wraps {wraps} times: whole turns are added"] * (
+                wraps > 0
+            )
     for name, column in told.signals.items():
         if column.into:
             signals[name] = turned(signals[name], signals, name, column.into)
@@ -68,10 +76,20 @@ def read_rig_recording(path: Path, rig: Rig) -> Recording:
     if empty.any():
         count = f"{path.name}: {np.count_nonzero(empty)} rows lack a number"
         words = f"{count}: measurements are taken straight between rows, commands as before"
-        info = replace(info, imported={"suspected": [words]})
+        said.append(words)
+    if said:
+        info = replace(info, imported={"suspected": said})
     if poses:
         return Recording(time, signals, info)
     return _even(Recording(time, signals, info), rig)
+
+
+def _turns(rig: Rig, signal: str) -> bool:
+    """Whether a signal is the angle of a joint."""
+    one = rig.description.signals[signal]
+    if not one.joint or one.of != "position" or len(one.columns) != 1 or one.into:
+        return False
+    return joint_units(rig.model, one.joint)[0] == "rad"
 
 
 @dataclass(frozen=True)

@@ -88,21 +88,21 @@ def confidence_sentence(verdict: Verdict) -> str:
 
 
 def _otherwise(verdict: Verdict) -> str:
-    """That held-out recordings are of another kind of motion, where the model is far worse on them.
+    """That held-out recordings are of another kind of motion, where much more is left of them.
 
     Of a series elastic joint fitted to slow motion and proved on a chirp neither friction was
     proved: what is wrong with the chirp hid them.
     """
     if verdict.gain is None or verdict.basis.held_out != "measured":
         return ""
-    here = {name: one.tolerances_si or 0.0 for name, one in verdict.residuals.items()}
+    here = {name: one.after_si for name, one in verdict.residuals.items()}
     errors = verdict.gain.errors.items()
-    times = {name: before / here[name] for name, (before, _) in errors if here.get(name)}
+    times = {name: after / here[name] for name, (_, after) in errors if here.get(name)}
     most = max(times, key=lambda name: times[name], default="")
     if not most or times[most] < OTHERWISE:
         return ""
     return (
-        f" On held-out recordings the model is {times[most]:.2g} times as far off as on the fitted"
+        f" With all that, held-out recordings are {times[most]:.2g} times as far off as the fitted"
         f" ones ({most}): what only these show is not proved there. --alternate holds out stretches"
         " of all of them."
     )

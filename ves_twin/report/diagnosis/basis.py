@@ -71,6 +71,8 @@ def gain_words(verdict: Verdict) -> str:
     gain = verdict.gain
     if gain is None or gain.share is None:
         return ""
+    if verdict.basis.by_motion and gain.errors:  # the noise of such efforts is not known
+        return rms_words(gain)
     both = verdict.verdict in (Kind.PARTIAL, Kind.UNKNOWN) or gain.grown
     if not both or not gain.errors:
         return taken_words(gain) + _lost_words(verdict)

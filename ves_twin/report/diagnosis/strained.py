@@ -1,4 +1,4 @@
-"""strained_sentence: which of the model's own numbers had to leave their tolerances beside."""
+"""strained_sentence, tuned_words: which of the model's own numbers left their tolerances."""
 
 from __future__ import annotations
 
@@ -11,6 +11,10 @@ STRANGEST = 2
 """Numbers of the model that are told where tolerances do not hold: what moved by most."""
 
 
+SHOWN_FROM = 2.0
+"""Declared sd from which a tuned number is told: one of twenty in order is as far off."""
+
+
 def moved(verdict: Verdict) -> list[tuple[str, Estimate]]:
     """The model's own numbers that the fit moved: those held at a limit first, then the surest."""
 
@@ -19,6 +23,23 @@ def moved(verdict: Verdict) -> list[tuple[str, Estimate]]:
         return not one.at_limit, -abs(one.value - one.nominal) / max(one.high - one.low, 1e-30)
 
     return sorted(verdict.tuned.items(), key=order)
+
+
+def tuned_words(verdict: Verdict) -> str:
+    """Beside causes: the model's own numbers that moved by SHOWN_FROM declared sd, by that."""
+    far = [
+        (abs(one.pull), name, one)
+        for name, one in verdict.tuned.items()
+        if verdict.causes and one.pull is not None and abs(one.pull) > SHOWN_FROM
+        if not (one.at_limit or one.low <= one.nominal <= one.high)
+    ]
+    told = [
+        f"{spoken(name.rpartition(':')[0])} {interval_words(one)}, {pull:.1f} declared tolerances"
+        f" from the model's {quantity(one.nominal, one.unit)}"
+        for pull, name, one in sorted(far, key=lambda item: -item[0])
+    ]
+    more = f"; and {len(told) - TOLD} more (verdict.json)" if len(told) > TOLD else ""
+    return "; ".join(told[:TOLD]) + more
 
 
 def held(verdict: Verdict) -> list[str]:

@@ -132,7 +132,7 @@ def draft(model: Path, logs: Sequence[Path], out: Path, rate: float | None = Non
     if now.mode.mode is Mode.CONTROL and now.explained[now.least] < HALF:
         recording = read_rig_recording(logs[0], now.rig)
         if runs_away(MjcfForward.of(now.rig), recording):
-            now = _in_pieces(now, version)
+            now = _in_pieces(now, version, 1.0 / log.period)
     for other in logs[1:]:
         read_rig_recording(other, now.rig)
     left = dict(matches.left)
@@ -161,15 +161,16 @@ class _Version:
         return min(self.explained, key=lambda name: self.explained[name])
 
 
-def _in_pieces(whole: _Version, version: Callable[[Chosen], _Version]) -> _Version:
+def _in_pieces(whole: _Version, version: Callable[[Chosen], _Version], native: float) -> _Version:
     """With the longest horizon over which the model explains HALF, or that which explains most.
 
-    Where no horizon helps, or no row tells a joint's start, all stays as it is.
+    Where no horizon helps, or no row tells a joint's start, all stays as it is. A piece has ROWS of
+    the analysis, which has no more of them than the log, `native` a second.
     """
     mode, share = whole.mode, whole.explained[whole.least]
     why = f"{mode.why}; over the whole log the model explains {_percent(whole)} of {whole.least}"
     best, found = share + HELPS, whole
-    for horizon in (h for h in HORIZONS if h * mode.rate >= ROWS):
+    for horizon in (h for h in HORIZONS if h * min(mode.rate, native) >= ROWS):
         try:
             cut = version(replace(mode, horizon=horizon, why=why))
         except InvalidInputError:  # a joint whose start no row tells

@@ -16,6 +16,7 @@ from ves_twin.data.column_expression import ColumnExpression
 from ves_twin.data.empty_cells import filled, lone
 from ves_twin.data.log import Column, Kind
 from ves_twin.data.open_log import open_log
+from ves_twin.data.unwrapped import unwrapped
 
 FEWEST = 64
 """Rows below which neither noise nor motion can be told."""
@@ -25,6 +26,9 @@ FILLED = 0.9
 
 JITTER = 0.01
 """Departure of a step from the usual one from which on a draft says so."""
+
+TURNS = {"rad": 2.0 * np.pi, "deg": 360.0}
+"""Unit of an angle -> what a turn is in it."""
 
 USUAL = (1e-5, 0.5)
 """Time between rows of a machine's log [s], beyond which its clock may be in another unit."""
@@ -156,14 +160,26 @@ def _sorted(
     own = time[stretch][good[stretch]]
     even = own[0] + period * np.arange(int((own[-1] - own[0]) / period + 1.0 + 1e-6))
     used = {n: filled(read[n][stretch], ~full[n][stretch], held=False)[good[stretch]] for n in kept}
+    units = {c.name: c.unit for c in columns}
+    for name in used:
+        used[name] = _without_wraps(name, used[name], units.get(name, ""), notes)
     constant = [n for n, v in used.items() if np.ptp(v) == 0.0]
     values = {n: np.asarray(np.interp(even, own, v)) for n, v in used.items() if n not in constant}
     if not values or len(even) < FEWEST:
         came = f"constant: {', '.join(constant) or 'none'}; with gaps: {', '.join(empty) or 'none'}"
         raise InvalidInputError(f"columns of {path.name}", came, "columns of numbers that change")
-    units = {c.name: c.unit for c in columns}
     told = tuple(constant), tuple(empty), tuple(notes)
     return LogColumns(path.name, clock, scale, period, values, units, *told, window)
+
+
+def _without_wraps(name: str, values: FloatArray, unit: str, notes: list[str]) -> FloatArray:
+    """A column without the wraps of an angle, which `diagnose` takes out as well."""
+    for turn in (turn for told, turn in TURNS.items() if unit in ("", told)):
+        found, wraps = unwrapped(values, turn)
+        if wraps:
+            notes.append(f"{name} wraps {wraps} times: whole turns are added")
+            return found
+    return values
 
 
 def _longest(good: BoolArray) -> slice:
