@@ -9,6 +9,7 @@ from ves_twin.core.units import to_si
 from ves_twin.machines.mjcf.description import Compared, Mode, RigDescription
 from ves_twin.machines.mjcf.joint_units import joint_units
 from ves_twin.machines.mjcf.places import SINGLE, driven_joint, typical_speed
+from ves_twin.machines.mjcf.transmission import Transmission
 
 BALL = int(mujoco.mjtJoint.mjJNT_BALL)
 FREE = int(mujoco.mjtJoint.mjJNT_FREE)
@@ -94,6 +95,9 @@ def _moved(told: RigDescription, model: mujoco.MjModel) -> None:
                     " or mode 'control' with the other joints in drive.imposed to integrate it"
                 )
                 raise InvalidInputError(f"joint {joint}, mode 'motion'", "no motion", expected)
+        compared = [one.actuator for one in told.compare.values() if one.actuator]
+        for actuator in compared:
+            Transmission.of(model, actuator, compared)
         return
     for actuator in [*(told.controllers if drive.mode is Mode.REFERENCE else drive.actuators)]:
         name = driven_joint(model, actuator)

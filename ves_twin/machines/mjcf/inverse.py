@@ -18,6 +18,7 @@ from ves_twin.effects.law import LawKind
 from ves_twin.effects.shifted import shifted
 from ves_twin.machines.mjcf.inertials import with_inertials_of
 from ves_twin.machines.mjcf.rigid_efforts import Moved, RigidEfforts, inverted
+from ves_twin.machines.mjcf.transmission import Transmission
 from ves_twin.machines.mjcf.work import Work, sensor_rows, variables
 
 ORDER = 4
@@ -166,11 +167,11 @@ def needed_commands(work: Work, names: Sequence[str], moved: Moved) -> dict[str,
 
 
 def _needed(work: Work, name: str, moved: Moved) -> FloatArray:
-    """What must reach an actuator (n,)."""
-    actuator = work.model.actuator(name)
-    joint = work.model.joint(int(actuator.trnid[0])).name
-    gain = float(actuator.gear[0]) * float(actuator.gainprm[0])
-    return np.asarray(needed_effort(work, joint, moved) / gain)
+    """What must reach an actuator (n,), beside those that act on the same joints."""
+    compared = (one.actuator for one in work.rig.description.compare.values() if one.actuator)
+    found = Transmission.of(work.rig.model, name, compared)
+    efforts = np.stack([needed_effort(work, joint, moved) for joint in found.joints])
+    return found.command(work.model, name, efforts)
 
 
 def needed_effort(work: Work, name: str, moved: Moved) -> FloatArray:

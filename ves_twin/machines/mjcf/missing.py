@@ -36,7 +36,8 @@ def missing_efforts(
         as_nominal: as efforts of the nominal masses M_0.
 
     Returns:
-        None where a contact, limit or equality is at work: its force is no law of the motion.
+        None where a contact, limit or equality is at work: its force is no law of the motion. None,
+        too, where a motor drives a tendon, or two of them one joint.
     """
     model, programme = work.model, work.programme
     rows = len(programme.time)
@@ -54,6 +55,9 @@ def missing_efforts(
     if moved.bound:
         return None
     fed = work.rig.description.drive.actuators
+    driven = [driven_joint(model, name) for name in fed]
+    if not all(driven) or len(set(driven)) < len(driven):
+        return None
     own = np.zeros((rows, model.nv))
     for joint in positions:
         own[:, int(model.joint(joint).dofadr[0])] = needed_effort(work, joint, moved)

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ves_twin.core.errors import InvalidInputError
 from ves_twin.diagnosis.forward import Excitation
 from ves_twin.effects.joints import ForceOffset
 from ves_twin.effects.place import Place
@@ -14,6 +15,7 @@ from ves_twin.machines.mjcf.forward import MjcfForward
 from ves_twin.machines.mjcf.machine import Rig
 from ves_twin.machines.mjcf.places import place_of
 from ves_twin.machines.mjcf.started import start_signal
+from ves_twin.machines.mjcf.transmission import arms_of
 
 TONES = 5
 """Of a multisine."""
@@ -122,9 +124,13 @@ def driven(rig: Rig) -> list[tuple[str, Place, float]]:
         return [*((signal, at, at.travel / TONES) for signal, at in places), *moved]
     found = []
     for name, signal in told.drive.actuators.items():
-        actuator = model.actuator(name)
-        at = joint_of(rig, model.joint(int(actuator.trnid[0])).name)
-        found.append((signal, at, at.effort / abs(float(actuator.gear[0] * actuator.gainprm[0]))))
+        arms = arms_of(model, name)
+        if not arms:
+            came = "on a site or body, of which no joint has a typical effort"
+            raise InvalidInputError(f"actuator {name}", came, "one on a joint or a fixed tendon")
+        joint = max(arms, key=lambda one: abs(arms[one]))
+        at = joint_of(rig, joint)
+        found.append((signal, at, at.effort / abs(arms[joint])))
     return [*found, *moved]
 
 

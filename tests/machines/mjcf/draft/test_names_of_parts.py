@@ -9,6 +9,10 @@ import numpy as np
 import pytest
 
 from ves_twin.cli.new_text import new_text
+from ves_twin.machines.mjcf.draft.changes import changes
+from ves_twin.machines.mjcf.draft.match import Match
+from ves_twin.machines.mjcf.draft.names import likeness
+from ves_twin.machines.mjcf.draft.spots import Quantity, Spot
 from ves_twin.machines.mjcf.machine import Rig
 from ves_twin.machines.new_machine import new_machine
 
@@ -103,3 +107,38 @@ def test_a_draft_of_which_the_model_explains_nothing_asks_to_look_at_its_columns
     nothing = dict.fromkeys(drafted.draft.explained, 0.01)
     other = replace(drafted, draft=replace(drafted.draft, explained=nothing))
     assert words in new_text(other, tmp_path / "legs.xml", [log])
+
+
+@pytest.mark.parametrize(("word", "unit"), [("angle", "m"), ("thetadot", "m/s"), ("stroke", "rad")])
+def test_what_turns_is_no_slide_and_what_slides_no_hinge(word, unit):
+    """`angle` of a pole on a cart was taken for the cart's place, `position` for the pole's."""
+    quantity = Quantity.SPEED if unit.endswith("/s") else Quantity.POSITION
+    other = unit.replace("m", "rad") if unit.startswith("m") else "m"
+    wrong, right = (Spot(quantity, "joint", u, frozenset(), 1) for u in (unit, other))
+    away, near = (likeness(word, "", spot, True, False) for spot in (wrong, right))
+    assert away.score < 0.0 < near.score
+    told = likeness(word, unit, wrong, True, False)
+    assert told.score > 0.0  # what a unit says stands
+
+
+@pytest.mark.parametrize(
+    ("unit", "most", "driven", "offered"),
+    [
+        ("rad", 1.9, {"two"}, True),
+        ("rad", 1.9, set(), False),
+        ("rad", 40.0, set(), True),
+        ("deg", 40.0, set(), False),
+        ("deg", 1.9, set(), True),
+    ],
+)
+def test_a_unit_that_a_name_says_stands_where_no_effort_of_its_joint_speaks(
+    unit, most, driven, offered
+):
+    """An elbow on a belt was taken for 57 times smaller, as that explained its shoulder better."""
+    spot = Spot(Quantity.POSITION, "two", "rad", frozenset(), 1)
+    match = Match("q2", spot, unit, True, 1.0, ())
+    model = mujoco.MjModel.from_xml_string(
+        "<mujoco><worldbody><body><joint name='two'/><geom size='1'/></body></worldbody></mujoco>"
+    )
+    ways = [words for _, words in changes([match], driven, model, {"q2": most})]
+    assert any(f"q2: named in {unit}, the numbers fit" in words for words in ways) is offered

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Collection, Iterator, Mapping
 from dataclasses import replace
 from itertools import combinations
 
@@ -19,11 +19,20 @@ DEGREE = np.pi / 180.0
 
 OTHER_ANGLE = {"deg": "rad", "rad": "deg"}
 
+HALF_TURN = np.pi
+"""Angle up to which numbers named degrees may be radians: a joint seldom turns round more."""
+
+FAR_ROUND = 8.0 * np.pi
+"""Angle from which numbers named radians may be degrees: 25 degrees are such, four turns are few
+joints'."""
+
 Change = tuple[list[Match], str]
 """All columns as they would be meant, and words for it."""
 
 
-def changes(found: list[Match], driven: set[str], model: mujoco.MjModel) -> Iterator[Change]:
+def changes(
+    found: list[Match], driven: set[str], model: mujoco.MjModel, reach: Mapping[str, float]
+) -> Iterator[Change]:
     """Positions turned, in other units, from the world, before a gear, from another zero; swaps.
 
     Positions are exchanged where an effort tells the one joint from the other.
@@ -32,12 +41,14 @@ def changes(found: list[Match], driven: set[str], model: mujoco.MjModel) -> Iter
         found: columns as they are meant now.
         driven: joints whose efforts were recorded.
         model: that they are held against.
+        reach: column of a position -> its largest number.
     """
     positions = [m for m in found if m.spot.quantity is Quantity.POSITION]
     for match in positions:
         words = f"{match.column} counts against {match.spot.label} of the model: it is turned"
         yield _with(found, {match: replace(match, scale=-match.scale)}), words
-    yield from _in_units(found, positions)
+    odd = {m for m in positions if m.spot.name in driven or misnamed(m, reach.get(m.column, 0.0))}
+    yield from _in_units(found, positions, odd)
     yield from _from_the_world(found, positions, model)
     yield from _before_gears(found, positions, model)
     yield from _from_another_zero(found, positions)
@@ -64,8 +75,19 @@ def _at(match: Match, other: Match) -> Match:
     return replace(match, spot=other.spot, reasons=("fits the model better there",))
 
 
-def _in_units(found: list[Match], positions: list[Match]) -> Iterator[Change]:
-    """Numbers without a told unit in another one; degrees that are radians."""
+def misnamed(match: Match, most: float) -> bool:
+    """Whether numbers of an angle are as large as those of its other unit."""
+    return most < HALF_TURN if match.unit == "deg" else most > FAR_ROUND
+
+
+def _in_units(
+    found: list[Match], positions: list[Match], odd: Collection[Match]
+) -> Iterator[Change]:
+    """Numbers without a told unit in another one; degrees that are radians.
+
+    What a name says stands where no effort of that joint speaks, unless the numbers do (`odd`): an
+    elbow on a belt was taken for 57 times smaller, as it then explained its shoulder.
+    """
     for factor, unit in ((DEGREE, "deg"), (0.001, "mm")):
         kind = "rad" if unit == "deg" else "m"
         open_ = [m for m in positions if m.spot.unit == kind and not m.told and m.unit == kind]
@@ -75,7 +97,7 @@ def _in_units(found: list[Match], positions: list[Match]) -> Iterator[Change]:
             new = {m: replace(m, unit=unit) for m in group}
             yield _with(found, new), f"{names}: {words}"
     for match in positions:
-        if match.told and match.unit in OTHER_ANGLE:
+        if match.told and match.unit in OTHER_ANGLE and match in odd:
             unit = OTHER_ANGLE[match.unit]
             words = f"{match.column}: named in {match.unit}, the numbers fit the model as {unit}"
             yield _with(found, {match: replace(match, unit=unit)}), words

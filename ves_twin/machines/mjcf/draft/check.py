@@ -9,7 +9,7 @@ import mujoco
 import numpy as np
 
 from ves_twin.core.types import FloatArray
-from ves_twin.machines.mjcf.draft.changes import DEGREE, changes
+from ves_twin.machines.mjcf.draft.changes import DEGREE, changes, misnamed
 from ves_twin.machines.mjcf.draft.log_columns import LogColumns
 from ves_twin.machines.mjcf.draft.match import Match, Matches
 from ves_twin.machines.mjcf.draft.motion import Motion, band_of, motion_of
@@ -60,13 +60,6 @@ FAR = 3.0
 
 ODD = 50.0
 """Times what the model needs from which on an effort is in another unit, whatever friction does."""
-
-HALF_TURN = np.pi
-"""Angle up to which numbers named degrees may be radians: a joint seldom turns round more."""
-
-FAR_ROUND = 8.0 * np.pi
-"""Angle from which numbers named radians may be degrees: 25 degrees are such, four turns are few
-joints'."""
 
 
 @dataclass(frozen=True)
@@ -196,7 +189,7 @@ class _Judge:
         best = self.score(found)
         for _ in range(2 * len(found)):
             driven = {m.spot.joint for m in self.driving(found)}
-            ways = changes(found, driven, self.model)
+            ways = changes(found, driven, self.model, self.reach(found))
             tried = [(self.score(new), new, words) for new, words in ways]
             better = sorted(
                 (one for one in tried if one[0] >= best + GAINED), key=lambda one: -one[0]
@@ -207,6 +200,11 @@ class _Judge:
             best, found = chosen[:2]
             said.append(chosen[2])
         return found, said
+
+    def reach(self, found: list[Match]) -> dict[str, float]:
+        """Column of a position -> its largest number."""
+        positions = (m.column for m in found if m.spot.quantity is Quantity.POSITION)
+        return {name: float(np.max(np.abs(self.log.column(name)))) for name in positions}
 
     def sound(self, new: list[Match], found: list[Match]) -> bool:
         """Whether a change makes the model right about its joints: most of each effort, either way.
@@ -365,7 +363,7 @@ def _other_angle(
         if not (mine and match.told and match.unit in ("deg", "rad")):
             continue
         most, degrees = float(np.max(np.abs(log.column(match.column)))), match.unit == "deg"
-        if most < HALF_TURN if degrees else most > FAR_ROUND:
+        if misnamed(match, most):
             other, factor = ("radians", 1.0 / DEGREE) if degrees else ("degrees", DEGREE)
             yield (
                 f"{match.column} reaches {most:.3g} {match.unit} at most: if these are {other}, the"

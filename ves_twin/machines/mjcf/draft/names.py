@@ -30,6 +30,28 @@ KIND_WORDS = {
 """Words that laboratories use for a quantity, English and German; a column's name is cut at digits
 and bars."""
 
+TURNS = frozenset(
+    [
+        "angle",
+        "angles",
+        "ang",
+        "theta",
+        "th",
+        "phi",
+        "psi",
+        "alpha",
+        "rot",
+        "rotation",
+        "winkel",
+        "omega",
+        "thetadot",
+        "rpm",
+        "drehzahl",
+    ]
+)
+SLIDES = frozenset(["stroke", "disp", "displacement", "travel", "weg"])
+"""Words of what turns, and of what slides: no unit needs to say so."""
+
 ASKED = (
     "ref reference set setpoint des desired target goal demand nominal cmd command commanded soll"
     " sollwert"
@@ -156,6 +178,9 @@ def _of_kind(words: frozenset[str], told: bool, wish: bool, spot: Spot) -> list[
     place = KIND_WORDS[Quantity.POSITION] & words - AXES
     if spot.quantity is Quantity.SENSOR and spot.unit == "m" and place:
         return [(KIND, "name of a place")]
+    other = SLIDES if spot.unit.startswith("rad") else TURNS
+    if spot.quantity in (Quantity.POSITION, Quantity.SPEED) and words & other and not told:
+        return [(WRONG_KIND, "")]
     if spot.quantity in named and not (told and len(named) > 1):
         return [(KIND, f"name of {ARTICLE[spot.quantity]}")]
     return [] if not named or told or spot.quantity in named else [(WRONG_KIND, "")]
