@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -32,8 +32,22 @@ def new_text(found: NewMachine, model: Path, logs: Sequence[Path]) -> str:
     *fitted, last = [str(log) for log in logs]
     held = f" --held-out {last}" if fitted else held
     given = " ".join(fitted or [last])
-    first = ""
-    if draft.explained and max(draft.explained.values()) < NOTHING:
-        first = "look whether each column is what it is taken for: the model explains none; then "
+    first = _first(draft.explained)
     lines += [f"  next      {first}ves-twin diagnose {given}{held} --plant {found.path}"]
     return "\n".join(lines)
+
+
+def _first(explained: Mapping[str, float]) -> str:
+    """What to look at before a diagnosis, where the model explains nothing of some columns."""
+    none = [name for name, share in explained.items() if share < NOTHING]
+    if not none:
+        return ""
+    if len(none) == len(explained):
+        return "look whether each column is what it is taken for: the model explains none; then "
+    one = len(none) == 1
+    told = f"{', '.join(none)} {'is' if one else 'are'} what {'it is' if one else 'they are'}"
+    it = "it" if one else "them"
+    return (
+        f"look whether {told} taken for, and whether the position there is the joint's own angle:"
+        f" the model explains nothing of {it}, unless friction is most of {it}; then "
+    )

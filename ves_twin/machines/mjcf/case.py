@@ -29,6 +29,9 @@ FORGET = 1.0
 """Time [s] at the begin that is not compared in forward simulation: a start is read from noisy
 rows, and a controller's memory is empty."""
 
+FORGETS = "while a start that is read from noisy rows settles"
+"""Why."""
+
 FEWEST = 8
 """Rows that are compared at least: a spectrum and its errors need some."""
 
@@ -140,7 +143,8 @@ def mjcf_cases(
         time = ready.time - ready.time[0]
         first = int(np.searchsorted(time, max(start, forget) - 1e-9))
         if ready.info.log != POSES and len(time) - first < FEWEST:
-            came = f"{time[-1]:.3g} s, of which the first {max(start, forget):g} s are not compared"
+            begin = f"the first {max(start, forget):g} s, {FORGETS}, are not compared"
+            came = f"{time[-1]:.3g} s, of which {begin}"
             raise InvalidInputError(name, came, "a longer recording: is its clock in that unit?")
         found.append(
             MjcfCase(
@@ -152,7 +156,7 @@ def mjcf_cases(
                 absent=tuple(n for n in forward.compared if n not in ready.signals),
                 checks=checks,
                 notes=(
-                    *((f"the first {forget:g} s are not compared",) if forget else ()),
+                    *((f"the first {forget:g} s, {FORGETS}, are not compared",) if forget else ()),
                     *_beyond(forward, ready),
                     *_wider(own, ready),
                     *_unsized(own, outputs),

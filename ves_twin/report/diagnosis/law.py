@@ -63,8 +63,9 @@ def _unit(law: LawFinding) -> str:
 
 
 def _missing(law: LawFinding) -> str:
-    share = None if law.gain is None else law.gain.share
-    advice = ": look there first" if share is None or share >= WORTH_A_LOOK else ""
+    gain = law.gain
+    likely = gain is None or gain.share is None or (gain.share >= WORTH_A_LOOK and not gain.grown)
+    advice = ": look there first" if likely else ""
     return (
         f"No law is claimed: {law.reason}. What comes nearest is {law.words or law.place}{advice}."
     )

@@ -2,9 +2,14 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from drafted import drafted
+
+from ves_twin.cli.new_text import new_text
+from ves_twin.machines.new_machine import new_machine
 
 CART = """
 <mujoco model="cart">
@@ -55,3 +60,23 @@ def test_a_motor_of_a_tendon_that_no_column_tells_is_no_joints(tmp_path, swing, 
     model.write_text(text.replace("</actuator>", '<motor name="pull" tendon="t2"/></actuator>', 1))
     found, _ = drafted(model, write(swing[1]))
     assert min(found.explained.values()) > 0.8
+
+
+@pytest.mark.parametrize(
+    ("explained", "words"),
+    [
+        ({"tau1": 0.9, "tau2": 0.2}, ""),
+        ({"tau1": 0.9, "tau2": 0.0}, "look whether tau2 is what it is taken for, and"),
+        ({"tau1": 0.9, "tau2": 0.0, "tau3": 0.01}, "look whether tau2, tau3 are what they are"),
+        ({"tau1": 0.01, "tau2": 0.0}, "look whether each column is what it is taken for"),
+    ],
+)
+def test_a_column_of_which_the_model_explains_nothing_is_to_be_looked_at_first(
+    arm, columns, write, explained, words
+):
+    """An elbow's angle told from the world left 0 % of its torque explained, and no word of it."""
+    log = write(columns)
+    made = new_machine(arm, [log], arm.with_name("my.toml"))
+    text = new_text(replace(made, draft=replace(made.draft, explained=explained)), arm, [log])
+    (told,) = (line for line in text.splitlines() if line.startswith("  next"))
+    assert told.removeprefix("  next      ").startswith(words or "ves-twin diagnose")
