@@ -272,7 +272,7 @@ def test_the_verdict_is_plain_json(settings, tmp_path):
     assert content["verdict"] == "named"
     cause = content["causes"][0]
     assert (cause["effect"], cause["target"], cause["firm"]) == ("friction", "plant", True)
-    keys = {"value", "low", "high", "unit", "nominal", "at_limit"}
+    keys = {"value", "low", "high", "unit", "nominal", "at_limit", "pull"}
     assert set(cause["parameters"]["friction.size"]) == keys
     assert content["residuals"]["out.1"]["before"] > 1.2 > content["residuals"]["out.1"]["after"]
 

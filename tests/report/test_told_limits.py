@@ -110,6 +110,7 @@ def test_a_simulation_that_falls_out_of_step_is_told_and_what_was_done_instead()
         by_motion
     )
     assert "drive.horizon" in next_step(by_noise)
+    assert "drive.horizon" not in next_step(by_motion)
     unknown = replace(by_noise, verdict=Kind.UNKNOWN, causes=(), proved=())
     assert verdict_sentence(unknown).startswith("Nothing can be told")
     assert "times the most that noise leaves" in confidence_sentence(unknown)

@@ -92,12 +92,14 @@ def missing_at(joint: str) -> str:
     return f"{joint}.missing"
 
 
-def by_motion(seen: Dataset, as_nominal: bool = False) -> Dataset | None:
+def by_motion(seen: Dataset, as_nominal: bool = False, noisy: bool = False) -> Dataset | None:
     """Recordings as efforts that their motion lacks: measured are zeros.
 
     Args:
         seen: recordings of an `Invertible`.
         as_nominal: as efforts of the nominal masses, to fit masses by.
+        noisy: whether their noise is what the declared noise of the motion makes of them; else it
+            is QUIET of what the plant lacks, by which the joints are weighed.
 
     Returns:
         None where the channels do not tell the motion, or there is next to none.
@@ -113,7 +115,13 @@ def by_motion(seen: Dataset, as_nominal: bool = False) -> Dataset | None:
     unit = dict.fromkeys(told[0], 1.0)
     columns = tuple(range(len(unit)))
     first = Runs(ByMotion(plant, unit, as_nominal), programmes, columns, runs.workers)
-    size = QUIET * np.sqrt(np.mean(np.square(first.one(first.origin), dtype=float), axis=0))
+    rows = first.one(first.origin)
+    size = QUIET * np.sqrt(np.mean(np.square(rows, dtype=float), axis=0))
+    if noisy:
+        again = replace(
+            first, programmes=tuple(_moved(_noisy(seen), k) for k in range(len(programmes)))
+        )
+        size = np.maximum(size, np.std(again.one(again.origin) - rows, axis=0, dtype=float))
     if not (np.isfinite(size).all() and np.all(size > 0.0)):
         return None
     noise = dict(zip(unit, size.tolist(), strict=True))
@@ -132,6 +140,14 @@ def _moved(seen: Dataset, recording: int) -> Excitation:
     names = [runs.forward.channels[c].name for c in runs.columns]
     motion = {MOTION + name: curve[:, None] for name, curve in zip(names, curves.T, strict=True)}
     return replace(programme, drive={**programme.drive, **motion})
+
+
+def _noisy(seen: Dataset) -> Dataset:
+    """The same recordings with the declared noise of each channel once more."""
+    channels = [seen.runs.forward.channels[c] for c in seen.runs.columns]
+    sd = np.array([channel.sd for channel in channels], np.float32)
+    drawn = np.random.default_rng(0).standard_normal(seen.measured.shape)
+    return replace(seen, measured=seen.measured + sd * drawn.astype(np.float32))
 
 
 def _holes(runs: Runs, band: float, kept: BoolArray) -> tuple[BoolArray, ...]:

@@ -122,7 +122,7 @@ class View:
         findings, material = self.findings, self.material
         if findings.limits.in_order is None or material.baseline:
             return None
-        seen, chosen = by_motion(findings.seen, as_nominal=True), findings.settings
+        seen, chosen = by_motion(findings.seen, True, noisy=True), findings.settings
         if seen is None:
             return None
         progress(0.0, "what the measured motion lacks")
@@ -143,7 +143,7 @@ class View:
         held = HeldOut.of(own, material.held_out, still, chosen, seen.runs.workers)
         if not self.moved:
             return held
-        moved = by_motion(held.seen, as_nominal=True)
+        moved = by_motion(held.seen, True, noisy=True)
         return HeldOut(moved, whitening_of(moved.runs, None), chosen) if moved else None
 
     def told(self, progress: Progress, alone: bool = False) -> Verdict:

@@ -24,8 +24,8 @@ def out_of_step_sentence(verdict: Verdict) -> str:
 
 
 def shorter(verdict: Verdict) -> str:
-    """What to do about it; empty where they come to noise."""
-    if verdict.statistics.misfit_in_order is None:
+    """What to do about it; empty where they come to noise, or the motion told."""
+    if verdict.statistics.misfit_in_order is None or (verdict.basis.by_motion and verdict.proved):
         return ""
     if verdict.basis.pieces:
         return "Take shorter pieces (drive.horizon in the machine's file), and diagnose again."
