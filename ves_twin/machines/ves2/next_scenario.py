@@ -8,13 +8,12 @@ import numpy as np
 
 from ves_twin.core.toml_file import write_toml
 from ves_twin.diagnosis.forward import Excitation
+from ves_twin.machines.machine import SCENARIO, SETPOINTS
 from ves_twin.machines.ves2.excitations import write_setpoints
 from ves_twin.plant.plant import Plant
 from ves_twin.scenario.schema import Scenario
 from ves_twin.simulator.build import belief_of
 from ves_twin.simulator.setpoint_motion import poses_of
-
-SETPOINTS, SCENARIO = "next_experiment.csv", "next_experiment.toml"
 
 
 def write_next_experiment(

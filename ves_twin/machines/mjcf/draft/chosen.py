@@ -139,8 +139,7 @@ def chosen(
         return Chosen(Mode.CONTROL, why, RATES[1], check.corner, noise, True, imposed)
     of_joint = {m.spot.name: sharp[m.column][0] for m in positions}
     for m in efforts:
-        sd, how = noise[m.column]
-        noise[m.column] = (float(np.hypot(sd, of_joint[m.spot.joint])), how)
+        noise[m.column] = _with_position(noise[m.column], of_joint[m.spot.joint])
     why = (closed or why) + _beyond(efforts, log, band)
     return Chosen(Mode.MOTION, why, 2.0 * band, CORNER * band, noise)
 
@@ -250,8 +249,7 @@ def _of_loops(
         m.spot.name: _induced(m, noise, drives, model, log, band, felt)[0] for m in positions
     }
     for m in drives:
-        sd, how = noise[m.column]
-        noise[m.column] = (float(np.hypot(sd, of_joint[m.spot.joint])), how)
+        noise[m.column] = _with_position(noise[m.column], of_joint[m.spot.joint])
     why = "the model's loops leave no motion but that of its drives, which have positions"
     homes = {m.column: home for m in positions if (home := _home(m, model, log))}
     names = tuple(m.spot.name for m in positions)
@@ -313,6 +311,13 @@ def _induced(
     within = float(inertia) * pull / gain
     size = float(np.std(effort.factor * log.column(effort.column)))
     return within * np.sqrt(0.5 / (log.period * band)), within / size
+
+
+def _with_position(own: tuple[float, str], induced: float) -> tuple[float, str]:
+    """Noise of an effort with that which its joint's position makes, and how it was told."""
+    sd, how = own
+    more = "; most of it is the position's, differentiated twice" if induced > sd else ""
+    return float(np.hypot(sd, induced)), how + more
 
 
 def _refuse(log: LogColumns, matches: Matches, check: Checked, model: mujoco.MjModel) -> None:
