@@ -79,7 +79,18 @@ def preferred(offers: Sequence[Offer]) -> Offer:
 
 
 def least_left(held: Half, quietest: FloatArray, left: Sequence[FloatArray]) -> int:
-    """Which of several residuals leaves least of held-out rows, the first of equals.
+    """Which of several residuals leaves least of held-out rows, the first of equals; see `left_of`.
+
+    Args:
+        held: the held-out half.
+        quietest: rms of each channel below which nothing is told (c,).
+        left: (rows, c) each, one at least.
+    """
+    return int(np.argmin(left_of(held, quietest, left)))
+
+
+def left_of(held: Half, quietest: FloatArray, left: Sequence[FloatArray]) -> FloatArray:
+    """How much each of several residuals leaves of held-out rows (k,).
 
         sum_c n_c log rms_c
 
@@ -95,4 +106,4 @@ def least_left(held: Half, quietest: FloatArray, left: Sequence[FloatArray]) -> 
     rms = np.log(np.maximum(np.where(np.isfinite(told), told, FAILED), quietest))
     best = left[int(np.argmin([np.sum(one) for one in rms]))]
     count = independent_rows(held.runs, best)
-    return int(np.argmin([count @ one for one in rms]))
+    return np.array([float(count @ one) for one in rms])
