@@ -188,7 +188,7 @@ def sized(
     and no interval holds the value that the model has already: a shape that is known so little is
     not known by name; of a vector one size must be away from it. Nor where an interval reaches an
     end of its range, which then says the size in place of the record, nor a delay below a row,
-    which the clock of the recordings may have.
+    which the clock of the recordings may have, nor a kind of SUBLINEAR that is less than none.
     What full simulation fits to nothing is left out: its column improved the prediction, its
     effect does not.
 
@@ -216,8 +216,8 @@ def sized(
         wide = not ended and any(_reaches(e, *ends[name]) for name, e in cause.parameters.items())
         below = any(_below(name, e, row) for name, e in cause.parameters.items())
         firm = one.firm and cause.firm and known and not (ended or wide or below)
-        told = replace(one, parameters=sizes, firm=firm, ended=ended, wide=wide, below_row=below)
-        found.append(told)
+        told = replace(one, parameters=sizes, ended=ended, wide=wide, below_row=below)
+        found.append(replace(told, firm=firm and not told.sublinear))
     return tuple(found)
 
 

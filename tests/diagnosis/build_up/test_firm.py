@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
+import numpy as np
 import pytest
 from linear import Linear, halves
 
@@ -102,3 +105,34 @@ def test_what_full_simulation_fits_to_nothing_is_not_proved():
     cause = Cause("backlash", "joint", {"level": size}, 1.0, True, None)
     one = Proved("backlash", "joint", {}, 1e-3, 20, {"torque": (2.0, 1.9)}, True)
     assert not sized(BuildUp((one,), 1, 0.05, 0.05, {}, {}), (cause,), ENDS)
+
+
+@pytest.mark.parametrize(
+    ("kind", "value", "firm"),
+    [
+        ("stribeck_friction", -1.5, False),
+        ("stribeck_friction", 1.5, True),
+        ("quadratic_drag", -1.5, False),
+        ("coulomb_friction", -1.5, True),
+    ],
+)
+def test_what_no_machine_has_less_of_than_none_is_no_mechanism(kind, value, firm):
+    """Grease's friction of a measured arm was called a Stribeck friction of -1.5 N m, firmly."""
+    size = Estimate(value, value - 0.4, value + 0.4, "N", 0.0)
+    cause = Cause(kind, "joint", {"level": size}, 1.0, True, None)
+    one = Proved(kind, "joint", {}, 1e-9, 20, {"torque": (2.0, 1.0)}, True)
+    (told,) = sized(BuildUp((one,), 1, 0.05, 0.05, {}, {}), (cause,), {"level": (-9.0, 9.0)})
+    assert told.firm is firm
+    assert ("grows less than in proportion" in standing_words(told)) is not firm
+
+
+def test_efforts_that_a_motion_lacks_have_nothing_to_follow():
+    """They are measured as zeros, and no name would be firm where more than noise is left."""
+    both = halves(Linear(), {"coulomb@a:size": 0.8}, 51, error=0.02)
+    labels = [trial.cause.label for trial in both.regression.trials]
+    proof = prove(both.regression, both.held, [labels.index("coulomb@a")])
+    left = 50.0 * proof.bench.residual(proof.proved)
+    zeros = replace(both, measured=np.zeros_like(both.measured))
+    (one,), (other,) = (report_of(two, proof, (left, left)).proved for two in (both, zeros))
+    assert one.unfollowed
+    assert not other.unfollowed

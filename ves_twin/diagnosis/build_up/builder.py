@@ -111,7 +111,8 @@ class Builder:
 
         Neither serves all: whitening in time hides what acts slowly (a double pendulum's
         frictions, an excavator's valve), and plain squares have few independent rows (TX40). Of
-        the choices that plain squares make on their way the best is offered, too. The choice that
+        the choices that plain squares make on their way, and of all usual frictions, alone and
+        beside the last choice, the best is offered, too. The choice that
         promises more is fitted in full first: there may be no time for the other.
 
         Args:
@@ -121,7 +122,8 @@ class Builder:
             known: labels of the causes that were put to proof before.
         """
         begin = _places(halves, present)
-        path = PlainSelector(halves.regression).path(begin)
+        plain = PlainSelector(halves.regression)
+        path = plain.path(begin)
         ways: list[tuple[Way, list[int]]] = [
             (Selector, Selector(halves.regression).run(begin)),
             (PlainSelector, path[-1]),
@@ -135,7 +137,8 @@ class Builder:
                 return found
             found.append(self.offer(*self.settled(way, halves, chosen, point), known))
             known = found[-1].known
-        few, known = best_proved(halves, path, known)
+        usual = [] if present else [plain.usual(), plain.usual(path[-1])]
+        few, known = best_proved(halves, [*path, *filter(None, usual)], known)
         labels = frozenset(halves.regression.trials[n].cause.label for n in few)
         if few and labels not in [offer.proved for offer in found]:
             found.append(self.offer(halves, point, few, known))

@@ -16,6 +16,9 @@ from ves_twin.diagnosis.build_up.select import CLEAR, MOST, PAIRED
 ROUNDS = 3
 """Times that weights of channels are learnt anew from what they leave."""
 
+USUAL = ("coulomb_friction", "viscous_friction")
+"""Kinds that every machine has, whatever else is wrong with it."""
+
 
 @dataclass(frozen=True)
 class _Scale:
@@ -73,6 +76,23 @@ class PlainSelector:
             chosen = other
             found.append(chosen)
         return found
+
+    def usual(self, beside: Sequence[int] = ()) -> list[int]:
+        """Every friction of USUAL beside some trials, in its best variant, none left out.
+
+        Few rows of a joint that seldom turns are independent, and beside hundreds of causes none of
+        them pays for itself on the fitted half. Held-out rows then say which of these are there: of
+        a measured arm with 320 trials a viscous friction that takes four fifths of a joint's error.
+        """
+        trials = self.regression.trials
+        there = {trials[n].cause.label for n in beside}
+        more: dict[str, int] = {}
+        for n in self.regression.rest(list(beside)):
+            cause = trials[n].cause
+            if cause.effect in USUAL and cause.label not in there:
+                more.setdefault(cause.label, n)
+        chosen = [*beside, *more.values()]
+        return self._swapped(chosen, self._scale(chosen)) if more else []
 
     def _scale(self, chosen: Sequence[int]) -> _Scale:
         """Weights and independent rows by what a choice leaves."""

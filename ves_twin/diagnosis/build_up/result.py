@@ -24,6 +24,11 @@ class Size:
     nominal: float
 
 
+SUBLINEAR = frozenset({"stribeck_friction", "quadratic_drag"})
+"""Kinds that no machine has less of than none: friction that grows less than in proportion to
+speed, as of grease, reads so (two measured arms, TX40 and TIAGo)."""
+
+
 @dataclass(frozen=True)
 class Proved:
     """One extension that is proved to predict better.
@@ -67,6 +72,12 @@ class Proved:
     def label(self) -> str:
         """effect@target."""
         return f"{self.effect}@{self.target}"
+
+    @property
+    def sublinear(self) -> bool:
+        """Whether it is one of SUBLINEAR with a negative size: the shape of another friction."""
+        first = next(iter(self.parameters.values()), None)
+        return self.effect in SUBLINEAR and first is not None and first.value < 0.0
 
 
 @dataclass(frozen=True)

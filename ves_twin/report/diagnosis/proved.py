@@ -87,6 +87,8 @@ def standing_words(one: Proved) -> str:
         return "at the end of its range, so not proved: it stands for something else"
     if one.below_row:
         return "less than a row of the log: its clock explains that as well"
+    if one.sublinear:
+        return "acts like it: friction that grows less than in proportion to speed reads so"
     if one.unfollowed:
         return f"acts like it: {', '.join(one.unfollowed[:SHOWN])} is still not followed at all"
     if one.acts_like:
