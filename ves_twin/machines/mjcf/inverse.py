@@ -168,10 +168,16 @@ def needed_commands(work: Work, names: Sequence[str], moved: Moved) -> dict[str,
 
 def _needed(work: Work, name: str, moved: Moved) -> FloatArray:
     """What must reach an actuator (n,), beside those that act on the same joints."""
-    compared = (one.actuator for one in work.rig.description.compare.values() if one.actuator)
-    found = Transmission.of(work.rig.model, name, compared)
+    compared = [one.actuator for one in work.rig.description.compare.values() if one.actuator]
+    found = _transmission(work.rig.model, name, tuple(compared))
     efforts = np.stack([needed_effort(work, joint, moved) for joint in found.joints])
     return found.command(work.model, name, efforts)
+
+
+@lru_cache(maxsize=RECORDED)
+def _transmission(model: mujoco.MjModel, name: str, compared: tuple[str, ...]) -> Transmission:
+    """Of a rig's own model: one for all simulations of a diagnosis."""
+    return Transmission.of(model, name, compared)
 
 
 def needed_effort(work: Work, name: str, moved: Moved) -> FloatArray:
