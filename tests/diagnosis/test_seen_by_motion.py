@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 
+import numpy as np
 import pytest
 from lively_arm import lively, measured
 
@@ -11,11 +12,13 @@ from ves_twin.core.recording.recording import Recording
 from ves_twin.core.workers import Workers
 from ves_twin.diagnosis import view as view_module
 from ves_twin.diagnosis.assess import assess, pull_limit
+from ves_twin.diagnosis.judge_view import judge_as_seen
 from ves_twin.diagnosis.null import noise_thresholds
 from ves_twin.diagnosis.runs import silent
 from ves_twin.diagnosis.settings import Settings
 from ves_twin.diagnosis.verdict import Verdict
 from ves_twin.diagnosis.view import Material, View
+from ves_twin.effects.law import Law, LawKind, LawShape
 from ves_twin.machines.mjcf.forward import MjcfForward
 from ves_twin.report.diagnosis.basis import basis_sentences
 
@@ -36,10 +39,10 @@ def forward(tmp_path_factory: pytest.TempPathFactory) -> MjcfForward:
     return MjcfForward.of(lively(tmp_path_factory.mktemp("lively")))
 
 
-def view(forward: MjcfForward, recordings: list[Recording]) -> View:
+def view(forward: MjcfForward, recordings: list[Recording], laws: bool = False) -> View:
     one, other = recordings
     material = Material((one,), (other,), None, (), (), (), None)
-    settings = Settings(causes=12, laws=False)
+    settings = Settings(causes=12, laws=laws)
     return View.of(forward, material, settings, Workers(1), silent)
 
 
@@ -54,7 +57,7 @@ def verdict(forward: MjcfForward) -> Verdict:
         patch.setattr(view_module, "looked", out_of_step)
         seen = view(forward, recorded(forward, HIDDEN)).seen_by_motion(silent)
     assert seen is not None
-    return seen.verdict(silent)
+    return judge_as_seen(seen, silent)
 
 
 def test_frictions_of_an_arm_that_whirls_are_proved_with_their_sizes(verdict):
@@ -73,6 +76,24 @@ def test_the_report_says_that_efforts_were_compared_and_why(verdict):
     assert all(after < before for before, after in verdict.gain.errors.values())
     (told,) = (text for text in basis_sentences(verdict) if "out of step" in text)
     assert "compared are the efforts that the measured motion lacks" in told
+
+
+@pytest.mark.nightly
+def test_a_law_of_an_arm_that_whirls_is_told_beside_what_is_proved(forward, monkeypatch):
+    monkeypatch.setattr(view_module, "looked", out_of_step)
+    knots = np.linspace(-30.0, 30.0, 31)
+    drag = -0.008 * knots * np.abs(knots)
+    law = Law("a", LawKind.EFFORT, LawShape.TABLE, ("speed@a",), (tuple(knots),), tuple(drag))
+    records = [measured(forward.rig, {}, 8.0, seed, WHIRLS, [law]) for seed in (61, 62)]
+    seen = view(forward, records, laws=True).seen_by_motion(silent)
+    assert seen is not None
+    found = judge_as_seen(seen, silent).law
+    assert found is not None
+    assert found.claimed
+    assert (found.place, found.of) == ("a", ("speed@a",))
+    assert found.gain is not None
+    before, after = found.gain.errors["a.missing"]
+    assert after < 0.8 * before
 
 
 def test_what_simulations_can_follow_is_not_seen_by_its_motion(forward, monkeypatch):

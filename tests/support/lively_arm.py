@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
 
 from ves_twin.core.recording.recording import Recording, RecordingInfo
 from ves_twin.diagnosis.forward import Excitation
+from ves_twin.effects.law import Law
 from ves_twin.machines.mjcf.forward import MjcfForward
 from ves_twin.machines.mjcf.machine import Rig
 
@@ -67,13 +69,18 @@ def torque(seconds: float, seed: int, level: float) -> tuple[np.ndarray, np.ndar
 
 
 def measured(
-    rig: Rig, values: dict[str, float], seconds: float, seed: int, level: float = 0.25
+    rig: Rig,
+    values: dict[str, float],
+    seconds: float,
+    seed: int,
+    level: float = 0.25,
+    laws: Sequence[Law] = (),
 ) -> Recording:
     """What a machine with hidden values shows, with noise; tones of 0.25 N m swing it by radians."""
     forward = MjcfForward.of(rig)
     time, u = torque(seconds, seed, level)
     rest = {name: np.zeros_like(u) for name in ("a.position", "b.position")}
-    rows = forward.simulate(Excitation("", time, {"motor.effort": u, **rest}), values)
+    rows = forward.simulate(Excitation("", time, {"motor.effort": u, **rest}), values, laws=laws)
     rows = rows + 0.002 * np.random.default_rng(seed).standard_normal(rows.shape)
     signals = {"motor.effort": u, "a.position": rows[:, :1], "b.position": rows[:, 1:]}
     return Recording(time, signals, RecordingInfo("measured", scenario=f"run {seed}"))

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -13,8 +13,10 @@ from ves_twin.core.types import BoolArray, FloatArray
 from ves_twin.diagnosis.forward import Channel, Excitation
 from ves_twin.diagnosis.forward_wrapper import ForwardWrapper
 from ves_twin.diagnosis.invertible import Invertible
+from ves_twin.diagnosis.law_forward import LawForward, LawPlace
 from ves_twin.diagnosis.preprocess import Dataset
 from ves_twin.diagnosis.runs import Runs
+from ves_twin.effects.law import Law, LawKind
 
 WINDOW, DEGREE = 9, 4
 """Of the Savitzky-Golay filter that positions on the analysis grid go through: 0.09 s at 100 Hz."""
@@ -59,10 +61,14 @@ class ByMotion(ForwardWrapper):
         return tuple(Channel(missing_at(j), "", k, unit(j), sd) for k, (j, sd) in pairs)
 
     def simulate(
-        self, programme: Excitation, values: Mapping[str, float], refined: bool = False
+        self,
+        programme: Excitation,
+        values: Mapping[str, float],
+        refined: bool = False,
+        laws: Sequence[Law] = (),
     ) -> FloatArray:
-        """See `Forward`; there is no step that could be halved."""
-        told = self.told(programme, values)
+        """See `LawForward`; there is no step that could be halved."""
+        told = self.told(programme, values, laws)
         if told is None:
             return np.full((len(programme.time), len(self.noise)), np.nan)
         rows = -np.stack([told[0][joint] for joint in self.noise], axis=1)
@@ -76,7 +82,7 @@ class ByMotion(ForwardWrapper):
         return np.asarray(filtfilt(*butter(ORDER, share), rows, axis=0))
 
     def told(
-        self, programme: Excitation, values: Mapping[str, float]
+        self, programme: Excitation, values: Mapping[str, float], laws: Sequence[Law] = ()
     ) -> tuple[Mapping[str, FloatArray], Mapping[str, FloatArray]] | None:
         """What is missing, and variables of laws, as `Invertible` has them (n,)."""
         motion = {
@@ -84,7 +90,38 @@ class ByMotion(ForwardWrapper):
             for name, rows in programme.drive.items()
             if name.startswith(MOTION)
         }
-        return self.forward.missing(programme, values, motion, self.as_nominal)
+        return self.forward.missing(programme, values, motion, self.as_nominal, laws)
+
+    def law_places(self) -> tuple[LawPlace, ...]:
+        """Joints of the plant at which an effort may act."""
+        places = self.forward.law_places() if isinstance(self.forward, LawForward) else ()
+        return tuple(p for p in places if p.kind is LawKind.EFFORT and p.name in self.noise)
+
+    def visited(
+        self, programme: Excitation, values: Mapping[str, float], laws: Sequence[Law] = ()
+    ) -> Mapping[str, FloatArray]:
+        """See `LawForward`; as measured, whatever the laws."""
+        told = self.told(programme, values, laws)
+        return told[1] if told else {}
+
+    @property
+    def band(self) -> float:
+        """See `Invertible`."""
+        return self.forward.band
+
+    def effort_unit(self, joint: str) -> str:
+        """See `Invertible`."""
+        return self.forward.effort_unit(joint)
+
+    def missing(
+        self,
+        programme: Excitation,
+        values: Mapping[str, float],
+        measured: Mapping[str, FloatArray],
+        as_nominal: bool = False,
+        laws: Sequence[Law] = (),
+    ) -> None:
+        """None: its channels are efforts, and no motion."""
 
 
 def missing_at(joint: str) -> str:

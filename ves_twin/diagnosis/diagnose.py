@@ -9,6 +9,7 @@ from ves_twin.core.recording.recording import Recording
 from ves_twin.core.workers import Workers
 from ves_twin.diagnosis.both_views import both_views, is_firm
 from ves_twin.diagnosis.forward import Excitation, Forward
+from ves_twin.diagnosis.judge_view import judge_view
 from ves_twin.diagnosis.preprocess import preprocess
 from ves_twin.diagnosis.runs import Progress, silent
 from ves_twin.diagnosis.settings import Settings
@@ -73,13 +74,13 @@ def diagnose(
         declared = View.of(forward, material, chosen, workers, progress)
         wide = widening(scale)
         if wide == 1.0 or not declared.loud:
-            return declared.told(progress)
+            return judge_view(declared, progress)
         widened = Widened(forward, wide)
-        measured = View.of(widened, material, chosen, workers, progress, wide).told(progress)
+        measured = judge_view(View.of(widened, material, chosen, workers, progress, wide), progress)
         if is_firm(measured):
             return measured
         in_order = measured.verdict is Kind.NOTHING
-        return both_views(declared.told(progress, alone=in_order), measured)
+        return both_views(judge_view(declared, progress, alone=in_order), measured)
 
 
 def _check_causes(forward: Forward, names: Sequence[str]) -> None:

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Protocol, runtime_checkable
 
 from ves_twin.core.types import FloatArray
 from ves_twin.diagnosis.forward import Excitation, Forward
+from ves_twin.effects.law import Law
 
 
 @runtime_checkable
@@ -31,6 +32,7 @@ class Invertible(Forward, Protocol):
         values: Mapping[str, float],
         measured: Mapping[str, FloatArray],
         as_nominal: bool = False,
+        laws: Sequence[Law] = (),
     ) -> tuple[Mapping[str, FloatArray], Mapping[str, FloatArray]] | None:
         """Efforts by joint that a measured motion asks for beyond the plant's, and variables.
 
@@ -40,6 +42,7 @@ class Invertible(Forward, Protocol):
             measured: channels (n,) at the programme's rows, smooth.
             as_nominal: as efforts that accelerate the nominal plant so, M_0 M^-1 missing: their
                 noise does not fall with the masses, and a plant of none would lack much.
+            laws: at work beside those that the plant has.
 
         Returns:
             None where the channels do not tell the motion, or the motion is what is fed in.

@@ -28,11 +28,11 @@ from ves_twin.diagnosis.law.forms import (
     SIGNED_SQUARE,
     TONE,
 )
-from ves_twin.diagnosis.law.place import LawForward, Variable
 from ves_twin.diagnosis.law.propose import Limits, resolved, search_laws
 from ves_twin.diagnosis.law.screen import law_screen, ranges, smooth_candidates
 from ves_twin.diagnosis.law.smoothness import smoothest
 from ves_twin.diagnosis.law.with_law import WithLaw
+from ves_twin.diagnosis.law_forward import LawForward, Variable
 from ves_twin.diagnosis.linearise import linearise
 from ves_twin.diagnosis.preprocess import preprocess
 from ves_twin.diagnosis.refine import Fit, refine

@@ -18,8 +18,8 @@ from ves_twin.diagnosis.forward_wrapper import ForwardWrapper
 from ves_twin.diagnosis.law.candidate import Candidate
 from ves_twin.diagnosis.law.fit_law import LawFit, fit_law
 from ves_twin.diagnosis.law.lean import LeanEvidence
-from ves_twin.diagnosis.law.place import LawForward, LawPlace
 from ves_twin.diagnosis.law.propose import Limits, Search, search_laws
+from ves_twin.diagnosis.law_forward import LawForward, LawPlace
 from ves_twin.diagnosis.linearise import linearise
 from ves_twin.diagnosis.preprocess import Dataset, preprocess
 from ves_twin.diagnosis.refine import bare_residual, refine

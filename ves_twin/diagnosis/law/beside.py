@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 from ves_twin.core.types import FloatArray
 from ves_twin.diagnosis.forward import Excitation, Parameter
 from ves_twin.diagnosis.forward_wrapper import ForwardWrapper
-from ves_twin.diagnosis.law.place import LawForward, LawPlace
+from ves_twin.diagnosis.law_forward import LawForward, LawPlace
 from ves_twin.diagnosis.refine import Fit
 from ves_twin.effects.law import Law
 
@@ -82,9 +82,11 @@ class Beside(ForwardWrapper):
         values: Mapping[str, float],
         measured: Mapping[str, FloatArray],
         as_nominal: bool = False,
+        laws: Sequence[Law] = (),
     ) -> tuple[Mapping[str, FloatArray], Mapping[str, FloatArray]] | None:
         """See `LawForward`."""
-        return self.forward.missing(programme, self._with_causes(values), measured, as_nominal)
+        known = self._with_causes(values)
+        return self.forward.missing(programme, known, measured, as_nominal, laws)
 
     def _with_causes(self, values: Mapping[str, float]) -> dict[str, float]:
         return {p.name: p.nominal for p in self.sizes} | dict(values)

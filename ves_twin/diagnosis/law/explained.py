@@ -15,11 +15,11 @@ from ves_twin.diagnosis.gain import Gain
 from ves_twin.diagnosis.held_out import HeldOut
 from ves_twin.diagnosis.law.finding import law_finding
 from ves_twin.diagnosis.law.lean import LeanEvidence
-from ves_twin.diagnosis.law.place import LawForward
 from ves_twin.diagnosis.law.propose import Limits, Search, search_laws
 from ves_twin.diagnosis.law.rest import search_rest
 from ves_twin.diagnosis.law.result import LAW, LawFinding
 from ves_twin.diagnosis.law.screen import runs_of
+from ves_twin.diagnosis.law_forward import LawForward
 from ves_twin.diagnosis.refine import Fit
 from ves_twin.diagnosis.runs import Progress, Runs
 from ves_twin.diagnosis.settings import Settings
@@ -27,6 +27,10 @@ from ves_twin.diagnosis.whitening import whitening_of
 
 LONGEST = 300.0
 """Time [s] that a search nobody asked for may take."""
+
+RETRIED = 3
+"""Laws near the chosen one that held-out recordings are asked about where they refuse that."""
+
 
 NEAR = 0.999
 """Share of commissioning errors at which a run is timed."""
@@ -75,7 +79,7 @@ def lawful_explanation(
     search = search_laws(evidence, commissioning, limits, progress)
     if search is None:
         return None
-    finding = law_finding(search, held, progress)
+    search, finding = _borne_out(search, held, progress)
     if not finding.claimed or found is None:
         return Lawful(finding, None)
     return Lawful(finding, _explained(found, search))
@@ -103,15 +107,33 @@ def lawful_rest(
     causes, held = built.found.best, built.held
     if not _asked(built.fitted.runs, causes.shift, settings):
         return None
-    search = search_rest(built.fitted, causes, limits, progress)
-    if search is None:
+    rest = search_rest(built.fitted, causes, limits, progress)
+    if rest is None:
         return None
-    there = replace(held, runs=replace(held.runs, forward=search.evidence.runs.forward))
+    there = replace(held, runs=replace(held.runs, forward=rest.evidence.runs.forward))
     tried = HeldOut(there, whitening_of(there.runs, standstill), settings)
-    finding = replace(law_finding(search, tried, progress), part=True)
+    search, finding = _borne_out(rest, tried, progress)
+    finding = replace(finding, part=True)
     if not finding.claimed:
         return Lawful(finding, None)
     return Lawful(finding, _explained(built.found, search))
+
+
+def _borne_out(
+    search: Search, held: HeldOut | None, progress: Progress
+) -> tuple[Search, LawFinding]:
+    """The chosen law; one near it, where held-out recordings bear that one out and not this one.
+
+    A motion that goes on beyond the range that was fitted tells a sine from a polynomial.
+    """
+    first = law_finding(search, held, progress)
+    if first.claimed or search.reason:
+        return search, first
+    for other in search.rivals[:RETRIED]:
+        finding = law_finding(other, held, progress)
+        if finding.claimed:
+            return other, finding
+    return search, first
 
 
 def _asked(runs: Runs, shift: FloatArray, settings: Settings) -> bool:

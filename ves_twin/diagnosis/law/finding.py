@@ -14,11 +14,11 @@ from ves_twin.diagnosis.law.asked import HALF, Asked, asked_of_motion
 from ves_twin.diagnosis.law.band import band_of_form
 from ves_twin.diagnosis.law.candidate import Closed, Table
 from ves_twin.diagnosis.law.fit_law import LawFit
-from ves_twin.diagnosis.law.place import LawForward, Variable
 from ves_twin.diagnosis.law.propose import Search
 from ves_twin.diagnosis.law.result import LawFinding, LawNumber, LawRival
 from ves_twin.diagnosis.law.screen import columns_about, values_of
 from ves_twin.diagnosis.law.smoothness import best_of, projected
+from ves_twin.diagnosis.law_forward import LawForward, Variable
 from ves_twin.diagnosis.refine import refine
 from ves_twin.diagnosis.runs import Progress, silent
 from ves_twin.effects.law import Law, LawShape, variable_along

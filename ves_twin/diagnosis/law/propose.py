@@ -16,7 +16,6 @@ from ves_twin.diagnosis.law.fit_law import LawFit, fit_law
 from ves_twin.diagnosis.law.lean import LeanEvidence
 from ves_twin.diagnosis.law.loud import loud_screen
 from ves_twin.diagnosis.law.memories import memory_laws, stop_laws
-from ves_twin.diagnosis.law.place import LawForward, LawPlace
 from ves_twin.diagnosis.law.screen import (
     Suspect,
     both,
@@ -26,6 +25,7 @@ from ves_twin.diagnosis.law.screen import (
     smooth_candidates,
 )
 from ves_twin.diagnosis.law.tones import tone_laws
+from ves_twin.diagnosis.law_forward import LawForward, LawPlace
 from ves_twin.diagnosis.refine import Fit
 from ves_twin.diagnosis.runs import Progress, silent
 from ves_twin.effects.law import LawKind
@@ -35,7 +35,7 @@ LEADERS = 4
 30, and of a stop among the first five."""
 
 NEAR = 30.0
-"""Nats behind the first within which further ones are fitted."""
+"""Nats behind the first within which further ones are fitted, or tried on held-out recordings."""
 
 MOST = 7
 """Tables that are fitted at most."""
@@ -98,6 +98,16 @@ class Search:
     def best(self) -> LawFit:
         """The chosen law."""
         return self.pool[0]
+
+    @property
+    def rivals(self) -> tuple[Search, ...]:
+        """The search led by each law near the chosen one, the likeliest first."""
+        lead = self.best.log_evidence - NEAR
+        near = [fit for fit in self.pool[1:] if fit.log_evidence > lead]
+        others = [tuple(x for x in self.pool if x is not fit) for fit in near]
+        return tuple(
+            replace(self, pool=(fit, *rest)) for fit, rest in zip(near, others, strict=True)
+        )
 
     @property
     def nats(self) -> float:

@@ -14,10 +14,10 @@ from ves_twin.diagnosis.law.beside import Beside
 from ves_twin.diagnosis.law.candidate import Table
 from ves_twin.diagnosis.law.closed import closed_forms
 from ves_twin.diagnosis.law.fit_law import LawFit, fit_law
-from ves_twin.diagnosis.law.place import LawForward
 from ves_twin.diagnosis.law.propose import CLAIM, LEADERS, WORTH, Limits, Search
 from ves_twin.diagnosis.law.rest_screen import rest_screen
 from ves_twin.diagnosis.law.screen import ranges, smooth_candidates
+from ves_twin.diagnosis.law_forward import LawForward
 from ves_twin.diagnosis.linearise import FORWARD_STEP, linearise
 from ves_twin.diagnosis.preprocess import Dataset
 from ves_twin.diagnosis.refine import Fit, bare_residual

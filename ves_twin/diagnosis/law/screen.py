@@ -12,9 +12,9 @@ from ves_twin.diagnosis.evidence import Evidence
 from ves_twin.diagnosis.law.candidate import Candidate, Mesh, Table
 from ves_twin.diagnosis.law.fit_law import LawFit
 from ves_twin.diagnosis.law.lean import LeanEvidence
-from ves_twin.diagnosis.law.place import LawForward, LawPlace, Variable
 from ves_twin.diagnosis.law.smoothness import Smoothness, smoothest
 from ves_twin.diagnosis.law.with_law import WithLaw
+from ves_twin.diagnosis.law_forward import LawForward, LawPlace, Variable
 from ves_twin.diagnosis.runs import Progress, Runs, silent
 from ves_twin.effects.law import LawKind, variable_along
 

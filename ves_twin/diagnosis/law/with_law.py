@@ -13,7 +13,7 @@ from ves_twin.core.types import FloatArray
 from ves_twin.diagnosis.forward import Excitation, Hypothesis, Parameter
 from ves_twin.diagnosis.forward_wrapper import ForwardWrapper
 from ves_twin.diagnosis.law.candidate import Candidate
-from ves_twin.diagnosis.law.place import LawForward
+from ves_twin.diagnosis.law_forward import LawForward
 
 
 @dataclass(frozen=True)

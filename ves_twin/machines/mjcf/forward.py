@@ -12,7 +12,7 @@ from ves_twin.core.errors import InvalidInputError
 from ves_twin.core.types import FloatArray
 from ves_twin.core.units import to_si
 from ves_twin.diagnosis.forward import Channel, Excitation, Hypothesis, Parameter
-from ves_twin.diagnosis.law.place import LawPlace
+from ves_twin.diagnosis.law_forward import LawPlace
 from ves_twin.effects.law import Law, LawKind, variable_along
 from ves_twin.machines.mjcf.description import Compared, Mode
 from ves_twin.machines.mjcf.inverse import efforts_of_motion
@@ -203,6 +203,7 @@ class MjcfForward:
         values: Mapping[str, float],
         measured: Mapping[str, FloatArray],
         as_nominal: bool = False,
+        laws: Sequence[Law] = (),
     ) -> tuple[Mapping[str, FloatArray], Mapping[str, FloatArray]] | None:
         """Efforts by joint that a measured motion asks for beyond the model; see `LawForward`."""
         model, told = self.rig.model, self.rig.description
@@ -217,7 +218,7 @@ class MjcfForward:
         driven = [self.joint_of(name) for name in told.drive.actuators]
         if not single.issuperset(driven) or len(set(driven)) != len(driven):
             return None
-        return missing_efforts(Work.begin(self.rig, programme, values), positions, as_nominal)
+        return missing_efforts(Work.begin(self.rig, programme, values, laws), positions, as_nominal)
 
     def _moved(
         self, work: Work, refined: bool

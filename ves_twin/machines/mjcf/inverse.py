@@ -19,7 +19,7 @@ from ves_twin.effects.shifted import shifted
 from ves_twin.machines.mjcf.inertials import with_inertials_of
 from ves_twin.machines.mjcf.rigid_efforts import Moved, RigidEfforts, inverted
 from ves_twin.machines.mjcf.transmission import Transmission
-from ves_twin.machines.mjcf.work import Work, sensor_rows, variables
+from ves_twin.machines.mjcf.work import Work, measured_variables, sensor_rows, variables
 
 ORDER = 4
 """Of the Butterworth low-pass before differentiation, run forth and back: no phase."""
@@ -191,7 +191,7 @@ def needed_effort(work: Work, name: str, moved: Moved) -> FloatArray:
     effort = effort + work.held(joint.name, moved.position[:, int(joint.qposadr[0])])
     effort = effort + work.coupled(joint.name, moved.speed)
     if any(law.kind is LawKind.EFFORT for law in work.laws):
-        along = variables(model, work.programme.time, np.hstack([moved.position, moved.speed]))
+        along = measured_variables(work, np.hstack([moved.position, moved.speed]))
         effort = effort - work.lawful(joint.name, along)
     if work.rig.description.drive.held:
         effort = shifted(effort, work.programme.time, -0.5 * work.programme.period)

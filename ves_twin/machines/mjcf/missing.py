@@ -10,7 +10,7 @@ import numpy as np
 from ves_twin.core.types import FloatArray
 from ves_twin.machines.mjcf.inverse import moved_along, needed_commands, needed_effort
 from ves_twin.machines.mjcf.places import driven_joint
-from ves_twin.machines.mjcf.work import Work, variables
+from ves_twin.machines.mjcf.work import Work, measured_variables
 
 INERTIA = (
     *("body_mass", "body_inertia", "body_ipos", "body_iquat", "body_pos", "body_quat"),
@@ -68,8 +68,7 @@ def missing_efforts(
         own[:, dof] = gain * (need - programme.drive[fed[name]][:, 0])
     lacking = _with_masses_of(work.rig.model, model, q, own) if as_nominal else own
     efforts = {j: lacking[:, int(model.joint(j).dofadr[0])] for j in positions}
-    found = variables(model, programme.time, np.hstack([q, v]))
-    return efforts, found | {f"command@{n}": programme.drive[s][:, 0] for n, s in fed.items()}
+    return efforts, measured_variables(work, np.hstack([q, v]))
 
 
 def _with_masses_of(

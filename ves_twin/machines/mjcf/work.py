@@ -211,6 +211,15 @@ def variables(model: mujoco.MjModel, time: FloatArray, path: FloatArray) -> dict
     return found
 
 
+def measured_variables(work: Work, path: FloatArray) -> dict[str, FloatArray]:
+    """The same of a measured motion, and what is fed to actuators; to others nothing is (n,)."""
+    told, fed = work.rig.description, work.programme.drive
+    found = variables(work.model, work.programme.time, path)
+    found |= {f"command@{name}": np.zeros(len(path)) for name in told.controllers}
+    commands = {n: fed[signal][:, 0] for n, signal in told.drive.actuators.items() if signal in fed}
+    return found | {f"command@{name}": column for name, column in commands.items()}
+
+
 def _covers(target: str, signal: str) -> bool:
     """Whether a target is the signal, or the part whose signal it is."""
     return target in (signal, signal.partition(".")[0])

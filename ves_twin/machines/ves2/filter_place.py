@@ -12,7 +12,7 @@ from ves_twin.control.leg_loop import FilterPlace
 from ves_twin.core.types import FloatArray
 from ves_twin.diagnosis.forward import Excitation, Hypothesis, Parameter
 from ves_twin.diagnosis.forward_wrapper import ForwardWrapper
-from ves_twin.diagnosis.law.place import LawPlace
+from ves_twin.diagnosis.law_forward import LawPlace
 from ves_twin.effects.law import Law
 from ves_twin.machines.ves2.forward import RigForward
 
@@ -105,9 +105,10 @@ class WithFilterPlaces(ForwardWrapper):
         values: Mapping[str, float],
         measured: Mapping[str, FloatArray],
         as_nominal: bool = False,
+        laws: Sequence[Law] = (),
     ) -> None:
         """As the rig."""
-        self.forward.missing(programme, _of_the_rig(values), measured, as_nominal)
+        self.forward.missing(programme, _of_the_rig(values), measured, as_nominal, laws)
 
     @cached_property
     def _others(self) -> dict[FilterPlace, RigForward]:

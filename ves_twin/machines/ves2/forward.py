@@ -15,7 +15,7 @@ from ves_twin.core.recording.recording import Recording, RecordingInfo
 from ves_twin.core.signals import SIGNALS
 from ves_twin.core.types import FloatArray
 from ves_twin.diagnosis.forward import Channel, Excitation, Hypothesis, Parameter
-from ves_twin.diagnosis.law.place import LawPlace
+from ves_twin.diagnosis.law_forward import LawPlace
 from ves_twin.effects.law import Law, LawKind, variable_along
 from ves_twin.effects.law_table import LawTable
 from ves_twin.machines.ves2.declared_load import LOAD, load_in
@@ -184,6 +184,7 @@ class RigForward:
         values: Mapping[str, float],
         measured: Mapping[str, FloatArray],
         as_nominal: bool = False,
+        laws: Sequence[Law] = (),
     ) -> None:
         """None: VES II moves by set-points, and what its valves make of them is not recorded."""
 

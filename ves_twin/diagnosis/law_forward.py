@@ -1,4 +1,4 @@
-"""LawPlace: where a law may act, and on what it may depend; LawForward, a plant that has some."""
+"""LawForward: a plant in which laws can act; LawPlace, where one may, and of what."""
 
 from __future__ import annotations
 
