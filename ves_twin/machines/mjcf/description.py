@@ -313,7 +313,7 @@ class RigDescription(Part):
     present: dict[str, dict[str, dict[str, float]]] = Field(default_factory=dict)
     laws: tuple[LawTable, ...] = ()
     data: tuple[Data, ...] = ()
-    causes: Annotated[int, Field(ge=1, le=6)] = 4
+    causes: Annotated[int, Field(ge=1)] = 4
     block: Seconds = 0.0
 
     @model_validator(mode="before")

@@ -172,7 +172,7 @@ def _tendon(target: str, told: RigDescription, model: mujoco.MjModel) -> Place:
     )
 
 
-def tendon_joints(model: mujoco.MjModel, tendon: str) -> list[tuple[str, float]]:
+def tendon_joints(model: mujoco.MjModel, tendon: str | int) -> list[tuple[str, float]]:
     """Joints of a fixed tendon with their coefficients; none of a spatial one."""
     number = model.tendon(tendon).id
     first, count = int(model.tendon_adr[number]), int(model.tendon_num[number])

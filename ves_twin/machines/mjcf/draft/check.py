@@ -10,6 +10,7 @@ import numpy as np
 
 from ves_twin.core.types import FloatArray
 from ves_twin.machines.mjcf.draft.changes import DEGREE, changes, misnamed
+from ves_twin.machines.mjcf.draft.locked import locked_joints, words_of_locked
 from ves_twin.machines.mjcf.draft.log_columns import LogColumns
 from ves_twin.machines.mjcf.draft.match import Match, Matches
 from ves_twin.machines.mjcf.draft.motion import Motion, band_of, motion_of
@@ -73,6 +74,7 @@ class Checked:
         motion: efforts along the recorded motion; None where not every joint was recorded.
         corner: of the low-pass that was used [Hz].
         dofs: joint -> its degree of freedom.
+        locked: joints that are taken as standing still.
     """
 
     found: tuple[Match, ...]
@@ -81,6 +83,7 @@ class Checked:
     motion: Motion | None
     corner: float
     dofs: Mapping[str, int]
+    locked: tuple[str, ...] = ()
 
 
 def checked(log: LogColumns, matches: Matches, model: mujoco.MjModel) -> Checked:
@@ -93,16 +96,19 @@ def checked(log: LogColumns, matches: Matches, model: mujoco.MjModel) -> Checked
     """
     positions = matches.of(Quantity.POSITION)
     moved = {m.spot.name for m in positions}
-    absent = [model.joint(i).name for i in range(model.njnt) if model.joint(i).name not in moved]
+    locked = locked_joints(model, matches.found)
+    every = [model.joint(i).name for i in range(model.njnt)]
+    absent = [name for name in every if name not in moved and name not in locked]
     band = max((band_of(log.column(m.column), log.period, 0.99) for m in positions), default=1.0)
     corner = min(4.0 * max(band, 1.0 / (log.period * log.rows)), 0.2 / log.period)
     found, findings = list(matches.found), []
     motion, explained = None, {}
+    findings += words_of_locked(locked)
     if absent or not positions:
         words = ", ".join(name or "one without a name" for name in absent)
         findings.append(f"signs are not checked: no column tells the position of {words}")
     else:
-        judge = _Judge(log, model, corner)
+        judge = _Judge(log, model, corner, locked)
         found, said = judge.corrected(found)
         findings += said
         motion = judge.motion(found)
@@ -111,8 +117,8 @@ def checked(log: LogColumns, matches: Matches, model: mujoco.MjModel) -> Checked
         explained = judge.explained(found, motion)
     findings += _beyond(log, found, model)
     found, said = rated(log, found, corner, model)
-    dofs = {model.joint(i).name: int(model.jnt_dofadr[i]) for i in range(model.njnt)}
-    return Checked(tuple(found), (*findings, *said), explained, motion, corner, dofs)
+    dofs = {name: int(model.joint(name).dofadr[0]) for name in every if name}
+    return Checked(tuple(found), (*findings, *said), explained, motion, corner, dofs, locked)
 
 
 @dataclass(frozen=True)
@@ -173,6 +179,7 @@ class _Judge:
     log: LogColumns
     model: mujoco.MjModel
     corner: float
+    locked: tuple[str, ...] = ()
 
     def motion(self, found: list[Match]) -> Motion:
         """Along the positions as they are matched."""
@@ -228,7 +235,8 @@ class _Judge:
             total += SOUND * (fit.usable and fit.slope > 0.0 and not fit.free)
             if not match.electrical and fit.gain > STRONG and fit.slope:
                 total -= OFF * min(abs(float(np.log10(abs(fit.slope)))), 3.0)
-        for dof in set(range(self.model.nv)) - driven - self.pushed(found):
+        still = {int(self.model.joint(name).dofadr[0]) for name in self.locked}
+        for dof in set(range(self.model.nv)) - driven - self.pushed(found) - still:
             inertia = motion.effort[:, dof] - motion.steady[:, dof]
             if np.std(inertia) > 0.0 and np.std(motion.steady[:, dof]) > 0.0:
                 alike = float(np.corrcoef(-inertia, motion.steady[:, dof])[0, 1])

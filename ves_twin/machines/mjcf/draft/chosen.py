@@ -103,16 +103,17 @@ def chosen(
     if shaken:
         return _of_base(log, check, model, noise, shaken)
     driven = {m.spot.joint for m in efforts if _is_plain(m, model)}
-    single = {model.joint(i).name for i in single_joints(model)}
+    single = {model.joint(i).name for i in single_joints(model)} - {*check.locked}
     unknown = _moved_by(model) & single - {m.spot.joint for m in efforts}
     told = {m.spot.name for m in positions}
     imposed = tuple(sorted(unknown & told))
     drives = [m for m in efforts if _is_plain(m, model) and m.spot.joint in told]
+    wide = model.nv - len(check.locked)
     felt = closed_chain(model, [m.spot.joint for m in drives])
     if felt:
         moved_by = [m for m in positions if m.spot.name in felt]
         return _of_loops(log, moved_by, drives, model, noise, felt)
-    if check.motion is None or driven | unknown != single or model.nv != len(single) or not driven:
+    if check.motion is None or driven | unknown != single or wide != len(single) or not driven:
         free = sorted(single - driven)
         why = f"no effort is told at {', '.join(free)}" if free else "not every position is told"
         return Chosen(Mode.CONTROL, why, RATES[1], check.corner, noise, imposed=imposed)

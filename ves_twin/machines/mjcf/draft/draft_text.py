@@ -66,7 +66,7 @@ def draft_text(
     head += [
         f"clock = {_clock(log)}",
         *([f"window = {_window(log)}"] if log.window else []),
-        _drive(mode),
+        _drive(mode, check.locked),
         f"tolerances = {_tolerances(model, check)}   # shares of the model's values: yours?",
         'effects = [{ kind = "*", on = ["*"] }]   # every one that the model has a place for',
         "",
@@ -111,11 +111,13 @@ def used(match: Match, mode: Chosen) -> bool:
     return not (fed and match.spot.quantity is Quantity.SPEED)
 
 
-def _drive(mode: Chosen) -> str:
+def _drive(mode: Chosen, locked: tuple[str, ...]) -> str:
     """What is fed in, and why."""
     keys = {"mode": _quoted(mode.mode), "smoothing": f"{two_digits(mode.smoothing):g}"}
     if mode.imposed:
         keys["imposed"] = json.dumps(mode.imposed, ensure_ascii=False)
+    if locked:
+        keys["locked"] = json.dumps(locked, ensure_ascii=False)
     if mode.horizon:
         keys["horizon"] = f"{mode.horizon:g}"
     text = ", ".join(f"{key} = {value}" for key, value in keys.items())

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import mujoco
+import numpy as np
 
 from ves_twin.core.engine_log import log_engine
 from ves_twin.core.errors import FileAccessError, InvalidInputError, one_line
@@ -14,6 +15,16 @@ from ves_twin.machines.mjcf.draft.spots import single_joints
 
 SMALLEST_INERTIA = 1e-4
 """Least inertia [kg m^2] of a URDF's link: files of arms round those of a wrist to zero."""
+
+INERTIA = ("ixx", "iyy", "izz", "ixy", "ixz", "iyz")
+INDICES = ((0, 1, 2, 0, 0, 1), (0, 1, 2, 1, 2, 2))
+"""Numbers of a URDF's inertia, and where they stand in the tensor."""
+
+ROUNDED = 1e-6
+"""Share by which a second moment may be below zero: files round, and so does MuJoCo's check."""
+
+FLAT = 1e-3
+"""Share of the largest second moment that the others have at least: a flat body's."""
 
 DRIVEN = frozenset({"revolute", "prismatic", "continuous"})
 
@@ -70,10 +81,15 @@ def _of_urdf(path: Path, root: ElementTree.Element) -> GivenModel:
     if missing:
         few = ", ".join(missing[:2])
         notes.append(f"{len(missing)} mesh files are missing ({few}): shapes are left out")
+    _refuse_words(root, path)
     thin = [name for link in root.iter("link") if (name := _thickened(link))]
     if thin:
         words = f"inertia of {', '.join(thin)} is zero: {SMALLEST_INERTIA:g} kg m^2 is taken"
         notes.append(words)
+    bent = [name for link in root.iter("link") if (name := _made_physical(link))]
+    if bent:
+        why = "a moment is below zero, or above the sum of the other two"
+        notes.append(f"no body has the inertia of {', '.join(bent)} ({why}): the nearest is taken")
     bare = [link.get("name", "?") for link in root.iter("link") if link.find("inertial") is None]
     driven = [j.get("name", "") for j in root.iter("joint") if j.get("type") in DRIVEN]
     try:
@@ -87,7 +103,8 @@ def _of_urdf(path: Path, root: ElementTree.Element) -> GivenModel:
         model = spec.compile()
         text = str(spec.to_xml())
     except (ValueError, mujoco.FatalError) as error:
-        hint = f"; without <inertial>: {', '.join(bare)}" if bare else ""
+        light = bare and "mass" in str(error)
+        hint = f"; without <inertial>: {', '.join(bare)}" if light else ""
         expected = "a URDF whose moving links have <inertial>"
         raise InvalidInputError(str(path), one_line(error) + hint, expected) from None
     notes.append(
@@ -109,6 +126,24 @@ def _without_shapes(root: ElementTree.Element, path: Path) -> list[str]:
     return sorted(set(missing))
 
 
+def _refuse_words(root: ElementTree.Element, path: Path) -> None:
+    """Refuses a word where a mass or an inertia is a number."""
+    for link in root.iter("link"):
+        for part in (*link.findall("inertial/mass"), *link.findall("inertial/inertia")):
+            for key, text in part.items():
+                if not _is_number(text):
+                    name, came = link.get("name", "?"), f'{key}="{text}"'
+                    raise InvalidInputError(f"{path}: link {name}", came, "a number")
+
+
+def _is_number(text: str) -> bool:
+    """Whether a text is a finite number."""
+    try:
+        return bool(np.isfinite(float(text)))
+    except ValueError:
+        return False
+
+
 def _thickened(link: ElementTree.Element) -> str:
     """Gives a link whose inertia is rounded to zero the smallest one; its name if so."""
     mass, inertia = link.find("inertial/mass"), link.find("inertial/inertia")
@@ -118,3 +153,24 @@ def _thickened(link: ElementTree.Element) -> str:
     for axis in axes:
         inertia.set(axis, f"{SMALLEST_INERTIA:g}")
     return link.get("name", "") if axes else ""
+
+
+def _made_physical(link: ElementTree.Element) -> str:
+    """Gives a link whose inertia no mass can have the nearest one that some has; its name if so.
+
+    I = tr(S) 1 - S with second moments S = 1/2 tr(I) 1 - I, which are positive of any mass.
+    """
+    told = link.find("inertial/inertia")
+    if told is None:
+        return ""
+    numbers = {axes: float(told.get(axes, "0")) for axes in INERTIA}
+    xx, yy, zz, xy, xz, yz = numbers.values()
+    inertia = np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]])
+    size, axes = np.linalg.eigh(0.5 * np.trace(inertia) * np.eye(3) - inertia)
+    if xx + yy + zz <= 0.0 or size[0] >= -ROUNDED * size[-1]:
+        return ""
+    moments = axes @ np.diag(np.maximum(size, FLAT * size[-1])) @ axes.T
+    nearest = np.trace(moments) * np.eye(3) - moments
+    for name, (row, column) in zip(INERTIA, zip(*INDICES, strict=True), strict=True):
+        told.set(name, f"{nearest[row, column]:.9g}")
+    return link.get("name", "")

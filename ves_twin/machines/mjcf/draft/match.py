@@ -27,6 +27,9 @@ from ves_twin.machines.mjcf.draft.spots import Quantity, Spot, words_of
 RIVAL = 2.0
 """A rival is worth telling where its likeness is less than this below: one piece of evidence."""
 
+MOST_OTHERS = 4
+"""Rivals that are told: of a whole robot thirty joints are called as one of its arm."""
+
 
 @dataclass(frozen=True)
 class Match:
@@ -188,6 +191,8 @@ def _match(
         for (c, s), found in alike.items()
         if s == spot and c != column and found.score > near and c not in chosen
     ]
+    if len(others) > MOST_OTHERS:
+        others[MOST_OTHERS - 1 :] = [f"{len(others) - MOST_OTHERS + 1} more could be"]
     return Match(column, spot, unit or spot.unit, bool(unit), 1.0, own.reasons, tuple(others))
 
 

@@ -1,0 +1,74 @@
+"""Joints without a column: locked where nothing measured hangs on them, and where they drive."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import mujoco
+import numpy as np
+import pytest
+
+from ves_twin.machines.mjcf.draft.draft import draft
+
+ARM = """
+<mujoco>
+  <worldbody>
+    <body name="upper"><joint name="j1" axis="0 1 0"/>
+      <geom type="capsule" fromto="0 0 0 0.3 0 0" size="0.02" mass="1"/>
+      <body name="lower" pos="0.3 0 0"><joint name="j2" axis="0 1 0"/>
+        <geom type="capsule" fromto="0 0 0 0.3 0 0" size="0.02" mass="0.6"/>
+        <body name="left" pos="0.3 0 0"><joint name="left" type="slide" axis="0 1 0"/>
+          <geom size="0.01" mass="{finger}"/></body>
+        <body name="right" pos="0.3 0 0"><joint name="right" type="slide" axis="0 -1 0"/>
+          <geom size="0.01" mass="{finger}"/></body>
+      </body>
+    </body>
+  </worldbody>
+  <equality>{equality}</equality>
+  <actuator><motor name="m1" joint="j1"/><motor name="m2" joint="j2"/>{motor}</actuator>
+</mujoco>
+"""
+MIMIC = '<joint joint1="left" joint2="right"/>'
+GRIP = '<motor name="grip" joint="left"/>'
+
+
+def log_of(folder: Path, text: str) -> tuple[Path, Path]:
+    """A model, and an arm's motion with the torques that it needs, fingers at rest."""
+    model = mujoco.MjModel.from_xml_string(text)
+    data, time = mujoco.MjData(model), 0.005 * np.arange(1600)
+    q = np.stack([0.8 * np.sin(1.3 * time), 0.9 * np.sin(1.7 * time + 1.0)], axis=1)
+    v = np.gradient(q, time, axis=0)
+    a = np.gradient(v, time, axis=0)
+    rows = []
+    for k in range(len(time)):
+        data.qpos[:2], data.qvel[:2], data.qacc[:2] = q[k], v[k], a[k]
+        mujoco.mj_inverse(model, data)
+        rows.append([time[k], *q[k], *data.qfrc_inverse[:2]])
+    (folder / "arm.xml").write_text(text)
+    header = "t_s,j1_rad,j2_rad,m1_Nm,m2_Nm"
+    np.savetxt(folder / "log.csv", rows, delimiter=",", header=header, comments="")
+    return folder / "arm.xml", folder / "log.csv"
+
+
+@pytest.mark.parametrize(
+    ("finger", "equality", "motor"), [(0.02, "", ""), (0.4, "", GRIP), (0.4, MIMIC, GRIP)]
+)
+def test_fingers_that_no_column_tells_are_locked(tmp_path, finger, equality, motor):
+    text = ARM.format(finger=finger, equality=equality, motor=motor)
+    model, log = log_of(tmp_path, text)
+    found = draft(model, [log], tmp_path / "rig.toml")
+    locked = ["left", "right"] if equality or not motor else ["left"]
+    if len(locked) == 2:
+        assert found.mode.startswith("motion")
+        assert 'locked = ["left", "right"]' in found.text
+        assert all(share > 0.98 for share in found.explained.values())
+    else:
+        assert 'locked = ["left"]' in found.text
+    assert any("taken as locked; if one moved" in words for words in found.look)
+
+
+def test_a_heavy_part_that_nothing_drives_is_not_locked(tmp_path):
+    model, log = log_of(tmp_path, ARM.format(finger=0.4, equality="", motor=""))
+    found = draft(model, [log], tmp_path / "rig.toml")
+    assert "locked" not in found.text
+    assert any("no column tells the position of left, right" in words for words in found.look)

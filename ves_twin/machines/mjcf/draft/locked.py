@@ -1,0 +1,86 @@
+"""locked_joints: joints that no column tells and nothing measured hangs on: grippers, casters."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import mujoco
+
+from ves_twin.machines.mjcf.draft.match import Match
+from ves_twin.machines.mjcf.draft.spots import Quantity, single_joints
+from ves_twin.machines.mjcf.loops import has_loops
+from ves_twin.machines.mjcf.places import driven_joint, tendon_joints
+
+LIGHT = 0.1
+"""Share of what a measured joint carries up to which a part may hang on a joint that nothing
+drives and be taken as fixed: a load on a rope is more, a finger less."""
+
+FEW = 6
+"""Joints that are told by name."""
+
+
+def locked_joints(model: mujoco.MjModel, found: Sequence[Match]) -> tuple[str, ...]:
+    """Hinges and slides that are taken as standing still, in the order of the model.
+
+    They have no column, no joint with one hangs on them, and they are driven (by what, no column
+    tells), follow a driven one, or carry little. A whole robot's model beside the log of its arm.
+
+    Returns:
+        None of a machine without actuators, whose loops close, or without a measured position.
+    """
+    told = {m.spot.joint or m.spot.name for m in found if m.spot.quantity is not Quantity.SENSOR}
+    if (
+        not model.nu
+        or has_loops(model)
+        or Quantity.POSITION not in {m.spot.quantity for m in found}
+    ):
+        return ()
+    names = [model.joint(i).name for i in single_joints(model)]
+    bodies = {name: int(model.joint(name).bodyid[0]) for name in names}
+    measured = [bodies[name] for name in names if name in told]
+    moved = _moved(model)
+    return tuple(
+        name
+        for name, body in bodies.items()
+        if name not in told
+        and (name in moved or _is_light(model, body, measured))
+        and not any(_is_on(model, other, body) for other in measured)
+    )
+
+
+def words_of_locked(names: Sequence[str]) -> list[str]:
+    """A sentence for people; none where nothing is locked."""
+    few = [*names[:FEW], *([f"{len(names) - FEW} more"] if len(names) > FEW else [])]
+    words = f"no column tells {', '.join(few)}: taken as locked; if one moved, name its column"
+    return [words] if names else []
+
+
+def _moved(model: mujoco.MjModel) -> set[str]:
+    """Joints that an actuator moves, itself or by a tendon, or that an equality ties to one."""
+    found = {driven_joint(model, i) for i in range(model.nu)}
+    on_tendon = model.actuator_trntype == int(mujoco.mjtTrn.mjTRN_TENDON)
+    for tendon in model.actuator_trnid[on_tendon, 0].tolist():
+        found |= {joint for joint, _ in tendon_joints(model, tendon)}
+    for k in range(model.neq):
+        ends = (int(model.eq_obj1id[k]), int(model.eq_obj2id[k]))
+        if int(model.eq_type[k]) != int(mujoco.mjtEq.mjEQ_JOINT) or min(ends) < 0:
+            continue
+        pair = {model.joint(i).name for i in ends}
+        found |= pair if found & pair else set()
+    return found
+
+
+def _is_light(model: mujoco.MjModel, body: int, measured: Sequence[int]) -> bool:
+    """Whether a body with all it carries is little of what a measured joint carries."""
+    above = int(model.body_parentid[body])
+    while above and above not in measured:
+        above = int(model.body_parentid[above])
+    mass = model.body_subtreemass
+    return bool(above and mass[body] <= LIGHT * mass[above])
+
+
+def _is_on(model: mujoco.MjModel, body: int, other: int) -> bool:
+    """Whether a body is another one or hangs on it."""
+    while body and body != other:
+        body = int(model.body_parentid[body])
+    return body == other
