@@ -15,6 +15,7 @@ SPELLINGS = {
     "N·m": "N*m",
     "N m": "N*m",
     "mNm": "mN*m",
+    "kNm": "kN*m",
     "sec": "s",
     "secs": "s",
     "seconds": "s",
@@ -40,9 +41,10 @@ TIME = {"s": 1.0, "ms": 1e-3, "us": 1e-6, "ns": 1e-9, "min": 60.0, "h": 3600.0}
 """Units of time in seconds."""
 
 _KNOWN = (
-    *("m", "mm", "cm", "um", "nm", "in", "rad", "mrad", "deg", "N", "kN", "mN", "N*m", "mN*m"),
-    *("Pa", "kPa", "MPa", "bar", "psi", "V", "mV", "A", "mA", "K", "degC", "Hz", "rpm", "kg", "g"),
-    *("m/s", "mm/s", "rad/s", "deg/s", "m/s^2", "rad/s^2", "deg/s^2", "%", "1", "counts", "W"),
+    *("m", "mm", "cm", "um", "nm", "in", "rad", "mrad", "deg"),
+    *("N", "kN", "mN", "N*m", "mN*m", "kN*m", "Pa", "kPa", "MPa", "bar", "psi"),
+    *("V", "mV", "A", "mA", "W", "K", "degC", "Hz", "rpm", "kg", "g", "%", "1", "counts"),
+    *("m/s", "mm/s", "rad/s", "deg/s", "m/s^2", "rad/s^2", "deg/s^2"),
     *TIME,
 )
 _IN_BRACKETS = re.compile(r"^(?P<name>.*?)\s*[\[({](?P<unit>[^\[\](){}]*)[\])}]\s*$")

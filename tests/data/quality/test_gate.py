@@ -81,6 +81,13 @@ def test_a_stuck_and_a_saturated_column_are_named(healthy):
     )
 
 
+def test_a_valve_that_is_switched_on_and_off_is_not_saturated(healthy):
+    def switch(values):
+        values[:, 3] = values[:, 3] > np.median(values[:, 3])
+
+    assert "saturation" not in found(damaged(healthy, "sensor.wrench", switch))
+
+
 def test_swapped_legs_are_named(healthy):
     def swap(values):
         values[:, [1, 4]] = values[:, [4, 1]]

@@ -136,3 +136,31 @@ def test_efforts_that_a_motion_lacks_have_nothing_to_follow():
     (one,), (other,) = (report_of(two, proof, (left, left)).proved for two in (both, zeros))
     assert one.unfollowed
     assert not other.unfollowed
+
+
+@pytest.mark.parametrize("kind", ["coulomb_friction", "viscous_friction"])
+@pytest.mark.parametrize(
+    ("beside", "high", "firm"),
+    [
+        ("quadratic_drag@a", -0.1, False),
+        ("stribeck_friction@a", -0.1, False),
+        ("quadratic_drag@b", -0.1, True),
+        ("quadratic_drag@a", 0.1, True),
+        ("joint_spring@a", -0.1, True),
+    ],
+)
+def test_a_friction_is_not_firm_where_a_sublinear_one_is_proved_at_its_place(
+    kind, beside, high, firm
+):
+    """Of an arm whose friction is F + k |v|^0.6 a viscous friction was firm, which it has not."""
+    other, target = beside.split("@")
+    sizes = (Estimate(1.0, 0.5, 1.5, "N", 0.0), Estimate(-0.3, -0.6, high, "N", 0.0))
+    names = ((kind, "a"), (other, target))
+    causes = tuple(
+        Cause(*name, {"level": size}, 1.0, True, None)
+        for name, size in zip(names, sizes, strict=True)
+    )
+    proved = tuple(Proved(*name, {}, 1e-3, 20, {"torque": (2.0, 1.0)}, firm=True) for name in names)
+    told, _ = sized(BuildUp(proved, 2, 0.05, 0.05, {}, {}), causes, {"level": (-2.0, 2.0)})
+    assert told.firm is firm
+    assert ("friction grows less than in proportion" in standing_words(told)) is not firm

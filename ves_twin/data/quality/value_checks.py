@@ -19,6 +19,9 @@ COMMANDS = {"leg.length": "leg.command", "arm.q": "arm.command"}
 RUN = 5
 """Rows in a row at an end value that count as saturation."""
 
+SWITCHED = 3
+"""Values that a switched command has at most."""
+
 
 def check_values(recording: Recording) -> list[Check]:
     """Numbers that are missing, stuck or saturated, for each measured signal."""
@@ -78,10 +81,11 @@ def _asked_to_move(recording: Recording, name: str) -> NDArray[np.bool_]:
 def _saturated(values: FloatArray) -> bool:
     """Whether a column runs into its end value at full speed and stays there, often enough.
 
-    A joint that comes to rest arrives slowly; a range that is too small stops it in motion.
+    A joint that comes to rest arrives slowly; a range that is too small stops it in motion. What
+    is switched (a valve: off, on, the other way) is always at an end value.
     """
     steps = np.abs(np.diff(values))
-    if not steps.any():
+    if len(np.unique(values)) <= SWITCHED:
         return False
     usual = float(np.median(steps[steps > 0.0]))
     for end in (values.max(), values.min()):

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 
 TOGETHER = " + "
@@ -27,6 +27,9 @@ class Size:
 SUBLINEAR = frozenset({"stribeck_friction", "quadratic_drag"})
 """Kinds that no machine has less of than none: friction that grows less than in proportion to
 speed, as of grease, reads so (two measured arms, TX40 and TIAGo)."""
+
+STRAIGHT = frozenset({"viscous_friction", "coulomb_friction"})
+"""Kinds that share such a friction among them where it has no kind of its own."""
 
 
 @dataclass(frozen=True)
@@ -53,6 +56,8 @@ class Proved:
             explains as well.
         unfollowed: channels where it acts that the extended model still predicts worse than their
             own mean: what makes a simulation out of step smaller improves it.
+        bent: whether it is one of STRAIGHT, and one of SUBLINEAR of negative size is proved at its
+            place: with it, its size is that of a line through a curve.
     """
 
     effect: str
@@ -67,6 +72,7 @@ class Proved:
     wide: bool = False
     below_row: bool = False
     unfollowed: tuple[str, ...] = ()
+    bent: bool = False
 
     @property
     def label(self) -> str:
@@ -78,6 +84,12 @@ class Proved:
         """Whether it is one of SUBLINEAR with a negative size: the shape of another friction."""
         first = next(iter(self.parameters.values()), None)
         return self.effect in SUBLINEAR and first is not None and first.value < 0.0
+
+    def bent_by(self, others: Iterable[Proved]) -> bool:
+        """Whether it is a friction beside which one of others shows that it is sublinear."""
+        beside = [o for o in others if o.target == self.target and o.sublinear]
+        known = any(next(iter(o.parameters.values())).high < 0.0 for o in beside)
+        return self.effect in STRAIGHT and known
 
 
 @dataclass(frozen=True)

@@ -89,6 +89,8 @@ def standing_words(one: Proved) -> str:
         return "less than a row of the log: its clock explains that as well"
     if one.sublinear:
         return "acts like it: friction that grows less than in proportion to speed reads so"
+    if one.bent:
+        return "acts like it: at its place friction grows less than in proportion to speed"
     if one.unfollowed:
         return f"acts like it: {', '.join(one.unfollowed[:SHOWN])} is still not followed at all"
     if one.acts_like:

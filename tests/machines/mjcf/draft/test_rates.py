@@ -75,7 +75,12 @@ def test_what_is_current_is_no_ampere(arm, columns, write, names):
 @pytest.mark.parametrize("sign", [1.0, -1.0])
 def test_a_torque_a_thousand_times_off_is_told_whatever_its_sign(arm, columns, write, sign):
     found, _ = drafted(arm, write(changed(columns, tau2=sign * 1e3 * columns["tau2"])))
-    assert any("times what the model needs: another unit" in words for words in found.look)
+    expected = f"times{', turned,' * (sign < 0.0)} what the model needs: another unit"
+    assert any(expected in words for words in found.look)
+    late = {n: v for n, v in columns.items() if n != "t"} | {"time_s": 1e3 * columns["t"]}
+    found, _ = drafted(arm, write(changed(late, tau2=1e3 * columns["tau2"])))
+    assert any("is that its unit?" in words for words in found.look)
+    assert not any("times what the model needs" in words for words in found.look)
 
 
 def test_a_column_of_revolutions_a_minute_is_a_speed(swing, write):

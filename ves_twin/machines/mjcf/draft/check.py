@@ -11,7 +11,7 @@ import numpy as np
 from ves_twin.core.types import FloatArray
 from ves_twin.machines.mjcf.draft.changes import DEGREE, changes, misnamed
 from ves_twin.machines.mjcf.draft.locked import locked_joints, words_of_locked
-from ves_twin.machines.mjcf.draft.log_columns import LogColumns
+from ves_twin.machines.mjcf.draft.log_columns import LogColumns, is_usual
 from ves_twin.machines.mjcf.draft.match import Match, Matches
 from ves_twin.machines.mjcf.draft.motion import Motion, band_of, motion_of
 from ves_twin.machines.mjcf.draft.rates import differs, rated
@@ -61,6 +61,9 @@ FAR = 3.0
 
 ODD = 50.0
 """Times what the model needs from which on an effort is in another unit, whatever friction does."""
+
+LITTLE = " Where the model needs next to nothing (a balanced wrist), friction does that, too"
+"""What is said of an effort that is large and not like that of the model."""
 
 
 @dataclass(frozen=True)
@@ -344,10 +347,12 @@ class _Judge:
                 )
             strong = fit.gain > STRONG and not fit.usable
             times = abs(fit.slope) if strong else fit.size
-            if not fit.free and (strong or not 1.0 / ODD < times < ODD):
+            odd = strong or not 1.0 / ODD < times < ODD
+            if odd and not fit.free and is_usual(self.log.period):
+                turned = ", turned," * (strong and fit.slope < 0.0)
                 said.append(
-                    f"{match.column} is {times:.3g} times what the model needs: another unit, a"
-                    " gear or a wrong mass?"
+                    f"{match.column} is {times:.3g} times{turned} what the model needs: another"
+                    f" unit, a gear or a wrong mass?{LITTLE * (not strong and times > ODD)}"
                 )
         return found, said
 

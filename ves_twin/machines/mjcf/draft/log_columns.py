@@ -109,9 +109,14 @@ class LogColumns:
         return _sorted(named, read, full.get(clock, ""), scale, period, path, notes)
 
 
+def is_usual(period: float) -> bool:
+    """Whether rows of a laboratory's log are that far apart [s]."""
+    return USUAL[0] <= period <= USUAL[1]
+
+
 def _period(time: FloatArray, clock: str, notes: list[str]) -> float:
     period = usual_step(time[np.isfinite(time)])
-    if not USUAL[0] <= period <= USUAL[1]:
+    if not is_usual(period):
         notes.append(f"clock {clock}: rows are {period:.3g} s apart: is that its unit?")
     steps = np.diff(time)
     wide = steps[steps > GAP * period]
