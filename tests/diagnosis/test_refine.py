@@ -93,6 +93,19 @@ def test_size_interval_and_chi2_are_those_of_generalised_least_squares(case, num
     assert fit.chi2 == pytest.approx(chi2, abs=0.02 + SINGLE * chi2)
 
 
+def test_where_no_time_is_left_one_step_is_taken_and_of_linear_causes_that_is_all(case):
+    """Of an arm's log that was given 6 of its 8 minutes no tolerance was fitted at all."""
+    fed, runs, evidence, local, _, residual, covariance = case
+    spent = iter([0.0])
+    budget = Budget(1.0, lambda: next(spent, 3600.0))
+    evidence = replace(evidence, runs=replace(runs, workers=Workers(1, budget)))
+    fit = refine(evidence, (Toy().hypotheses[0],), runs.origin, local)
+    size, sd, _ = closed_form(signature(Toy().hypotheses[0].effect, fed), residual, covariance)
+    assert budget.over
+    assert fit.sizes[0] == pytest.approx(size, abs=0.05 * sd)
+    assert np.any(fit.shift[runs.nuisances] != 0.0)
+
+
 def test_nuisances_are_their_posterior_mean(case):
     _, runs, evidence, local, white, residual, covariance = case
     fit = refine(evidence, (), runs.origin, local)

@@ -254,10 +254,14 @@ class Search:
         return self._with_causes()
 
     def descend(self, point: Point, jacobian: FloatArray) -> tuple[Point, FloatArray]:
-        """From a point with its Jacobian down to the best one."""
+        """From a point with its Jacobian down to the best one.
+
+        One step is taken where no time is left, too: the Jacobian was dear, and where causes are
+        linear that step is all.
+        """
         self.damping = 0.0  # what another Jacobian's steps were worth says nothing of these
-        for _ in range(self.steps):
-            if self.runs.budget.skips(BETTER_FITS):
+        for step in range(self.steps):
+            if step and self.runs.budget.skips(BETTER_FITS):
                 break
             found = self._step(point, jacobian)
             fall = point.chi2 - found.chi2
