@@ -91,6 +91,35 @@ def test_ctrl_c_stops_between_two_slices():
     assert signal.getsignal(signal.SIGINT) is before
 
 
+def _pressed(bar: RunProgress) -> None:
+    os.kill(os.getpid(), signal.SIGINT)
+    time.sleep(0.05)
+    bar(0.5)
+
+
+def test_the_first_ctrl_c_ends_work_that_has_something_to_tell_and_the_second_stops_it(capsys):
+    ended = []
+
+    def end() -> bool:
+        ended.append(True)
+        return True
+
+    with RunProgress("diagnose", 1.0, ending=end) as bar:
+        bar(0.1)
+        _pressed(bar)
+        assert progress.ENDING in capsys.readouterr().err
+        with pytest.raises(KeyboardInterrupt):
+            _pressed(bar)
+    assert ended == [True]
+
+
+def test_ctrl_c_stops_work_that_has_nothing_to_tell_yet():
+    with RunProgress("diagnose", 1.0, ending=lambda: False) as bar:
+        bar(0.1)
+        with pytest.raises(KeyboardInterrupt):
+            _pressed(bar)
+
+
 @pytest.mark.parametrize(
     ("seconds", "text"), [(8.2, "8 s"), (200.0, "3 min 20 s"), (7500.0, "2 h 5 min")]
 )

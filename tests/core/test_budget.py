@@ -41,3 +41,15 @@ def test_without_minutes_nothing_is_ever_left_out():
 def test_minutes_must_be_above_zero(minutes):
     with pytest.raises(InvalidInputError, match="minutes"):
         Budget(minutes)
+
+
+def test_work_that_tells_nothing_yet_is_not_ended_and_other_work_is_with_all_its_stages():
+    budget = Budget()
+    assert not budget.end()
+    assert not budget.over
+    budget.tells = True
+    assert budget.end()
+    assert budget.skips("better fits")
+    budget.stage(float("inf"))  # a law that was asked for may take all the time there is
+    assert budget.over
+    assert pickle.loads(pickle.dumps(budget)).over

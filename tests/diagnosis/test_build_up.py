@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from toy import QUICK, Toy, programme, record, shape
 
+from ves_twin.core.budget import Budget
 from ves_twin.core.recording.recording import POSES
 from ves_twin.diagnosis.build_up.result import UNFINISHED
 from ves_twin.diagnosis.diagnose import diagnose
@@ -118,3 +119,32 @@ def test_a_diagnosis_without_time_ends_with_a_verdict_and_says_what_it_left_out(
     assert FEWER not in unhurried.basis.left_out
     assert verdict.statistics.effect_threshold > 0.0
     assert any("No time was left for" in text for text in basis_sentences(verdict))
+
+
+@pytest.mark.parametrize("at", ["fitting the tolerances", "choosing causes"])
+def test_a_diagnosis_that_is_ended_tells_what_is_known_by_then(at):
+    budget = Budget()
+
+    def progress(done: float, what: str) -> None:
+        if what == at:
+            assert budget.end()
+
+    once, other = [measured(1)], [measured(2)]
+    verdict = diagnose(PLANT, once, held_out=other, settings=FOUR, progress=progress, budget=budget)
+    assert budget.over
+    assert verdict.verdict in (Kind.PARTIAL, Kind.UNKNOWN)
+    assert verdict.proved
+    assert UNFINISHED in verdict.basis.left_out
+    assert any("Ctrl-C" in text for text in basis_sentences(verdict))
+
+
+def test_a_diagnosis_that_knows_nothing_yet_is_not_ended():
+    budget = Budget()
+
+    def progress(done: float, what: str) -> None:
+        if what == "the model as it was given":
+            assert not budget.end()
+
+    verdict = diagnose(PLANT, [measured(1)], settings=QUICK, progress=progress, budget=budget)
+    assert not budget.over
+    assert verdict.basis.left_out == ()

@@ -153,3 +153,34 @@ def test_a_plant_that_fails_at_its_nominal_numbers_is_told_as_such():
 
     with pytest.raises(InvalidInputError, match="nominal plant"):
         build_bank(Runs(Broken(), (programme(),), (0, 1)))
+
+
+class Bent(Toy):
+    """Its offset, which each recording has of its own, also bends the answer."""
+
+    def simulate(self, programme, values, refined=False):
+        rows = super().simulate(programme, values, refined)
+        offset = values.get("plant.offset", 0.0)
+        u, time = programme.drive["drive.u"][:, 0], programme.time
+        return rows + 20.0 * offset**2 * shape("bump", u, time)
+
+
+def test_columns_of_one_recording_stay_nothing_in_the_others_however_often_they_are_turned():
+    """A whole secant wrote what one piece of a log surprised by into the starts of all others."""
+    plant, two = Bent(), (programme(1), programme(2))
+    runs = Runs(plant, two, (0, 1))
+    rng, true = np.random.default_rng(5), (0.12, -0.1)
+    rows = [
+        plant.simulate(fed, {"plant.offset": offset}) for fed, offset in zip(two, true, strict=True)
+    ]
+    rows = np.concatenate([part + rng.standard_normal(part.shape) * SD for part in rows])
+    evidence = Evidence(runs, rows.astype(np.float32), whitening_declared(runs))
+    base = linearise(runs, runs.origin)
+    base = replace(base, bends=np.ones_like(base.bends))
+    fit = refine(evidence, (), runs.origin, base)
+    own = [n for n, i in enumerate(runs.nuisances) if runs.coordinates[int(i)].recording >= 0]
+    assert len(own) == 2
+    for n, (here, there) in zip(own, (runs.slices, runs.slices[::-1]), strict=True):
+        assert not np.any(fit.local.columns[n][there])
+        assert np.any(fit.local.columns[n][here] != base.columns[n][here])
+    assert fit.shift[runs.nuisances[own]] == pytest.approx(true, abs=0.01)

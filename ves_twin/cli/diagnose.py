@@ -107,7 +107,9 @@ def _diagnose(arguments: argparse.Namespace) -> Diagnosis:
     measured, held_out = given.read(arguments.measured), given.read(arguments.held_out)
     baseline, healthy = given.read(arguments.baseline), given.read(arguments.commissioning)
     standstill = given.standstill(arguments.standstill)
-    with RunProgress("diagnose", 1.0, unit="share") as progress:
+    settings = replace(bank_settings(), laws=arguments.law, minutes=arguments.minutes)
+    budget = settings.budget
+    with RunProgress("diagnose", 1.0, unit="share", ending=budget.end) as progress:
         return diagnose(
             measured,
             given.machine,
@@ -118,8 +120,9 @@ def _diagnose(arguments: argparse.Namespace) -> Diagnosis:
             exclude=arguments.exclude,
             experiment=given.experiment,
             alternate=arguments.alternate,
-            settings=replace(bank_settings(), laws=arguments.law, minutes=arguments.minutes),
+            settings=settings,
             progress=progress.share,
+            budget=budget,
         )
 
 

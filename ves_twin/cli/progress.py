@@ -6,6 +6,7 @@ import signal
 import sys
 import threading
 import time
+from collections.abc import Callable
 from types import FrameType
 from typing import Any
 
@@ -17,9 +18,15 @@ FIRST = 1.0
 PAUSE = 10.0
 """Time between two lines where stderr is no terminal [s]: a log of an hour stays readable."""
 
+ENDING = "coming to an end with what is known by now; Ctrl-C again stops without it"
+"""What the first Ctrl-C is answered with, where there is something to tell."""
+
 
 class RunProgress:
     """Called with the amount reached; the first Ctrl-C ends the work between two slices.
+
+    Work that can tell what it knows by then is brought to its end by `ending`, and only a second
+    Ctrl-C stops it.
 
     A terminal shows a bar for each stage. Anywhere else a line is printed after FIRST and then
     every PAUSE, so that a log, too, tells what is being done and how long that stage still takes.
@@ -28,10 +35,13 @@ class RunProgress:
         name: of the work, before every stage.
         total: amount of a stage that tells none of its own.
         unit: "s" for a run, whose amount is its time [s].
+        ending: brings the work to its end, and says whether there is something to tell by then.
     """
 
-    def __init__(self, name: str, total: float, unit: str = "s") -> None:
-        self._name, self._total = name, total
+    def __init__(
+        self, name: str, total: float, unit: str = "s", ending: Callable[[], bool] | None = None
+    ) -> None:
+        self._name, self._total, self._ending = name, total, ending
         self._bar = tqdm(
             total=total,
             desc=name,
@@ -43,8 +53,7 @@ class RunProgress:
         )
         self._stage, self._done = "", 0.0
         self._begun = self._stage_begun = time.monotonic()
-        self._stopped = False
-        self._running = False
+        self._asked = self._stopped = self._running = False
         self._before: Any = None
         self._over = threading.Event()
         self._teller = threading.Thread(target=self._tell, daemon=True)
@@ -99,9 +108,15 @@ class RunProgress:
             pause = PAUSE
 
     def _stop(self, number: int, frame: FrameType | None) -> None:
-        if self._stopped or not self._running:  # nothing to keep, or asked twice
+        if self._asked or not self._running:  # asked twice, or nothing to keep
             raise KeyboardInterrupt
-        self._stopped = True
+        self._asked = True
+        if self._ending is None:
+            self._stopped = True
+        elif self._ending():
+            print(f"ves-twin: {ENDING}", file=sys.stderr, flush=True)
+        else:
+            raise KeyboardInterrupt
 
 
 def _span(seconds: float) -> str:

@@ -16,6 +16,9 @@ class Budget:
         minutes: for everything; endless if left out.
         clock: of the time that is spent [s]: of this process, or one that all processes share.
 
+    Attributes:
+        tells: whether the work, ended now, has something to tell.
+
     Raises:
         InvalidInputError: minutes that are not above zero.
     """
@@ -27,14 +30,22 @@ class Budget:
             raise InvalidInputError("minutes", minutes, "above zero")
         self.minutes, self.left_out = minutes, list[str]()
         self._clock, self._begun, self._until = clock, clock(), 1.0
+        self.tells, self._ended = False, False
 
     def stage(self, until: float) -> None:
         """The present stage ends where this share of the whole is spent."""
         self._until = until
 
+    def end(self) -> bool:
+        """All stages end now, if what is known by now `tells` something; whether it does."""
+        self._ended = self.tells
+        return self.tells
+
     @property
     def spent(self) -> float:
-        """Share of the whole."""
+        """Share of the whole; without end once it was ended."""
+        if self._ended:
+            return math.inf
         return (self._clock() - self._begun) / (60.0 * self.minutes)
 
     @property

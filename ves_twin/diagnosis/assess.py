@@ -15,7 +15,7 @@ from ves_twin.diagnosis.prewhitened import Prewhitened
 from ves_twin.diagnosis.refine import ROUGH, Fit, bare_residual, refine, residual_about
 from ves_twin.diagnosis.runs import Progress, silent
 from ves_twin.diagnosis.screen import Candidate, Screen
-from ves_twin.diagnosis.search import FARTHEST, ITERATIONS, RELATIVE_CONVERGENCE
+from ves_twin.diagnosis.search import BETTER_FITS, FARTHEST, ITERATIONS, RELATIVE_CONVERGENCE
 from ves_twin.diagnosis.signature_library import SignatureLibrary
 from ves_twin.diagnosis.whitening import Whitening
 
@@ -141,7 +141,7 @@ def assess(
     looks = ((0, GLANCE), (0, ITERATIONS), (ROUNDS, ITERATIONS))
     for n, (rounds, steps) in enumerate(looks):
         progress(n / len(looks), "fitting the tolerances")
-        if sparse and rounds and _left(look) > FAR:
+        if (sparse and rounds and _left(look) > FAR) or (n and runs.budget.skips(BETTER_FITS)):
             break
         rough = sparse and _left(look) > STRANGE
         within = pull if steps == GLANCE else FARTHEST  # few steps may lead far astray

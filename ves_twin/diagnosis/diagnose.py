@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 
+from ves_twin.core.budget import Budget
 from ves_twin.core.errors import UnknownNameError
 from ves_twin.core.recording.recording import Recording
 from ves_twin.core.workers import Workers
@@ -31,6 +32,7 @@ def diagnose(
     exclude: Sequence[str] = (),
     settings: Settings | None = None,
     progress: Progress = silent,
+    budget: Budget | None = None,
 ) -> Verdict:
     """Name what a plant's simulation gets wrong, or say that nothing is, or that it is not known.
 
@@ -51,6 +53,7 @@ def diagnose(
         exclude: causes that are not considered, by effect or effect@target.
         settings: how sure, how many.
         progress: told what is being done.
+        budget: time that it may take, which may be ended; that of the settings if left out.
 
     Raises:
         InvalidInputError: recordings that cannot be compared, columns that look swapped, turned
@@ -60,7 +63,7 @@ def diagnose(
     chosen = settings or Settings()
     _check_causes(forward, exclude)
     check_commissioned(len(commissioning))
-    with Workers(chosen.workers, chosen.budget) as workers:
+    with Workers(chosen.workers, budget or chosen.budget) as workers:
         scale = _scale(forward, commissioning, workers, chosen)
         material = Material(
             tuple(recordings),

@@ -9,6 +9,7 @@ import numpy as np
 from scipy.linalg import cho_factor, cho_solve, solve_triangular
 
 from ves_twin.core.types import FloatArray
+from ves_twin.diagnosis.inner import inner
 
 
 @dataclass(frozen=True)
@@ -27,7 +28,7 @@ class Metric:
     @cached_property
     def _factor(self) -> tuple[FloatArray, bool]:
         k = self.columns.shape[1]
-        factor, lower = cho_factor(np.eye(k) + self.columns.T @ self.columns)
+        factor, lower = cho_factor(np.eye(k) + inner(self.columns, self.columns))
         return factor, bool(lower)
 
     def project(self, z: FloatArray) -> FloatArray:
@@ -41,8 +42,8 @@ class Metric:
     def reduced(self, signals: FloatArray) -> FloatArray:
         """R (k, ...) of signals (samples, ...), so that <a, b> = a'b - R_a' R_b."""
         factor, lower = self._factor
-        inner = self.columns.T @ signals
-        return np.asarray(solve_triangular(factor, inner, trans=0 if lower else 1, lower=lower))
+        along = inner(self.columns, signals)
+        return np.asarray(solve_triangular(factor, along, trans=0 if lower else 1, lower=lower))
 
     def covariance(self) -> FloatArray:
         """Posterior covariance of the nuisances (k, k), in sd^2."""

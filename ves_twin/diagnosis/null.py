@@ -43,6 +43,9 @@ same but for BENDS."""
 FEW = 3
 """Rigs that tell what one takes: one alone may be quick by chance."""
 
+LEAST = 20
+"""Linear rigs that are drawn however long one takes: five of them tell the tail."""
+
 LINEAR = "simulated rigs in order (thresholds are of linear ones)"
 """What is left out where they would take too long."""
 
@@ -122,7 +125,7 @@ def null_thresholds(
     found = _in_time(study, seeds, progress) if simulated else []
     few, simulated = [misfit for _, misfit in found], len(found) == count
     if not simulated:
-        found = list(_draws(replace(study, simulated=False), seeds, progress))
+        found = _linear_in_time(replace(study, simulated=False), seeds, progress)
     drawn = np.array(found)
     level = max(floor.misfit, _tail(drawn[:, 1], alpha))
     some = float(np.median(few)) if few else None
@@ -199,6 +202,15 @@ def _in_time(
     if len(drawn) < len(seeds):
         budget.leave_out(LINEAR)
     return drawn
+
+
+def _linear_in_time(
+    study: _NullStudy, seeds: list[np.random.SeedSequence], progress: Progress
+) -> list[tuple[float, float]]:
+    """Linear rigs; LEAST of them, and more within AFFORDABLE of the time."""
+    found = list(_draws(study, seeds[:LEAST], progress))
+    study = replace(study, until=study.bank.base.runs.budget.spent + AFFORDABLE)
+    return [*found, *_draws(study, seeds[LEAST:], progress)]
 
 
 def _draws(

@@ -71,7 +71,7 @@ class Runs:
         return tuple(axes)
 
     @cached_property
-    def _own(self) -> list[IntArray]:
+    def own(self) -> list[IntArray]:
         """Coordinates that each recording feels."""
         owners = np.array([axis.recording for axis in self.coordinates])
         return [np.flatnonzero((owners == -1) | (owners == k)) for k in range(len(self.programmes))]
@@ -153,7 +153,7 @@ class Runs:
 
     def _of(self, recording: int, shift: FloatArray, refined: bool) -> SingleArray:
         """Of one recording; as it was where none of its own departures has changed since."""
-        own = self._own[recording]
+        own = self.own[recording]
         key = (recording, refined, shift[own].tobytes())
         several = len(self.programmes) > 1
         if several and (there := self._last.get(key)) is not None:
@@ -167,7 +167,7 @@ class Runs:
 
     def values(self, recording: int, shift: FloatArray) -> dict[str, float]:
         """Parameter -> value in a recording, at a vector of departures."""
-        parts = ((self.coordinates[i].parameter, float(shift[i])) for i in self._own[recording])
+        parts = ((self.coordinates[i].parameter, float(shift[i])) for i in self.own[recording])
         return {parameter.name: parameter.nominal + move for parameter, move in parts}
 
     def columns_at(self, point: FloatArray, compute: Callable[[], SingleArray]) -> SingleArray:

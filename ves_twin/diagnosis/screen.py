@@ -7,7 +7,8 @@ from functools import cached_property
 
 import numpy as np
 
-from ves_twin.core.types import FloatArray
+from ves_twin.core.types import FloatArray, IntArray
+from ves_twin.diagnosis.inner import inner
 from ves_twin.diagnosis.metric import Metric
 from ves_twin.diagnosis.prewhitened import Prewhitened
 from ves_twin.diagnosis.signature_library import SignatureLibrary
@@ -65,33 +66,45 @@ class Screen:
         return Metric(columns)
 
     @cached_property
-    def shapes(self) -> FloatArray:
-        """Whitened shapes: columns of the base, then the bent ones (samples, shapes)."""
-        columns = self.metric.columns[:, : len(self.bank.base.columns)]
-        return np.concatenate([columns, self._shaped.bent(self.whitening)], axis=1)
+    def _kinds(self) -> tuple[IntArray, IntArray]:
+        """Shapes that entries have, by the bank's numbers, and which of them each has."""
+        used, place = np.unique(self.bank.shape, return_inverse=True)
+        return used, place
+
+    @cached_property
+    def _shapes(self) -> FloatArray:
+        """Those, whitened (samples, shapes): columns of the base, then the bent ones."""
+        used, count = self._kinds[0], len(self.bank.base.columns)
+        columns = self.metric.columns[:, used[used < count]]
+        bent = self._shaped.bent(self.whitening)[:, used[used >= count] - count]
+        return np.concatenate([columns, bent], axis=1)
+
+    def shape(self, entry: int) -> FloatArray:
+        """Whitened shape of an entry (samples,); its factor makes it the signature."""
+        return np.asarray(self._shapes[:, self._kinds[1][entry]])
 
     @cached_property
     def _reduced(self) -> FloatArray:
         """What the nuisances can explain of the shapes, in coordinates of their own (k, shapes)."""
-        return self.metric.reduced(self.shapes)
+        return self.metric.reduced(self._shapes)
 
     @cached_property
     def gram(self) -> FloatArray:
         """<s_j, s_k> (entries, entries)."""
-        gram = self.shapes.T @ self.shapes - self._reduced.T @ self._reduced
-        which, factor = self.bank.shape, self.bank.factor
+        gram = inner(self._shapes, self._shapes) - self._reduced.T @ self._reduced
+        which, factor = self._kinds[1], self.bank.factor
         return np.asarray(gram[np.ix_(which, which)] * np.outer(factor, factor))
 
     def match(self, z: FloatArray) -> FloatArray:
         """<s_k, z> of each entry with a whitened residual (samples,)."""
-        inner = self.shapes.T @ self.metric.project(z)
-        return np.asarray(inner[self.bank.shape] * self.bank.factor)
+        along = self._shapes.T @ self.metric.project(z)
+        return np.asarray(along[self._kinds[1]] * self.bank.factor)
 
     @cached_property
     def power(self) -> FloatArray:
         """d^2 of each entry: its size in sigma, squared."""
-        power = np.sum(self.shapes**2, axis=0) - np.sum(self._reduced**2, axis=0)
-        return np.asarray(np.maximum(power[self.bank.shape] * self.bank.factor**2, 1e-12))
+        power = np.sum(self._shapes**2, axis=0) - np.sum(self._reduced**2, axis=0)
+        return np.asarray(np.maximum(power[self._kinds[1]] * self.bank.factor**2, 1e-12))
 
     def suspects(self, z: FloatArray) -> list[Candidate]:
         """Every hypothesis at its best size, by falling score.

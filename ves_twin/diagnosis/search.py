@@ -8,6 +8,7 @@ import numpy as np
 
 from ves_twin.core.types import FloatArray, IntArray, SingleArray
 from ves_twin.diagnosis.evidence import Evidence
+from ves_twin.diagnosis.inner import inner
 from ves_twin.diagnosis.linearise import GUESS, Linearisation
 
 ITERATIONS = 40
@@ -138,13 +139,14 @@ class Search:
         self.evidence, self.runs, self.free, self.local = evidence, runs, free, local
         self.kept = np.flatnonzero(~np.isin(runs.nuisances, free))
         self.nuisances = runs.nuisances[self.kept]
+        self.axes = np.concatenate([free, self.nuisances])
         self.turned = local.columns.copy()
         picked = local.columns[[*self.kept, len(runs.nuisances)]]
         self.columns = evidence.whitening.apply(picked).T
         adds = [runs.coordinates[i].parameter.additive for i in self.nuisances]
         self.known = np.append(np.flatnonzero(adds), len(adds))
         basis = self.columns[:, self.known]
-        self.solved = np.linalg.inv(basis.T @ basis + np.eye(len(self.known)))
+        self.solved = np.linalg.inv(inner(basis, basis) + np.eye(len(self.known)))
         self.low = runs.low.copy()
         self.high = runs.high.copy()
         reach = farthest * runs.sd[self.nuisances]
@@ -155,6 +157,7 @@ class Search:
         self.unit[len(free) : -1] = runs.sd[self.nuisances]
         self.bends = np.append(np.zeros(len(free)), local.bends[[*self.kept, len(runs.nuisances)]])
         self.bends[len(free) + self.known] = 0.0  # those columns are right
+        self.own = [np.append(np.isin(self.axes, own), True) for own in runs.own]
 
     def at(self, shift: FloatArray, delta: float) -> Point:
         """The best point that differs from a given one by what only adds to the channels.
@@ -231,7 +234,7 @@ class Search:
         """J'J and the priors, which causes have none of."""
         prior = np.full(len(self.unit), weight)
         prior[: len(self.free)] = 0.0
-        return np.asarray(jacobian.T @ jacobian + np.diag(prior))
+        return np.asarray(inner(jacobian, jacobian) + np.diag(prior))
 
     def run(self, point: Point, before: CauseColumns | None = None) -> tuple[Point, FloatArray]:
         """The best point, and the Jacobian there.
@@ -279,15 +282,6 @@ class Search:
             return 1.0
         return max(1.0, float(point.residual @ point.residual) / len(point.residual))
 
-    def _turn(self, change: SingleArray, move: FloatArray, share: FloatArray) -> None:
-        """The same before whitening; only what belongs to the nuisances is kept."""
-        here, share = move.astype(np.float32), share.astype(np.float32)
-        count = len(self.free)
-        change = change - np.tensordot(here[:count], self.raw, axes=1)
-        change -= np.tensordot(here[count:-1], self.turned[self.kept], axes=1)
-        self.raw += share[:count, None, None] * change
-        self.turned[self.kept] += share[count:-1, None, None] * change
-
     def _step(self, point: Point, jacobian: FloatArray) -> Point:
         """The next point, or the same one if none is better; updates the Jacobian in place.
 
@@ -314,7 +308,7 @@ class Search:
 
     def _proposed(self, point: Point, jacobian: FloatArray, weight: float) -> _Step:
         """Where the linear model has its best, the priors weighing so much."""
-        axes = np.concatenate([self.free, self.nuisances])
+        axes = self.axes
         here = np.append(point.shift[axes], point.delta) / self.unit
         prior = np.where(np.arange(len(here)) < len(self.free), 0.0, here)
         hessian = self.hessian(jacobian, weight + self.damping)
@@ -336,12 +330,28 @@ class Search:
     def _learn(self, point: Point, trial: Point, jacobian: FloatArray) -> None:
         if not np.isfinite(trial.chi2):
             return
-        axes = np.concatenate([self.free, self.nuisances])
-        there = np.append(trial.shift[axes], trial.delta)
-        move = (there - np.append(point.shift[axes], point.delta)) / self.unit
+        there = np.append(trial.shift[self.axes], trial.delta)
+        move = (there - np.append(point.shift[self.axes], point.delta)) / self.unit
         surprise = point.residual - trial.residual - jacobian @ move
-        if surprise @ surprise > UPDATE_TOLERANCE:
-            turning = self.bends**2 * move
+        change = trial.prediction - point.prediction
+        samples, rows = self.evidence.whitening.samples, self.runs.slices
+        for own, here, raw in zip(self.own, samples, rows, strict=True):
+            part = surprise[here]
+            if part @ part <= UPDATE_TOLERANCE:
+                continue
+            turning = self.bends**2 * move * own
             share = turning / (turning @ move + CHANCE)
-            jacobian += np.outer(surprise, share)
-            self._turn(trial.prediction - point.prediction, move, share)
+            moved = np.flatnonzero(share)
+            jacobian[here, moved] += np.outer(part, share[moved])
+            self._turn(raw, change[raw], np.where(own, move, 0.0), share)
+
+    def _turn(self, rows: slice, change: SingleArray, move: FloatArray, share: FloatArray) -> None:
+        """The same before whitening; only what belongs to the nuisances is kept."""
+        here, share = move.astype(np.float32), share.astype(np.float32)
+        count = len(self.free)
+        moved = np.flatnonzero(here[count:-1])
+        kept = self.kept[moved]
+        change = change - np.tensordot(here[:count], self.raw[:, rows], axes=1)
+        change -= np.tensordot(here[count:-1][moved], self.turned[kept, rows], axes=1)
+        self.raw[:, rows] += share[:count, None, None] * change
+        self.turned[kept, rows] += share[count:-1][moved, None, None] * change

@@ -8,6 +8,7 @@ import numpy as np
 
 from ves_twin.core.types import FloatArray
 from ves_twin.diagnosis.evidence import Evidence
+from ves_twin.diagnosis.inner import inner
 from ves_twin.diagnosis.refine import Fit
 
 
@@ -55,7 +56,7 @@ def _inverse(design: FloatArray, count: int) -> FloatArray:
     """H^-1 of the causes and of commissioning errors with their prior (k, k)."""
     prior = np.ones(design.shape[1])
     prior[:count] = 0.0
-    hessian = design.T @ design + np.diag(prior)
+    hessian = inner(design, design) + np.diag(prior)
     root = 1.0 / np.sqrt(np.maximum(np.diag(hessian), 1e-30))
     scaled = hessian * np.outer(root, root) + 1e-12 * np.eye(len(hessian))
     return np.asarray(np.linalg.inv(scaled) * np.outer(root, root))

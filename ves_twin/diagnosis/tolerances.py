@@ -12,6 +12,7 @@ from scipy.stats import chi2, norm
 from ves_twin.core.errors import InvalidInputError
 from ves_twin.core.types import FloatArray, SingleArray
 from ves_twin.diagnosis.evidence import Evidence
+from ves_twin.diagnosis.inner import inner
 from ves_twin.diagnosis.linearise import linearise
 from ves_twin.diagnosis.refine import bare_residual, refine, residual_about
 from ves_twin.diagnosis.runs import Runs
@@ -106,7 +107,7 @@ def _directions(runs: Runs, measured: SingleArray) -> tuple[FloatArray, FloatArr
     own = whitening.adapted(whitening.apply(bare_residual(evidence, fit)))
     z = residual_about(Evidence(runs, measured, own), fit, base)
     columns = own.apply(base.columns[:-1]).T
-    weights, vectors = np.linalg.eigh(columns.T @ columns)
+    weights, vectors = np.linalg.eigh(inner(columns, columns))
     kept = weights > VISIBLE
     along = (vectors.T @ (columns.T @ z))[kept] ** 2 / weights[kept]
     return along, weights[kept]

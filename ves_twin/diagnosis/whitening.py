@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
+from itertools import pairwise
 
 import numpy as np
 from scipy.linalg import solve_toeplitz
@@ -101,14 +102,16 @@ class Whitening:
         count = sum(s.stop - s.start - self.lost(k) for k, s in pairs)
         return np.ones(count * self.mixing.shape[1])
 
+    @cached_property
+    def samples(self) -> tuple[slice, ...]:
+        """Whitened samples of each recording."""
+        width, pairs = self.mixing.shape[1], enumerate(self.runs.slices)
+        counts = [(rows.stop - rows.start - self.lost(k)) * width for k, rows in pairs]
+        return tuple(slice(int(a), int(b)) for a, b in pairwise(np.cumsum([0, *counts])))
+
     def blocks(self, z: FloatArray) -> list[FloatArray]:
         """Whitened samples by recording: (samples,) -> (rows, c) each."""
-        width, start, parts = self.mixing.shape[1], 0, []
-        for k, rows in enumerate(self.runs.slices):
-            count = (rows.stop - rows.start - self.lost(k)) * width
-            parts.append(z[start : start + count].reshape(-1, width))
-            start += count
-        return parts
+        return [z[here].reshape(-1, self.mixing.shape[1]) for here in self.samples]
 
     def times(self) -> list[FloatArray]:
         """Times [s] of the whitened rows of each recording."""

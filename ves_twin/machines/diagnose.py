@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from ves_twin.core.budget import Budget
 from ves_twin.core.errors import InvalidInputError
 from ves_twin.core.recording.recording import Recording
 from ves_twin.diagnosis import diagnose as core
@@ -55,6 +56,7 @@ def diagnose(
     alternate: float | None = None,
     settings: Settings | None = None,
     progress: Progress = silent,
+    budget: Budget | None = None,
 ) -> Diagnosis:
     """Name what the simulation of a machine gets wrong in recordings of it.
 
@@ -73,6 +75,7 @@ def diagnose(
         alternate: hold out every second stretch of so many s, or poses; 0: the machine's own.
         settings: how sure, how many, where banks are kept; the machine may set what its size asks.
         progress: told what is being done.
+        budget: time that it may take, which may be ended; that of the settings if left out.
 
     Raises:
         VesTwinError: recordings whose columns look swapped, turned or in other units.
@@ -111,6 +114,7 @@ def diagnose(
         exclude=machine.causes(exclude),
         settings=settings_of(machine, settings, measured[0]),
         progress=progress,
+        budget=budget,
     )
     causes = tuple(cause.shortened for cause in verdict.causes)
     near = tuple(cause.shortened for cause in verdict.nearest)

@@ -12,6 +12,7 @@ from scipy.linalg import cho_factor, cho_solve, solve_triangular
 from ves_twin.core.types import BoolArray, FloatArray, IntArray
 from ves_twin.diagnosis.build_up.memory import independent_rows
 from ves_twin.diagnosis.build_up.regression import BEYOND, Regression
+from ves_twin.diagnosis.inner import inner
 from ves_twin.diagnosis.whitening import Whitening
 
 STEPS = 4_000
@@ -157,10 +158,10 @@ def _tempered(
     columns, scale = regression.design(range(len(regression.trials)))
     width = residual.shape[1]
     rows = np.maximum(np.sum(regression.half.kept, axis=0), 1)
-    inner = np.square(whitening.apply(residual.astype(np.float32)).reshape(-1, width))
-    level = np.maximum(np.sum(inner, axis=0) / rows, 1e-12)
+    squares = np.square(whitening.apply(residual.astype(np.float32)).reshape(-1, width))
+    level = np.maximum(np.sum(squares, axis=0) / rows, 1e-12)
     share = np.minimum(independent_rows(regression.half.runs, residual) / rows, 1.0)
-    weight = np.tile(np.sqrt(share / level), len(inner))
+    weight = np.tile(np.sqrt(share / level), len(squares))
     design = regression.whitened(whitening, columns) * scale * weight[:, None]
     target = whitening.apply(regression.half.target.astype(np.float32)) * weight
     return np.asarray(design, float), np.asarray(target, float)
@@ -168,12 +169,12 @@ def _tempered(
 
 def _without(design: FloatArray, target: FloatArray, first: int) -> tuple[FloatArray, FloatArray]:
     """Gram matrix and slope of all columns but the first, those taken out as nuisances."""
-    gram, slope = design.T @ design, design.T @ target
-    inner = cho_factor(gram[:first, :first] + np.eye(first))
+    gram, slope = inner(design, design), design.T @ target
+    factor = cho_factor(gram[:first, :first] + np.eye(first))
     cross = gram[:first, first:]
-    left = gram[first:, first:] - cross.T @ cho_solve(inner, cross)
+    left = gram[first:, first:] - cross.T @ cho_solve(factor, cross)
     left = 0.5 * (left + left.T) + ROUNDING * np.diag(np.diag(gram)[first:])
-    return left, slope[first:] - cross.T @ cho_solve(inner, slope[:first])
+    return left, slope[first:] - cross.T @ cho_solve(factor, slope[:first])
 
 
 def _candidates(

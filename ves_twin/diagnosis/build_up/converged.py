@@ -10,6 +10,7 @@ from ves_twin.core.types import FloatArray, SingleArray
 from ves_twin.diagnosis.build_up.bench import STRAINED
 from ves_twin.diagnosis.evidence import Evidence
 from ves_twin.diagnosis.forward import Hypothesis
+from ves_twin.diagnosis.inner import inner
 from ves_twin.diagnosis.linearise import linearise
 from ves_twin.diagnosis.refine import WORTH, Fit, refine
 
@@ -83,7 +84,7 @@ def _descended(evidence: Evidence, fit: Fit) -> FloatArray | None:
     ends = np.append(ends, [[-np.inf], [np.inf]], axis=1)
     here = np.append(fit.shift[others], fit.step_share) / sd
     columns = evidence.whitening.apply(fit.local.columns[[*mine, len(runs.nuisances)]]).T
-    factor = cho_factor(columns.T @ columns + np.eye(len(sd)))
+    factor = cho_factor(inner(columns, columns) + np.eye(len(sd)))
     low, high = runs.low[free], runs.high[free]
     begin = np.clip(fit.sizes, low, high)
     unit = np.maximum(np.abs(begin), 0.1 * (high - low))

@@ -14,6 +14,7 @@ from ves_twin.diagnosis.build_up.discrepancy import discrepancy, usual_shrinkage
 from ves_twin.diagnosis.build_up.products import Products
 from ves_twin.diagnosis.build_up.trial_columns import TrialColumns
 from ves_twin.diagnosis.build_up.trials import Trial
+from ves_twin.diagnosis.inner import inner
 from ves_twin.diagnosis.runs import Runs
 from ves_twin.diagnosis.whitening import Whitening
 
@@ -229,7 +230,7 @@ class Regression:
             hessian, gradient = hessian + np.eye(len(scale)), scale * gradient
         else:
             design = self.whitened(whitening, columns) * scale
-            hessian = design.T @ design + np.eye(len(scale))
+            hessian = inner(design, design) + np.eye(len(scale))
             gradient = design.T @ whitening.apply(self.half.target.astype(np.float32))
         shares = np.asarray(np.linalg.solve(hessian, gradient), float)
         residual = self.half.target - np.tensordot(shares * scale, columns, axes=1)
@@ -251,12 +252,12 @@ class Regression:
         gram, cross, power = self._products
         at, nuisances = self._at(chosen), len(self.half.nuisances)
         scale = np.concatenate([np.ones(nuisances), *(self.prior[n] for n in chosen)])
-        inner = gram[:, at[:, None], at] * np.outer(scale, scale)
+        own = gram[:, at[:, None], at] * np.outer(scale, scale)
         slope = cross[:, at] * scale
         weights = np.ones(len(power)) if weights is None else weights
-        hessian = np.tensordot(weights, inner, axes=1) + prior * np.eye(len(at))
+        hessian = np.tensordot(weights, own, axes=1) + prior * np.eye(len(at))
         shares = np.linalg.solve(hessian, weights @ slope)
-        left = power - 2.0 * slope @ shares + inner @ shares @ shares
+        left = power - 2.0 * slope @ shares + own @ shares @ shares
         mean = np.maximum(left, 0.0) / np.maximum(self.half.kept.sum(axis=0), 1)
         return PlainFit(shares, scale, np.maximum(self.level * np.sqrt(mean), self.quietest))
 
@@ -311,7 +312,7 @@ class Regression:
         columns = np.where(kept, np.concatenate([self.half.nuisances, *every]) / self.level, 0.0)
         target = np.where(kept, self.half.target / self.level, 0.0)
         weighed = np.moveaxis(columns, 2, 0).astype(float)
-        gram = weighed @ weighed.transpose(0, 2, 1)
+        gram = np.stack([inner(part.T, part.T) for part in weighed])
         cross = np.stack([part @ column for part, column in zip(weighed, target.T, strict=True)])
         return gram, cross, np.sum(np.square(target), axis=0)
 
@@ -320,7 +321,7 @@ class Regression:
         kept = self.half.kept
         weighed = np.where(kept, columns / self.level, 0.0).reshape(len(columns), -1).T * scale
         target = np.where(kept, self.half.target / self.level, 0.0).ravel()
-        hessian = weighed.T @ weighed + RIDGE * np.eye(len(scale))
+        hessian = inner(weighed, weighed) + RIDGE * np.eye(len(scale))
         shares = np.linalg.solve(hessian, weighed.T @ target)
         return np.asarray(self.half.target - np.tensordot(shares * scale, columns, axes=1))
 
@@ -355,7 +356,7 @@ class Regression:
             every = [self.half.nuisances, *self.half.columns.of(range(len(self.trials)))]
             rows = whitening.apply(np.concatenate(every))
             target = whitening.apply(self.half.target.astype(np.float32))
-            self._under[:] = [Products(whitening, rows @ rows.T, rows @ target)]
+            self._under[:] = [Products(whitening, inner(rows.T, rows.T), rows @ target)]
         return self._under[0]
 
 

@@ -7,6 +7,7 @@ from scipy.stats import t as student
 
 from ves_twin.core.types import FloatArray
 from ves_twin.diagnosis.evidence import Evidence
+from ves_twin.diagnosis.inner import inner
 from ves_twin.diagnosis.refine import Fit, bare_residual
 
 BLOCKS = 8
@@ -37,7 +38,7 @@ def half_widths(evidence: Evidence, fit: Fit, confidence: float) -> FloatArray:
     design = np.column_stack([fit.free, whitening.apply(fit.local.columns[rows]).T])
     prior = np.ones(design.shape[1])
     prior[: len(fit.sizes)] = 0.0
-    hessian = design.T @ design + np.diag(prior)
+    hessian = inner(design, design) + np.diag(prior)
     root = 1.0 / np.sqrt(np.maximum(np.diag(hessian), 1e-30))
     scaled = hessian * np.outer(root, root) + 1e-12 * np.eye(len(hessian))
     inverse = np.linalg.inv(scaled) * np.outer(root, root)

@@ -72,7 +72,7 @@ class Day:
             if len(rows):
                 away = np.abs(np.log(np.sqrt(screen.power[rows]) / PROBE))
                 best = int(rows[np.argmin(away)])
-                shape = screen.shapes[:, bank.shape[best]]
+                shape = screen.shape(best)
                 found[:, n] = bank.factor[best] / float(bank.sizes[best][0]) * shape
         return found
 

@@ -191,7 +191,7 @@ def _left_out(basis: Basis) -> tuple[str, ...]:
     """What there was no time for."""
     if not basis.left_out:
         return ()
-    return (f"No time was left for {_listed(list(basis.left_out))} (--minutes).",)
+    return (f"No time was left for {_listed(list(basis.left_out))} (--minutes, or Ctrl-C).",)
 
 
 def _repeats(basis: Basis) -> tuple[str, ...]:
