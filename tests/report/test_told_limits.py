@@ -24,6 +24,7 @@ from ves_twin.report.diagnosis.answer import (
     next_step,
     verdict_sentence,
 )
+from ves_twin.report.diagnosis.basis import rests_on
 from ves_twin.report.diagnosis.limits import blind_causes
 from ves_twin.report.diagnosis.out_of_step import out_of_step_sentence
 from ves_twin.report.diagnosis.strained import tuned_words
@@ -114,3 +115,13 @@ def test_a_simulation_that_falls_out_of_step_is_told_and_what_was_done_instead()
     unknown = replace(by_noise, verdict=Kind.UNKNOWN, causes=(), proved=())
     assert verdict_sentence(unknown).startswith("Nothing can be told")
     assert "times the most that noise leaves" in confidence_sentence(unknown)
+
+
+@pytest.mark.parametrize(
+    ("count", "said"), [(1, "part 0 ("), (4, "part 2 and part 3 ("), (9, "part 3 and 5 more (")]
+)
+def test_what_there_was_no_time_for_is_told_in_one_short_line(count, said):
+    told = rests_on(verdict(left_out=tuple(f"part {n}" for n in range(count))).basis)
+    assert said in told
+    assert told.count("part") == min(count, 4)
+    assert "--minutes, or Ctrl-C" in told

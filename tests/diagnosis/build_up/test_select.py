@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from linear import KINDS, Known, Linear, Narrow, drawn, halves
 
+from ves_twin.diagnosis.build_up.regression import RIDGE
 from ves_twin.diagnosis.build_up.select import Selector
 
 PLANT = Linear(couplings=("sum", "difference"))
@@ -41,7 +42,13 @@ def test_what_entered_in_anothers_place_is_exchanged(seed):
 def test_plain_errors_by_products_are_those_of_the_columns():
     regression = halves(PLANT, {"viscous@a:size": 0.6}, 3).regression
     for chosen in ([], [0], [3, 1], list(range(len(regression.trials)))[:6]):
-        left = regression._plainly(*regression.design(chosen))
+        columns, scale = regression.design(chosen)
+        half, level = regression.half, regression.level
+        design = np.where(half.kept, columns / level, 0.0).reshape(len(columns), -1).T * scale
+        target = np.where(half.kept, half.target / level, 0.0).ravel()
+        ridge = RIDGE * np.eye(len(scale))
+        shares = np.linalg.solve(design.T @ design + ridge, design.T @ target)
+        left = regression.residual(chosen, shares * scale)
         direct = float(np.sum(np.log(regression.half.rms(left))))
         assert regression.plain_error(chosen) == pytest.approx(direct, abs=1e-5)
 

@@ -135,7 +135,7 @@ def averaged_half_widths(
     if not proved:
         return {}
     design, target = _tempered(regression, whitening, residual)
-    first = len(regression.half.nuisances)
+    first = regression.half.fixed
     gram, slope = _without(design, target, first)
     where = regression.places(range(len(regression.trials)))
     own = np.concatenate([where[n] - first for n in proved])

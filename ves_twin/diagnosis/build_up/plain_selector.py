@@ -11,7 +11,7 @@ import numpy as np
 from ves_twin.core.types import FloatArray
 from ves_twin.diagnosis.build_up.memory import independent_rows
 from ves_twin.diagnosis.build_up.regression import Regression
-from ves_twin.diagnosis.build_up.select import CLEAR, MOST, PAIRED
+from ves_twin.diagnosis.build_up.select import CLEAR, MORE, MOST, PAIRED
 
 ROUNDS = 3
 """Times that weights of channels are learnt anew from what they leave."""
@@ -64,7 +64,9 @@ class PlainSelector:
         """The choices on the way, the last one last."""
         chosen = self._pruned(self._swapped(list(begin), self._scale(begin)))
         found = [chosen]
-        for _ in range(MOST):
+        for n in range(MOST):
+            if n and self.regression.half.runs.budget.skips(MORE):
+                break
             scale = self._scale(chosen)
             more = self._more(chosen, scale)
             if not more or len(chosen) >= MOST:
@@ -98,9 +100,8 @@ class PlainSelector:
         """Weights and independent rows by what a choice leaves."""
         half, regression = self.regression.half, self.regression
         rows, found = np.maximum(half.kept.sum(axis=0), 1), regression.plain(chosen)
-        columns, _ = regression.design(chosen)
         for _ in range(ROUNDS):
-            left = half.target - np.tensordot(found.shares * found.scale, columns, axes=1)
+            left = regression.residual(chosen, found.shares * found.scale)
             count = independent_rows(half.runs, left)
             weights = count / rows * np.square(regression.level / found.rms)
             found = regression.plain(chosen, weights, 1.0)

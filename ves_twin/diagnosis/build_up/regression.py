@@ -11,6 +11,7 @@ import numpy as np
 
 from ves_twin.core.types import BoolArray, FloatArray, IntArray, SingleArray
 from ves_twin.diagnosis.build_up.discrepancy import discrepancy, usual_shrinkage
+from ves_twin.diagnosis.build_up.eliminated import Eliminated
 from ves_twin.diagnosis.build_up.products import Products
 from ves_twin.diagnosis.build_up.trial_columns import TrialColumns
 from ves_twin.diagnosis.build_up.trials import Trial
@@ -65,10 +66,15 @@ class Half:
         """Rows that were measured (rows, c)."""
         return self.runs.kept
 
-    @property
+    @cached_property
     def nuisances(self) -> SingleArray:
         """All nuisances, the shared ones first."""
         return np.concatenate([self.shared, self.own])
+
+    @property
+    def fixed(self) -> int:
+        """How many nuisances there are, which no choice leaves out."""
+        return len(self.shared) + len(self.own)
 
     def rms(self, rows: FloatArray) -> FloatArray:
         """Of each channel, where it was measured (c,)."""
@@ -174,14 +180,25 @@ class Regression:
 
     def design(self, chosen: Sequence[int]) -> tuple[SingleArray, FloatArray]:
         """Columns (k, rows, c) of nuisances and trials, and the prior sd of each."""
-        nuisances = self.half.nuisances
-        columns = [nuisances, *self.half.columns.of(chosen)]
-        scale = [np.ones(len(nuisances)), *(self.prior[n] for n in chosen)]
-        return np.concatenate(columns), np.concatenate(scale)
+        columns = [self.half.nuisances, *self.half.columns.of(chosen)]
+        return np.concatenate(columns), self.scale(chosen)
+
+    def scale(self, chosen: Sequence[int]) -> FloatArray:
+        """Prior sd of the amplitudes of nuisances and trials (k,)."""
+        return np.concatenate([np.ones(self.half.fixed), *(self.prior[n] for n in chosen)])
+
+    def residual(self, chosen: Sequence[int], amplitudes: FloatArray) -> FloatArray:
+        """What amplitudes (k,) of nuisances and trials leave (rows, c)."""
+        left, start = self.half.target, 0
+        for columns in (self.half.nuisances, *self.half.columns.of(chosen)):
+            own = amplitudes[start : start + len(columns)]
+            left = left - np.tensordot(own, columns, axes=1)
+            start += len(columns)
+        return left
 
     def places(self, chosen: Sequence[int]) -> dict[int, IntArray]:
         """Where each chosen trial's columns stand in the design."""
-        found, start = {}, len(self.half.shared) + len(self.half.own)
+        found, start = {}, self.half.fixed
         for n in chosen:
             width = self.trials[n].width
             found[n] = np.arange(start, start + width)
@@ -209,12 +226,11 @@ class Regression:
             memory: whether it has a memory; only the size of each channel if not.
             apart: whether channels of a motion are by themselves where it has none.
         """
-        columns, scale = self.design(chosen)
-        target = self.half.target
         shrinkage = usual_shrinkage(self.half.runs, memory, apart)
-        whitening, residual = start, target
+        whitening, residual = start, self.half.target
         if whitening is None:
-            residual = self._plainly(columns, scale)
+            plain = self.plain(chosen)
+            residual = self.residual(chosen, plain.shares * plain.scale)
         for _ in range(rounds):
             whitening = discrepancy(self.half.runs, residual, memory=memory, shrinkage=shrinkage)
             found = self.solve(chosen, whitening)
@@ -223,17 +239,17 @@ class Regression:
 
     def solve(self, chosen: Sequence[int], whitening: Whitening) -> LinearFit:
         """Amplitudes under a given discrepancy."""
-        columns, scale = self.design(chosen)
+        scale = self.scale(chosen)
         if self._under and self._under[0].whitening is whitening:
             at = self._at(chosen)
             hessian, gradient = self._under[0].of(at, at, scale, scale), self._under[0].cross[at]
             hessian, gradient = hessian + np.eye(len(scale)), scale * gradient
         else:
-            design = self.whitened(whitening, columns) * scale
+            design = self.whitened(whitening, self.design(chosen)[0]) * scale
             hessian = inner(design, design) + np.eye(len(scale))
             gradient = design.T @ whitening.apply(self.half.target.astype(np.float32))
         shares = np.asarray(np.linalg.solve(hessian, gradient), float)
-        residual = self.half.target - np.tensordot(shares * scale, columns, axes=1)
+        residual = self.residual(chosen, shares * scale)
         samples = float(np.sum(whitening.freedom))
         return LinearFit(
             tuple(chosen), whitening, scale, shares, hessian, gradient, samples, residual
@@ -249,15 +265,14 @@ class Regression:
             weights: of the squares of each channel in units of its level (c,); one if None.
             prior: weight of the squares of amplitudes in their prior sd.
         """
-        gram, cross, power = self._products
-        at, nuisances = self._at(chosen), len(self.half.nuisances)
-        scale = np.concatenate([np.ones(nuisances), *(self.prior[n] for n in chosen)])
-        own = gram[:, at[:, None], at] * np.outer(scale, scale)
-        slope = cross[:, at] * scale
+        power = self._products[2]
         weights = np.ones(len(power)) if weights is None else weights
-        hessian = np.tensordot(weights, own, axes=1) + prior * np.eye(len(at))
-        shares = np.linalg.solve(hessian, weights @ slope)
-        left = power - 2.0 * slope @ shares + own @ shares @ shares
+        if not (self._last and self._last[0].serves(weights, prior)):
+            own = Eliminated.of(self._products, self.half.fixed, weights, prior)
+            self._last[:] = [own]
+        scale = self.scale(chosen)
+        at = self._at(chosen)[self.half.fixed :] - self.half.fixed
+        shares, left = self._last[0].fit(at, scale[self.half.fixed :])
         mean = np.maximum(left, 0.0) / np.maximum(self.half.kept.sum(axis=0), 1)
         return PlainFit(shares, scale, np.maximum(self.level * np.sqrt(mean), self.quietest))
 
@@ -299,7 +314,7 @@ class Regression:
     def _columns(self) -> list[IntArray]:
         """Where each trial's columns stand behind the nuisances, all trials in turn."""
         widths = [trial.width for trial in self.trials]
-        ends = np.cumsum([len(self.half.shared) + len(self.half.own), *widths])
+        ends = np.cumsum([self.half.fixed, *widths])
         return [np.arange(a, b) for a, b in pairwise(ends)]
 
     @cached_property
@@ -316,14 +331,10 @@ class Regression:
         cross = np.stack([part @ column for part, column in zip(weighed, target.T, strict=True)])
         return gram, cross, np.sum(np.square(target), axis=0)
 
-    def _plainly(self, columns: SingleArray, scale: FloatArray) -> FloatArray:
-        """What plain least squares leave, each channel in units of what is to be explained."""
-        kept = self.half.kept
-        weighed = np.where(kept, columns / self.level, 0.0).reshape(len(columns), -1).T * scale
-        target = np.where(kept, self.half.target / self.level, 0.0).ravel()
-        hessian = inner(weighed, weighed) + RIDGE * np.eye(len(scale))
-        shares = np.linalg.solve(hessian, weighed.T @ target)
-        return np.asarray(self.half.target - np.tensordot(shares * scale, columns, axes=1))
+    @cached_property
+    def _last(self) -> list[Eliminated]:
+        """Plain squares by the weights that were asked for last; none at first."""
+        return []
 
     def gains(self, fit: LinearFit, others: Sequence[int]) -> Gains:
         """Chi^2 that each of other trials would take beside a fit, under its discrepancy."""
@@ -342,7 +353,7 @@ class Regression:
 
     def _at(self, chosen: Sequence[int]) -> IntArray:
         """Where nuisances and chosen trials stand among all columns."""
-        nuisances = np.arange(len(self.half.nuisances))
+        nuisances = np.arange(self.half.fixed)
         return np.concatenate([nuisances, *(self._columns[n] for n in chosen)]).astype(int)
 
     @cached_property

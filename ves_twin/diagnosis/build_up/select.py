@@ -16,6 +16,9 @@ MOST = 60
 PAIRED = 30
 """Trials, by falling gain, of which every two are tried together."""
 
+MORE = "more causes beside those that were chosen"
+"""What is left out where the time ends before the search for them does."""
+
 CLEAR = 1.0
 """Logarithm of odds by which a choice must be better than the last one for the search to go on."""
 
@@ -88,7 +91,7 @@ class Selector:
     def _grown(self, chosen: list[int]) -> _Choice:
         """With all that is worth its price beside a choice, and without what is not any more."""
         fit = self.regression.fit(chosen)
-        while len(chosen) < MOST:
+        while len(chosen) < MOST and not (chosen and self.regression.half.runs.budget.skips(MORE)):
             more, there = self._next(chosen, fit)
             if there is None:
                 break

@@ -17,6 +17,7 @@ from ves_twin.core.types import FloatArray
 from ves_twin.data.column_expression import quoted
 from ves_twin.diagnosis.forward import Excitation
 from ves_twin.diagnosis.likeness import FACTORS
+from ves_twin.machines.mjcf.cyclic import is_cyclic, turned_by
 from ves_twin.machines.mjcf.forward import MjcfForward
 from ves_twin.machines.mjcf.inverse import efforts_along, smoothed
 from ves_twin.machines.mjcf.machine import Rig
@@ -140,6 +141,18 @@ def implausible(rig: Rig, recording: Recording) -> Implausible | None:
     return Implausible(what, f"efforts that fit the model only with {came}", f"check {keys}")
 
 
+def _wheels(rig: Rig, recording: Recording, joints: Sequence[str]) -> dict[str, FloatArray]:
+    """Angles (n,) of those joints whose speed alone is told, where it is enough."""
+    told = rig.description.compare
+    speeds = {c.joint: (s, c.sign) for s, c in told.items() if c.joint and c.of == "speed"}
+    speeds = {j: one for j, one in speeds.items() if one[0] in recording.signals}
+    return {
+        joint: turned_by(sign * recording[signal][:, 0], recording.time)
+        for joint, (signal, sign) in speeds.items()
+        if joint in joints and is_cyclic(rig.model, joint)
+    }
+
+
 @dataclass(frozen=True)
 class _Seen:
     """Recorded positions and efforts.
@@ -150,6 +163,7 @@ class _Seen:
         positions: of every joint that is not locked (n,).
         efforts: of each actuator (n,), as the model signs them.
         names: signal of each effort.
+        wheels: angles of joints whose speed alone was recorded, from where they began (n,).
     """
 
     rig: Rig
@@ -157,6 +171,7 @@ class _Seen:
     positions: Mapping[str, FloatArray]
     efforts: Mapping[str, FloatArray]
     names: tuple[str, ...]
+    wheels: Mapping[str, FloatArray]
 
     @staticmethod
     def of(rig: Rig, recording: Recording) -> _Seen | None:
@@ -165,6 +180,10 @@ class _Seen:
         joints = [model.joint(i).name for i in range(model.njnt)]
         places = {j: forward.position_of(j) for j in joints if j not in told.drive.locked}
         single = all(int(model.jnt_type[model.joint(j).id]) in SINGLE for j in joints)
+        wheels = _wheels(
+            rig, recording, [j for j, s in places.items() if s not in recording.signals]
+        )
+        places = {j: signal for j, signal in places.items() if j not in wheels}
         if not (single and places and all(s in recording.signals for s in places.values())):
             return None
         sources = {c.actuator: (s, c.sign) for s, c in told.compare.items() if c.actuator}
@@ -172,7 +191,7 @@ class _Seen:
         sources = {
             a: (s, sign)
             for a, (s, sign) in sources.items()
-            if s in recording.signals and driven_joint(model, a) in places
+            if s in recording.signals and driven_joint(model, a) in {*places, *wheels}
         }
         if not sources:
             return None
@@ -182,14 +201,16 @@ class _Seen:
         signs = {c.joint: c.sign for c in told.compare.values() if c.of == "position" and c.joint}
         positions = {j: signs.get(j, 1) * recording[s][rows, 0] for j, s in places.items()}
         efforts = {a: sign * recording[s][rows, 0] for a, (s, sign) in sources.items()}
-        every = [*positions.values(), *efforts.values()]
+        wheels = {j: turned[rows] for j, turned in wheels.items()}
+        every = [*positions.values(), *wheels.values(), *efforts.values()]
         if not all(np.all(np.isfinite(column)) for column in every):
             return None
         poses = recording.info.log == POSES
         if len(recording.time) < FEWEST:
             return None
         fed = Excitation("seen", recording.time[rows], {}, poses, told.rate)
-        return _Seen(rig, fed, positions, efforts, tuple(s for s, _ in sources.values()))
+        names = tuple(signal for signal, _ in sources.values())
+        return _Seen(rig, fed, positions, efforts, names, wheels)
 
     @cached_property
     def _plain(self) -> Work:
@@ -283,7 +304,8 @@ class _Seen:
 
     def left(self, reading: _Reading) -> FloatArray:
         """Share of the spread of each effort that inverse dynamics and friction leave (c,)."""
-        positions = {j: reading.positions.get(j, 1.0) * q for j, q in self.positions.items()}
+        positions = dict(self.wheels)
+        positions |= {j: reading.positions.get(j, 1.0) * q for j, q in self.positions.items()}
         efforts = {a: reading.efforts.get(a, 1.0) * u for a, u in self.efforts.items()}
         for joint, zero in reading.zeros.items():
             positions[joint] = positions[joint] + zero

@@ -15,6 +15,9 @@ NEARLY_ALL = 0.99
 STAYS = 0.005
 """Change of an rms error that no per cent tells."""
 
+FEW = 4
+"""Parts of the work without time that are told by name; verdict.json has all."""
+
 LOUD = 3.0
 """Sigma of what is left of a channel from which that is more than noise."""
 
@@ -191,7 +194,9 @@ def _left_out(basis: Basis) -> tuple[str, ...]:
     """What there was no time for."""
     if not basis.left_out:
         return ()
-    return (f"No time was left for {_listed(list(basis.left_out))} (--minutes, or Ctrl-C).",)
+    few, count = list(basis.left_out[:FEW]), len(basis.left_out) - FEW
+    named = _listed([*few, *([f"{count} more"] if count > 0 else [])])
+    return (f"No time was left for {named} (--minutes, or Ctrl-C).",)
 
 
 def _repeats(basis: Basis) -> tuple[str, ...]:

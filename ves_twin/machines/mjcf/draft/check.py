@@ -9,7 +9,9 @@ import mujoco
 import numpy as np
 
 from ves_twin.core.types import FloatArray
+from ves_twin.machines.mjcf.cyclic import is_cyclic, turned_by
 from ves_twin.machines.mjcf.draft.changes import DEGREE, changes, misnamed
+from ves_twin.machines.mjcf.draft.effort_fit import FAR, LOADED, TELLS, EffortFit
 from ves_twin.machines.mjcf.draft.locked import locked_joints, words_of_locked
 from ves_twin.machines.mjcf.draft.log_columns import LogColumns, is_usual
 from ves_twin.machines.mjcf.draft.match import Match, Matches
@@ -22,9 +24,6 @@ from ves_twin.machines.mjcf.places import driven_joint
 GAINED = 0.15
 """Share of one joint's power that a change must explain more to be proposed: well above what
 signs and units that are right gain by chance on rough models."""
-
-TELLS = 0.03
-"""Share of an effort's power that the model must explain for the sign of its slope to count."""
 
 STRONG = 0.3
 """The same for the size of that slope to count."""
@@ -39,25 +38,6 @@ swung up: 0.87 with a zero upright, 0.94 hanging)."""
 
 TURN = 0.02
 """Weight against turning an effort's sign, so that where all else is equal none is turned."""
-
-LOADED = 0.2
-"""Share of an effort's rms that a steady load is, in the log and in the model, for its sign to
-count; and weight against a change by which it would pull the other way, above GAINED: a current
-that is turned where a position counts backwards would let a weight push up."""
-
-WORKS = 0.1
-"""Share of the most work from which on its sign counts: what springs and masses give back is less
-over some periods of a motion."""
-
-MOST = 0.5
-"""Share of an effort that the model must explain once its columns are meant otherwise."""
-
-DRIVES = 0.6
-"""Share of the most work from which on it decides alone: an effort that is mostly friction pushes
-its joint, whatever a model says that lacks it. A pendulum that is swung up has 0.75."""
-
-FAR = 3.0
-"""Factor between an effort and the model's from which on it is told."""
 
 ODD = 50.0
 """Times what the model needs from which on an effort is in another unit, whatever friction does."""
@@ -98,10 +78,10 @@ def checked(log: LogColumns, matches: Matches, model: mujoco.MjModel) -> Checked
     the change that explains most first.
     """
     positions = matches.of(Quantity.POSITION)
-    moved = {m.spot.name for m in positions}
-    locked = locked_joints(model, matches.found)
+    locked, cyclic = locked_joints(model, matches.found), _cyclic(matches, model)
+    moved = {*(m.spot.name for m in positions), *locked, *cyclic}
     every = [model.joint(i).name for i in range(model.njnt)]
-    absent = [name for name in every if name not in moved and name not in locked]
+    absent = [name for name in every if name not in moved]
     band = max((band_of(log.column(m.column), log.period, 0.99) for m in positions), default=1.0)
     corner = min(4.0 * max(band, 1.0 / (log.period * log.rows)), 0.2 / log.period)
     found, findings = list(matches.found), []
@@ -111,7 +91,7 @@ def checked(log: LogColumns, matches: Matches, model: mujoco.MjModel) -> Checked
         words = ", ".join(name or "one without a name" for name in absent)
         findings.append(f"signs are not checked: no column tells the position of {words}")
     else:
-        judge = _Judge(log, model, corner, locked)
+        judge = _Judge(log, model, corner, locked, cyclic)
         found, said = judge.corrected(found)
         findings += said
         motion = judge.motion(found)
@@ -124,55 +104,11 @@ def checked(log: LogColumns, matches: Matches, model: mujoco.MjModel) -> Checked
     return Checked(tuple(found), (*findings, *said), explained, motion, corner, dofs, locked)
 
 
-@dataclass(frozen=True)
-class _Fit:
-    """Of one effort on what the model needs.
-
-    Attributes:
-        slope: s.
-        share: of its power that the fit explains.
-        gain: what of that the model's effort adds to friction alone.
-        work: of the effort along the motion, as a share of the most that it could do.
-        free: whether any constant may stand between effort and column.
-        against: whether a steady load, as a weight, pulls the other way than the slope says.
-        size: rms of the effort over that of what the model needs.
-        alone: share of its power that the model explains by itself, the effort turned if need be.
-    """
-
-    slope: float
-    share: float
-    gain: float
-    work: float
-    free: bool
-    against: bool
-    size: float
-    alone: float
-
-    @property
-    def right(self) -> bool:
-        """Whether the model, as it is, is right about most of the effort; any constant if free."""
-        return self.usable and (self.free or self.alone > MOST)
-
-    @property
-    def usable(self) -> bool:
-        """Whether the slope says something: the model explains a part, and by a likely factor."""
-        return self.gain > TELLS and (self.free or 1.0 / FAR < abs(self.slope) < FAR)
-
-    @property
-    def by_slope(self) -> bool:
-        """Whether the slope tells the sign, and not the work.
-
-        One joint of several may brake for all of a motion: where the model is right about most of
-        the effort, its slope counts.
-        """
-        return self.usable and (abs(self.work) < DRIVES or self.right)
-
-    @property
-    def sign(self) -> int:
-        """Of the slope, else of the work: a machine that only takes energy never gives any."""
-        if self.by_slope:
-            return int(np.sign(self.slope)) or 1
-        return -1 if self.work < -WORKS else 1
+def _cyclic(matches: Matches, model: mujoco.MjModel) -> tuple[str, ...]:
+    """Joints of which a speed alone is told, which is enough: where they stand changes nothing."""
+    told = {m.spot.name for m in matches.of(Quantity.POSITION)}
+    speeds = dict.fromkeys(m.spot.name for m in matches.of(Quantity.SPEED))
+    return tuple(name for name in speeds if name not in told and is_cyclic(model, name))
 
 
 @dataclass(frozen=True)
@@ -183,14 +119,18 @@ class _Judge:
     model: mujoco.MjModel
     corner: float
     locked: tuple[str, ...] = ()
+    cyclic: tuple[str, ...] = ()
 
     def motion(self, found: list[Match]) -> Motion:
-        """Along the positions as they are matched."""
-        positions = {
-            m.spot.name: m.factor * self.log.column(m.column) + m.zero
-            for m in found
-            if m.spot.quantity is Quantity.POSITION
-        }
+        """Along the positions as they are matched, and the speeds of joints without one."""
+        positions = {}
+        for m in found:
+            if m.spot.quantity is Quantity.POSITION:
+                positions[m.spot.name] = m.factor * self.log.column(m.column) + m.zero
+            elif m.spot.quantity is Quantity.SPEED and m.spot.name in self.cyclic:
+                speed = m.factor * self.log.column(m.column)
+                time = np.arange(len(speed), dtype=float) * self.log.period
+                positions[m.spot.name] = turned_by(speed, time)
         return motion_of(self.model, positions, self.log.period, self.corner)
 
     def corrected(self, found: list[Match]) -> tuple[list[Match], list[str]]:
@@ -276,28 +216,10 @@ class _Judge:
         column = smoothed(self.log.column(match.column), self.log.period, self.corner)
         return np.asarray(match.factor * column[motion.rows])
 
-    def fit(self, match: Match, motion: Motion) -> _Fit:
+    def fit(self, match: Match, motion: Motion) -> EffortFit:
         """Of a recorded effort, in its unit's SI, beside friction."""
         y, need = self.recorded(match, motion), self.needed(match, motion)
-        v = motion.speed[:, self.dof(match)]
-        slow = 0.05 * float(np.std(v)) or 1.0
-        friction = np.stack([v, np.tanh(v / slow), np.ones_like(v)], axis=1)
-        whole = np.column_stack([need, friction])
-        power = float(np.sum((y - y.mean()) ** 2)) or 1.0
-        slopes = np.linalg.lstsq(whole, y, rcond=None)[0]
-        shares = []
-        for basis in (whole, friction):
-            rest = y - basis @ np.linalg.lstsq(basis, y, rcond=None)[0]
-            shares.append(max(1.0 - float(rest @ rest) / power, 0.0))
-        most = float(np.linalg.norm(v) * np.linalg.norm(y)) or 1.0
-        gain, work = shares[0] - shares[1], float(v @ y) / most
-        loads = float(slopes[0] * need.mean()), float(y.mean())
-        heavy = min(map(abs, loads)) > LOADED * float(np.sqrt(np.mean(y**2)))
-        against = gain > TELLS and heavy and loads[0] * loads[1] < 0.0
-        size = float(np.sqrt(np.mean(y**2) / max(float(np.mean(need**2)), 1e-300)))
-        alone = 1.0 - min(float(np.var(y - need)), float(np.var(y + need))) * len(y) / power
-        told = match.electrical, against, size, alone
-        return _Fit(float(slopes[0]), shares[0], gain, work, *told)
+        return EffortFit.of(y, need, motion.speed[:, self.dof(match)], match.electrical)
 
     def power(self, found: list[Match], motion: Motion) -> float:
         """Mean of what all efforts give to their joints [W]: what friction takes, so above 0."""

@@ -113,7 +113,8 @@ def chosen(
     if felt:
         moved_by = [m for m in positions if m.spot.name in felt]
         return _of_loops(log, moved_by, drives, model, noise, felt)
-    if check.motion is None or driven | unknown != single or wide != len(single) or not driven:
+    whole = check.motion is not None and single <= told and wide == len(single)
+    if not whole or driven | unknown != single or not driven:
         free = sorted(single - driven)
         why = f"no effort is told at {', '.join(free)}" if free else "not every position is told"
         return Chosen(Mode.CONTROL, why, RATES[1], check.corner, noise, imposed=imposed)

@@ -14,9 +14,11 @@ import numpy as np
 from ves_twin.core.errors import InvalidInputError
 from ves_twin.core.quantity import quantity
 from ves_twin.core.recording.recording import Recording
+from ves_twin.core.types import BoolArray, FloatArray
 from ves_twin.diagnosis.forward import Excitation
 from ves_twin.machines.mjcf.columns import read_rig_recording
 from ves_twin.machines.mjcf.description import KIND, Mode, RigDescription
+from ves_twin.machines.mjcf.draft.by_number import by_number
 from ves_twin.machines.mjcf.draft.check import Checked, checked
 from ves_twin.machines.mjcf.draft.chosen import Chosen, chosen
 from ves_twin.machines.mjcf.draft.draft_text import compared, draft_text, signal_name, used
@@ -27,6 +29,7 @@ from ves_twin.machines.mjcf.draft.runs_away import runs_away
 from ves_twin.machines.mjcf.draft.shape import by_shape
 from ves_twin.machines.mjcf.draft.spots import spots_of
 from ves_twin.machines.mjcf.draft.unmeasured import unmeasured
+from ves_twin.machines.mjcf.draft.untold import untold
 from ves_twin.machines.mjcf.forward import MjcfForward
 from ves_twin.machines.mjcf.machine import Rig
 from ves_twin.machines.mjcf.pieces import pieces
@@ -111,7 +114,7 @@ def draft(model: Path, logs: Sequence[Path], out: Path, rate: float | None = Non
         raise InvalidInputError("logs", "none", "at least one")
     given, log = GivenModel.read(model), LogColumns.read(logs[0], rate)
     spots = spots_of(given.model)
-    matches = by_shape(log, matched(log, spots), spots)
+    matches = by_number(log, by_shape(log, matched(log, spots), spots), spots)
     check = checked(log, matches, given.model)
     file = out.with_suffix(".xml").name if given.text else os.path.relpath(model, out.parent)
 
@@ -131,14 +134,16 @@ def draft(model: Path, logs: Sequence[Path], out: Path, rate: float | None = Non
         now = version(chosen(log, matches, check, given.model, why))
     if now.mode.mode is Mode.CONTROL and now.explained[now.least] < HALF:
         recording = read_rig_recording(logs[0], now.rig)
-        if runs_away(MjcfForward.of(now.rig), recording):
+        drifts = now.explained[now.least] < AWAY
+        if drifts or runs_away(MjcfForward.of(now.rig), recording):
             now = _in_pieces(now, version, 1.0 / log.period)
     for other in logs[1:]:
         read_rig_recording(other, now.rig)
     left = dict(matches.left)
     left |= {c: "says what was asked for" for c in matches.setpoints}
     left |= {m.column: "is a speed" for m in check.found if not used(m, now.mode)}
-    look = (*given.notes, *log.notes, *check.findings, *now.coarse)
+    silent = untold(given.model, check.found, check.locked)
+    look = (*given.notes, *log.notes, *check.findings, *silent, *now.coarse)
     words, stretch = f"{now.mode.mode}: {now.mode.why}", _stretch(now.mode, log)
     guesses = _guesses(check, now.mode)
     told = {name: max(share, 0.0) for name, share in now.explained.items()}
@@ -212,6 +217,9 @@ def _rig(text: str, given: GivenModel, out: Path) -> Rig:
 def _predicted(rig: Rig, log: Path) -> tuple[dict[str, float], list[str]]:
     """Of the model, fed with the log's commands: what it explains, and what its step spoils.
 
+    Short pieces begin where the log is, and hardly leave it: a share counts against what the first
+    rows of each, gone on with straight on, leave as well as against the spread.
+
     Returns:
         Signal -> share of its power, below zero where it runs away; a sentence for channels that
         do, or that the step puts far off.
@@ -221,17 +229,20 @@ def _predicted(rig: Rig, log: Path) -> tuple[dict[str, float], list[str]]:
     signals = {name: values[rows] for name, values in recording.signals.items()}
     forward, short = MjcfForward.of(rig), Recording(recording.time[rows], signals, recording.info)
     fed = [Excitation.of(piece, forward.drive) for piece in pieces(rig, short)]
-    found, finer = (
-        np.concatenate([forward.simulate(one, {}, refined) for one in fed])
-        for refined in (False, True)
-    )
+    parts = [forward.simulate(one, {}) for one in fed]
+    found = np.concatenate(parts)
+    finer = np.concatenate([forward.simulate(one, {}, True) for one in fed])
+    speeds = np.array([channel.unit.endswith("/s") for channel in forward.channels])
+    coasting = np.concatenate([_coasting(part, speeds) for part in parts])
     shares: dict[str, list[float]] = {}
     coarse: dict[str, tuple[float, str]] = {}
     lost: list[str] = []
-    for column, half, channel in zip(found.T, finer.T, forward.channels, strict=True):
+    channels = zip(found.T, finer.T, coasting.T, forward.channels, strict=True)
+    for column, half, straight, channel in channels:
         off = 2.0 * float(np.sqrt(np.mean((half - column) ** 2)))  # to first order
         y = short[channel.signal][: len(column), channel.column]
         rest, power = y - column, float(np.sum((y - y.mean()) ** 2)) or 1.0
+        power = min(power, float(np.sum((y - straight) ** 2)) or power)
         share = 1.0 - float(rest @ rest) / power if np.all(np.isfinite(rest)) else -np.inf
         shares.setdefault(channel.signal, []).append(share)
         if share < AWAY:
@@ -244,6 +255,12 @@ def _predicted(rig: Rig, log: Path) -> tuple[dict[str, float], list[str]]:
     step = float(rig.model.opt.timestep)
     words = [f"{'; '.join(lost)}: has a joint no damping or friction in the model?"] if lost else []
     return {name: min(found) for name, found in shares.items()}, [*words, *_coarse(coarse, step)]
+
+
+def _coasting(rows: FloatArray, speeds: BoolArray) -> FloatArray:
+    """First rows of a simulation (n, c) gone on with straight on; of a speed the first row."""
+    rate = np.where(speeds, 0.0, rows[1] - rows[0])
+    return np.asarray(rows[0] + np.arange(len(rows))[:, None] * rate)
 
 
 def _coarse(found: dict[str, tuple[float, str]], step: float) -> list[str]:
