@@ -91,3 +91,23 @@ def test_pieces_do_not_hide_that_a_model_explains_nothing(log, model, write, tmp
     turned = log | {f"valve{n}": log[f"valve{n}"][::-1] for n in range(1, 5)}
     found = draft(model, [write(turned)], tmp_path / "rig.toml")
     assert min(found.explained.values()) < 0.2
+
+
+ARMED = FLOATER.replace(
+    '<site name="s1"',
+    '<body pos="0.2 0 0"><joint name="arm1" axis="0 0 1" damping="0.1"/>'
+    '<geom size="0.02" pos="0.1 0 0" mass="0.2"/></body><site name="s1"',
+).replace("</actuator>", '<motor name="arm1_motor" joint="arm1"/></actuator>')
+
+
+def test_a_torque_is_a_motors_and_no_thrusters_whatever_its_number(tmp_path, write):
+    path = tmp_path / "armed.xml"
+    path.write_text(ARMED.format(push=0.5))
+    rng = np.random.default_rng(1)
+    names = ("x_m", "y_m", "theta_rad", "q1_rad", "tau1_Nm", "valve1", "valve2", "valve3", "valve4")
+    log = {"t_s": 0.02 * np.arange(500)}
+    log |= {name: np.cumsum(0.01 * rng.standard_normal(500)) for name in names}
+    found = draft(path, [write(log)], tmp_path / "rig.toml")
+    taken = {guess.column: guess.taken_for for guess in found.guesses}
+    assert taken["tau1_Nm"].startswith("actuator arm1_motor ")
+    assert taken["valve1"].startswith("actuator thr1 ")

@@ -216,5 +216,6 @@ def _unit_fits(unit: str, spot: Spot) -> bool:
     if spot.quantity is Quantity.EFFORT and unit in ELECTRICAL:
         return spot.unit not in ("m", "rad")
     if spot.quantity is Quantity.EFFORT and spot.unit == "1":
-        return unit in EFFORTS
+        other = {"N": "N*m", "N*m": "N"}.get(spot.exerts)
+        return unit in EFFORTS and LAB_UNITS.get(unit, unit) != other
     return LAB_UNITS.get(unit, unit) == spot.unit

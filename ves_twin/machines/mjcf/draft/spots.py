@@ -65,6 +65,7 @@ class Spot:
         axis: of a sensor with several numbers, from 0.
         width: numbers of that sensor.
         moves: whether any motion of the model changes that number.
+        exerts: unit of what an actuator exerts; empty where that is both, or on a tendon.
     """
 
     quantity: Quantity
@@ -76,6 +77,7 @@ class Spot:
     axis: int = 0
     width: int = 1
     moves: bool = True
+    exerts: str = ""
 
     @property
     def label(self) -> str:
@@ -206,8 +208,22 @@ def _actuators(model: mujoco.MjModel, extra: dict[tuple[str, int], set[str]]) ->
         words = {*words_of(model.actuator(i).name), *words_of(joint)}
         words |= extra.get((Quantity.EFFORT, i), set())
         name = model.actuator(i).name
-        found.append(Spot(Quantity.EFFORT, name, unit, frozenset(words), number, joint))
+        exerts = _exerted(model, i)
+        found.append(
+            Spot(Quantity.EFFORT, name, unit, frozenset(words), number, joint, exerts=exerts)
+        )
     return found
+
+
+def _exerted(model: mujoco.MjModel, actuator: int) -> str:
+    """Unit of what an actuator exerts: at a joint by its kind, at a site by its gear."""
+    kind, at = int(model.actuator_trntype[actuator]), int(model.actuator_trnid[actuator, 0])
+    if kind == ON_JOINT:
+        return {HINGE: "N*m", SLIDE: "N"}.get(int(model.jnt_type[at]), "")
+    pushes, turns = np.any(model.actuator_gear[actuator].reshape(2, 3) != 0.0, axis=1)
+    if kind != int(mujoco.mjtTrn.mjTRN_SITE) or pushes == turns:
+        return ""
+    return "N" if pushes else "N*m"
 
 
 def _stand_ins(model: mujoco.MjModel) -> dict[tuple[str, int], set[str]]:
