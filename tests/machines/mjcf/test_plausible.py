@@ -16,7 +16,7 @@ from ves_twin.machines.mjcf.description import Mode
 from ves_twin.machines.mjcf.forward import MjcfForward
 from ves_twin.machines.mjcf.machine import Rig
 from ves_twin.machines.mjcf.mjcf_machine import MjcfMachine
-from ves_twin.machines.mjcf.plausible import implausible
+from ves_twin.machines.mjcf.plausible.implausible import implausible
 
 
 @pytest.fixture(scope="module")

@@ -58,6 +58,12 @@ def set_inertials(model: mujoco.MjModel, body: int, numbers: FloatArray) -> None
     mujoco.mj_setConst(model, mujoco.MjData(model))
 
 
+def point_mass(mass: float, at: FloatArray) -> FloatArray:
+    """The numbers (10,) of a mass [kg] at a place of a body's frame [m] (3,)."""
+    about = mass * _steiner(at[None])[0]
+    return np.concatenate([[mass], mass * at, about[_UPPER]])
+
+
 def with_inertials_of(model: mujoco.MjModel, other: mujoco.MjModel) -> mujoco.MjModel:
     """A model with another one's masses, inertias, rotors, and springs of hinges and slides."""
     found = copy.copy(model)

@@ -36,7 +36,7 @@ from ves_twin.machines.mjcf.further import with_further
 from ves_twin.machines.mjcf.interleaved_split import alternate
 from ves_twin.machines.mjcf.machine import Rig
 from ves_twin.machines.mjcf.pieces import pieces
-from ves_twin.machines.mjcf.plausible import check_plausible
+from ves_twin.machines.mjcf.plausible.implausible import check_plausible
 from ves_twin.machines.mjcf.programmes import releases
 from ves_twin.machines.mjcf.read import read_recording
 from ves_twin.machines.mjcf.signals import rig_ranges, rig_signals

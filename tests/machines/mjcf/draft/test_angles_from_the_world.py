@@ -13,7 +13,7 @@ from three_joints import ARM
 from ves_twin.diagnosis.forward import Excitation
 from ves_twin.machines.mjcf.columns import read_rig_recording
 from ves_twin.machines.mjcf.forward import MjcfForward
-from ves_twin.machines.mjcf.plausible import implausible
+from ves_twin.machines.mjcf.plausible.implausible import implausible
 from ves_twin.machines.mjcf.predecessor import predecessor
 
 CHAIN = """<mujoco><worldbody><body>

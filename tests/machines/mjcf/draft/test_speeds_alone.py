@@ -10,7 +10,7 @@ from ves_twin.core.errors import InvalidInputError
 from ves_twin.machines.mjcf.columns import read_rig_recording
 from ves_twin.machines.mjcf.draft.draft import draft
 from ves_twin.machines.mjcf.machine import Rig
-from ves_twin.machines.mjcf.plausible import implausible
+from ves_twin.machines.mjcf.plausible.implausible import implausible
 
 PENDULUM = """
 <mujoco>

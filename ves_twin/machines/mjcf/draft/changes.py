@@ -12,7 +12,7 @@ import numpy as np
 from ves_twin.machines.mjcf.draft.match import Match
 from ves_twin.machines.mjcf.draft.spots import Quantity
 from ves_twin.machines.mjcf.places import driven_joint
-from ves_twin.machines.mjcf.plausible import TURNS
+from ves_twin.machines.mjcf.plausible.readings import TURNS
 from ves_twin.machines.mjcf.predecessor import predecessor
 
 DEGREE = np.pi / 180.0
