@@ -21,7 +21,7 @@ PENDULUM = """
     <body name="wheel" pos="0 0 -0.4"><joint name="wheel" axis="0 1 0" damping="0.0002"/>
       <geom type="cylinder" size="0.1 0.01" mass="0.6" euler="90 0 0"/></body>
   </body></worldbody>
-  <actuator><motor name="rod_motor" joint="rod"/><motor name="wheel_motor" joint="wheel"/></actuator>
+  <actuator><motor name="rod_motor" joint="rod"/><motor name="wheel_motor" joint="wheel" gear="0.5"/></actuator>
 </mujoco>
 """
 
@@ -32,13 +32,13 @@ def log():
     model, rng = mujoco.MjModel.from_xml_string(PENDULUM), np.random.default_rng(2)
     data, rows = mujoco.MjData(model), np.zeros((2000, 5))
     for k in range(len(rows)):
-        drive = 0.3 * np.sin(0.031 * k + 1.0), 0.15 * np.sin(0.047 * k)
+        drive = 0.3 * np.sin(0.031 * k + 1.0), 0.3 * np.sin(0.047 * k)
         noise = np.array([1e-4, 0.01]) * rng.standard_normal(2)
         rows[k] = 0.01 * k, data.qpos[0] + noise[0], data.qvel[1] + noise[1], *drive
         data.ctrl[:] = drive
         for _ in range(10):
             mujoco.mj_step(model, data)
-    names = ("t", "rod_rad", "wheel_rad_s", "rod_motor_Nm", "wheel_motor_Nm")
+    names = ("t", "rod_rad", "wheel_rad_s", "rod_motor_Nm", "wheel_motor_A")
     return dict(zip(names, rows.T, strict=True))
 
 
@@ -56,7 +56,7 @@ def test_a_log_that_is_right_is_left_as_it_is(log, model, write, tmp_path):
     assert min(found.explained.values()) > 0.9
 
 
-@pytest.mark.parametrize("column", ["rod_rad", "rod_motor_Nm", "wheel_motor_Nm"])
+@pytest.mark.parametrize("column", ["rod_rad", "rod_motor_Nm", "wheel_motor_A"])
 def test_a_wrong_sign_is_found_without_the_wheels_angle(log, model, write, tmp_path, column):
     found = draft(model, [write(log | {column: -log[column]})], tmp_path / "rig.toml")
     (words,) = (words for words in found.look if "turned" in words)

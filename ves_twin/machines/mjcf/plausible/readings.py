@@ -88,7 +88,7 @@ class Readings:
         for actuator in self.sources:
             joint = driven_joint(self.rig.model, actuator)
             gear = abs(float(self.rig.model.actuator(actuator).gear[0]))
-            if gear not in (0.0, 1.0):
+            if gear not in (0.0, 1.0) and joint in angles:
                 name = f"{angles[joint]} of the motor, before its gear of {gear:g}"
                 yield Reading(name, f"the scale of {angles[joint]}", {joint: 1.0 / gear}, {})
 
