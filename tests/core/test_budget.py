@@ -4,7 +4,7 @@ import pickle
 
 import pytest
 
-from ves_twin.core.budget import Budget
+from ves_twin.core.budget import Budget, EndedError
 from ves_twin.core.errors import InvalidInputError
 
 
@@ -47,9 +47,12 @@ def test_work_that_tells_nothing_yet_is_not_ended_and_other_work_is_with_all_its
     budget = Budget()
     assert not budget.end()
     assert not budget.over
+    budget.stop_if_ended()
     budget.tells = True
     assert budget.end()
     assert budget.skips("better fits")
     budget.stage(float("inf"))  # a law that was asked for may take all the time there is
     assert budget.over
+    with pytest.raises(EndedError):
+        budget.stop_if_ended()
     assert pickle.loads(pickle.dumps(budget)).over

@@ -11,6 +11,7 @@ from toy import QUICK, Toy, programme, record, shape
 from ves_twin.core.budget import Budget
 from ves_twin.core.recording.recording import POSES
 from ves_twin.diagnosis.build_up.result import UNFINISHED
+from ves_twin.diagnosis.decide import ONE_BY_ONE
 from ves_twin.diagnosis.diagnose import diagnose
 from ves_twin.diagnosis.forward import Excitation, Hypothesis
 from ves_twin.diagnosis.rungs import FEWER
@@ -121,8 +122,15 @@ def test_a_diagnosis_without_time_ends_with_a_verdict_and_says_what_it_left_out(
     assert any("No time was left for" in text for text in basis_sentences(verdict))
 
 
-@pytest.mark.parametrize("at", ["fitting the tolerances", "choosing causes"])
-def test_a_diagnosis_that_is_ended_tells_what_is_known_by_then(at):
+@pytest.mark.parametrize(
+    ("at", "proves"),
+    [
+        ("fitting the tolerances", False),
+        ("what each cause would change", False),
+        ("choosing causes", True),
+    ],
+)
+def test_a_diagnosis_that_is_ended_tells_what_is_known_by_then(at, proves):
     budget = Budget()
 
     def progress(done: float, what: str) -> None:
@@ -133,8 +141,9 @@ def test_a_diagnosis_that_is_ended_tells_what_is_known_by_then(at):
     verdict = diagnose(PLANT, once, held_out=other, settings=FOUR, progress=progress, budget=budget)
     assert budget.over
     assert verdict.verdict in (Kind.PARTIAL, Kind.UNKNOWN)
-    assert verdict.proved
-    assert UNFINISHED in verdict.basis.left_out
+    assert bool(verdict.proved) is proves
+    assert (UNFINISHED if proves else ONE_BY_ONE) in verdict.basis.left_out
+    assert proves or verdict.causes or verdict.nearest  # what comes nearest by then
     assert any("Ctrl-C" in text for text in basis_sentences(verdict))
 
 

@@ -9,6 +9,10 @@ from collections.abc import Callable
 from ves_twin.core.errors import InvalidInputError
 
 
+class EndedError(Exception):
+    """Work was ended while it computed what nothing can be told without."""
+
+
 class Budget:
     """Time from now on; work asks it between steps whether to go on.
 
@@ -40,6 +44,15 @@ class Budget:
         """All stages end now, if what is known by now `tells` something; whether it does."""
         self._ended = self.tells
         return self.tells
+
+    def stop_if_ended(self) -> None:
+        """Within a part that tells nothing before its end.
+
+        Raises:
+            EndedError: all was ended.
+        """
+        if self._ended:
+            raise EndedError
 
     @property
     def spent(self) -> float:

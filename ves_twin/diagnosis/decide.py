@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from ves_twin.core.budget import EndedError
 from ves_twin.core.recording.recording import Recording
 from ves_twin.diagnosis.assess import pull_limit
 from ves_twin.diagnosis.build_up.build_up import Built, build_up
@@ -45,6 +46,9 @@ AT_LIMIT = 1.0 + 1e-9
 
 MORE = 2.0
 """Chi^2 a sample from which an explanation that passes leaves more than noise."""
+
+ONE_BY_ONE = "causes that are proved one by one"
+"""What is left out where the work is ended before they could be chosen."""
 
 MANY_FROM = 2
 """Causes beyond which more may be at work than a search of single ones and pairs can see."""
@@ -117,7 +121,7 @@ def decide(
         begin = _begin(desk, fitted, found)
         if begin is not None or not found.adequate:
             cut, held = held is None, rest
-            built = build_up(desk, found, fitted, rest.seen, begin)
+            built = _built(desk, found, fitted, rest, begin)
     if built is not None and built.report.proved:
         return _proved(desk, forward, recordings, held, standstill, built, cut)
     if built is not None and held is not None and built.found is not found:
@@ -135,6 +139,17 @@ def decide(
     kind = _kind(found, gains, limit)
     ahead = _ahead(desk, forward, recordings, found, standstill) if kind.names_causes else None
     return Conclusion(found, kind, gains[0] if gains else None, ahead, built, cut, before)
+
+
+def _built(
+    desk: FitContext, found: Explanation, fitted: Dataset, rest: HeldOut, begin: Start | None
+) -> Built | None:
+    """What building up proves; None where it has nothing to offer, or was ended before."""
+    try:
+        return build_up(desk, found, fitted, rest.seen, begin)
+    except EndedError:
+        desk.first.evidence.runs.budget.leave_out(ONE_BY_ONE)
+        return None
 
 
 def _begin(desk: FitContext, fitted: Dataset, found: Explanation) -> Start | None:

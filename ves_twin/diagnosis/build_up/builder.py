@@ -23,6 +23,7 @@ from ves_twin.diagnosis.fit_context import FitContext
 from ves_twin.diagnosis.preprocess import Dataset
 from ves_twin.diagnosis.refine import Fit, bare_residual
 from ves_twin.diagnosis.rungs import FEWER
+from ves_twin.diagnosis.runs import Progress
 
 Way = type[Selector] | type[PlainSelector]
 
@@ -77,10 +78,13 @@ class Builder:
         """Whether runs are so dear that not all sizes of causes are simulated."""
         return FEWER in self.fitted.runs.budget.left_out
 
-    def halves(self, point: FloatArray, present: Sequence[Trial]) -> Halves:
+    def halves(
+        self, point: FloatArray, present: Sequence[Trial], progress: Progress | None = None
+    ) -> Halves:
         """Both halves, linear about a point where some trials are at work."""
         library = self.told or Library(self.desk.first.screen.bank.hypotheses, fewer=self._dear)
-        both = halves_at(self.fitted, self.held, point, library, present, self.desk.progress)
+        told = progress or self.desk.progress
+        both = halves_at(self.fitted, self.held, point, library, present, told)
         self.desk.progress(0.0, "choosing causes")
         return replace(both, regression=replace(both.regression, barred=self.barred))
 
@@ -228,6 +232,19 @@ class Builder:
         chosen, known = best_proved(halves, Selector(regression).best(), known)
         return [self.offer(halves, point, chosen, known)] if chosen else []
 
+    def _first_halves(self, begin: Start) -> Halves:
+        """Where choosing begins; columns of a whole library take minutes, and may be ended."""
+        looking = True
+
+        def progress(share: float, what: str) -> None:
+            if looking:
+                self.fitted.runs.budget.stop_if_ended()
+            self.desk.progress(share, what)
+
+        halves = self.halves(begin.point, begin.present, progress)
+        looking = False  # columns of held-out rows follow, of what was chosen alone
+        return halves
+
     def best(self, start: Start | None = None) -> Offer:
         """The choice whose proved causes predict held-out rows best.
 
@@ -240,9 +257,12 @@ class Builder:
 
         Args:
             start: where choosing begins; the model as it is if None.
+
+        Raises:
+            EndedError: the work was ended before anything could be chosen.
         """
         begin = start or Start(self.fitted.runs.origin)
-        halves, builder = self.halves(begin.point, begin.present), self
+        halves, builder = self._first_halves(begin), self
         if start is None:
             trials, causes = halves.regression.trials, self.desk.first.screen.bank.hypotheses
             builder = replace(self, told=Library.after(causes, trials, self._dear))
