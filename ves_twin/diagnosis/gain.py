@@ -282,8 +282,9 @@ class _Carried:
         return np.asarray(np.sqrt(np.sum(off, axis=0, where=kept) / np.sum(kept, axis=0)))
 
     def _metric(self, whitening: Whitening) -> Metric:
-        columns = whitening.apply(self.local.columns).T
-        count = len(self.root)
+        told = np.all(np.isfinite(self.local.columns), axis=(1, 2), keepdims=True)
+        columns = whitening.apply(np.where(told, self.local.columns, 0.0)).T
+        count = len(self.root)  # along what the plant fails a step away, nothing is told
         return Metric(np.concatenate([columns[:, :count] @ self.root, columns[:, count:]], axis=1))
 
 

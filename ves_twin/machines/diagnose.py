@@ -83,13 +83,7 @@ def diagnose(
             one that is fitted as well.
         UnknownNameError: an unknown cause in `exclude`, or an input that is not recorded.
     """
-    given = Material(
-        named(recordings, "recording"),
-        named(held_out, "held-out recording"),
-        named(baseline, "baseline recording"),
-        named(commissioning, "commissioning recording"),
-        standstill,
-    )
+    given = _named(recordings, held_out, baseline, commissioning, standstill)
     prepared = prepare(machine_of(plant), given, experiment)
     _check_held_out(prepared.material)
     if alternate is not None:
@@ -116,12 +110,32 @@ def diagnose(
         progress=progress,
         budget=budget,
     )
-    causes = tuple(cause.shortened for cause in verdict.causes)
-    near = tuple(cause.shortened for cause in verdict.nearest)
     cut = len(measured) if len(measured) > whole else 0
     basis = replace(verdict.basis, recordings=_origin(given), pieces=cut)
-    verdict = replace(verdict, causes=causes, nearest=near, quality=prepared.flaws, basis=basis)
+    verdict = replace(_shortened(verdict), quality=prepared.flaws, basis=basis)
     return _concluded(verdict, machine, offered)
+
+
+def _named(
+    recordings: Sequence[Recording | Named],
+    held_out: Sequence[Recording | Named],
+    baseline: Sequence[Recording | Named],
+    commissioning: Sequence[Recording | Named],
+    standstill: Recording | None,
+) -> Material:
+    return Material(
+        named(recordings, "recording"),
+        named(held_out, "held-out recording"),
+        named(baseline, "baseline recording"),
+        named(commissioning, "commissioning recording"),
+        standstill,
+    )
+
+
+def _shortened(verdict: Verdict) -> Verdict:
+    """With the magnitudes of effects as the names of their parameters."""
+    causes = tuple(cause.shortened for cause in verdict.causes)
+    return replace(verdict, causes=causes, nearest=tuple(c.shortened for c in verdict.nearest))
 
 
 def _check_held_out(given: Material) -> None:
