@@ -6,17 +6,20 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from toy import NUISANCES, SD, Toy, programme, shape
+from toy import NUISANCES, QUICK, SD, Toy, programme, shape
 
 from ves_twin.diagnosis.evidence import Evidence
 from ves_twin.diagnosis.gain import (
     BLOCK_SECONDS,
+    DivergedError,
     Gain,
     _starts,
     _stretches,
     held_out_gain,
 )
+from ves_twin.diagnosis.held_out import HeldOut
 from ves_twin.diagnosis.linearise import linearise
+from ves_twin.diagnosis.preprocess import Dataset
 from ves_twin.diagnosis.refine import refine
 from ves_twin.diagnosis.runs import Runs
 from ves_twin.diagnosis.whitening import whitening_declared
@@ -249,3 +252,21 @@ def test_the_model_before_is_far_off_by_whichever_columns():
     # the same two models, whichever is the extended one, but for the noise each is judged by
     assert swapped.after > 100.0
     assert gain.before > 100.0
+
+
+def test_a_fit_whose_plant_diverges_on_held_out_rows_has_no_gain(fitted, held_out):
+    """Ended early, a fit lies where pieces of a floating robot diverge: no number is there."""
+    _, runs, measured, whitening, _ = held_out
+    nominal, extended = fitted
+
+    class Failing(Toy):
+        def simulate(self, programme, values, refined=False):
+            rows = super().simulate(programme, values, refined)
+            return rows if not values["friction.size"] else np.nan * rows
+
+    runs = replace(runs, forward=Failing())
+    with pytest.raises(DivergedError):
+        held_out_gain(runs, measured, whitening, nominal, extended)
+    held = HeldOut(Dataset(runs, measured, ()), whitening, QUICK)
+    assert held.gain(nominal, extended) is None
+    assert held.gain(nominal, nominal) is not None

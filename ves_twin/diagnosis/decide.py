@@ -126,7 +126,7 @@ def decide(
         return _proved(desk, forward, recordings, held, standstill, built, cut)
     if built is not None and held is not None and built.found is not found:
         gain = held.gain(built.before, built.found.best)
-        if not gain.worse:
+        if gain is not None and not gain.worse:
             return Conclusion(built.found, Kind.UNKNOWN, gain, None, built, cut, built.before)
     if cut:  # nothing is proved there, and nothing else was held out
         held = None

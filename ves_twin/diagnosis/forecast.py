@@ -11,7 +11,7 @@ from ves_twin.core.recording.recording import POSES, Recording
 from ves_twin.core.workers import Workers
 from ves_twin.diagnosis.evidence import Evidence
 from ves_twin.diagnosis.forward import Forward
-from ves_twin.diagnosis.gain import Gain, held_out_gain
+from ves_twin.diagnosis.gain import DivergedError, Gain, held_out_gain
 from ves_twin.diagnosis.grid import AnalysisGrid
 from ves_twin.diagnosis.linearise import linearise
 from ves_twin.diagnosis.preprocess import FEWEST_POSES, FEWEST_ROWS, preprocess
@@ -68,9 +68,11 @@ def forecast(
     for i, size in zip(free, fit.sizes, strict=True):
         shift[names.index(fit.local.runs.coordinates[i].parameter.name)] = size
     caused = refine(evidence, fit.causes, shift, base, settings.rounds)
-    return held_out_gain(
-        late.runs, late.measured, whitening, plain, caused, settings.confidence, settings.seed
-    )
+    told = (plain, caused, settings.confidence, settings.seed)
+    try:
+        return held_out_gain(late.runs, late.measured, whitening, *told)
+    except DivergedError:
+        return None
 
 
 def _part(recording: Recording, start: float, stop: float, rate: float) -> list[Recording]:

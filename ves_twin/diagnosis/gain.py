@@ -36,6 +36,10 @@ INVISIBLE = 0.02
 """Excess of mean z^2 over noise below which the held-out recording does not show the effect."""
 
 
+class DivergedError(ArithmeticError):
+    """A plant, as it was fitted, diverges on other recordings."""
+
+
 @dataclass(frozen=True)
 class Gain:
     """Share of the excess error that an extension takes away on held-out recordings.
@@ -137,8 +141,13 @@ def held_out_gain(
         seed: of the resampling.
         base: of these recordings where nothing departs, if it is known: its columns serve where
             they do not bend.
+
+    Raises:
+        DivergedError: no number is predicted there.
     """
     better = _Carried.of(runs, extended, base)
+    if not np.all(np.isfinite(better.local.prediction)):
+        raise DivergedError
     plain = better.beside(extended, nominal)
     own = whitening.adapted(better.left(measured, whitening))
     floor = own.floor(better.left(measured, own))
@@ -282,9 +291,8 @@ class _Carried:
         return np.asarray(np.sqrt(np.sum(off, axis=0, where=kept) / np.sum(kept, axis=0)))
 
     def _metric(self, whitening: Whitening) -> Metric:
-        told = np.all(np.isfinite(self.local.columns), axis=(1, 2), keepdims=True)
-        columns = whitening.apply(np.where(told, self.local.columns, 0.0)).T
-        count = len(self.root)  # along what the plant fails a step away, nothing is told
+        columns = whitening.apply(self.local.columns).T
+        count = len(self.root)
         return Metric(np.concatenate([columns[:, :count] @ self.root, columns[:, count:]], axis=1))
 
 

@@ -9,7 +9,7 @@ from ves_twin.core.recording.recording import Recording
 from ves_twin.core.workers import Workers
 from ves_twin.diagnosis.explanation import Explanation
 from ves_twin.diagnosis.forward import Forward
-from ves_twin.diagnosis.gain import Gain, held_out_gain
+from ves_twin.diagnosis.gain import DivergedError, Gain, held_out_gain
 from ves_twin.diagnosis.linearise import Linearisation, linearise
 from ves_twin.diagnosis.preprocess import Dataset, preprocess
 from ves_twin.diagnosis.refine import Fit
@@ -48,21 +48,19 @@ class HeldOut:
         base = _kept_columns(seen.runs, settings) if settings.sparse and settings.cache else None
         return HeldOut(seen, whitening_of(seen.runs, standstill), settings, base)
 
-    def gain(self, before: Fit, after: Fit) -> Gain:
-        """Of one fit over another."""
-        return held_out_gain(
-            self.seen.runs,
-            self.seen.measured,
-            self.whitening,
-            before,
-            after,
-            self.settings.confidence,
-            self.settings.seed,
-            self.base,
-        )
+    def gain(self, before: Fit, after: Fit) -> Gain | None:
+        """Of one fit over another; None where the plant diverges there, as it was fitted."""
+        seen, sure, seed = self.seen, self.settings.confidence, self.settings.seed
+        there = (seen.runs, seen.measured, self.whitening)
+        try:
+            return held_out_gain(*there, before, after, sure, seed, self.base)
+        except DivergedError:
+            return None
 
     def gains(self, found: Explanation, before: Fit, least: float) -> list[Gain]:
         """Of the best explanation; of its rivals too, where that could be part of the truth.
+
+        None where the best one diverges.
 
         Args:
             found: the explanation.
@@ -70,10 +68,12 @@ class HeldOut:
             least: share of the excess from which something unexplained leaves a part of the truth.
         """
         first = self.gain(before, found.best)
+        if first is None:
+            return []
         if found.adequate or first.low is None or first.low <= least:
             return [first]
         rivals = [fit for fit in found.fits if fit is not found.best]
-        return [first, *(self.gain(before, fit) for fit in rivals)]
+        return [first, *filter(None, (self.gain(before, fit) for fit in rivals))]
 
 
 def _kept_columns(runs: Runs, settings: Settings) -> Linearisation:

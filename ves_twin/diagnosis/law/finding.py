@@ -65,7 +65,7 @@ def law_finding(search: Search, held: HeldOut | None, progress: Progress = silen
     gain = _gain(search, held) if held else None
     progress(0.5, "the band of the law")
     asked = asked_of_motion(law, best, held.seen) if held else None
-    reason = search.reason or _gated(gain) or refuted(asked)
+    reason = search.reason or (_gated(gain) if held else "") or refuted(asked)
     along = _along(search, law)
     return LawFinding(
         claimed=not reason,
@@ -93,9 +93,9 @@ def law_finding(search: Search, held: HeldOut | None, progress: Progress = silen
 
 
 def _gated(gain: Gain | None) -> str:
-    """Why held-out recordings do not bear a law out; empty where they do, or there are none."""
+    """Why held-out recordings do not bear a law out; empty where they do."""
     if gain is None:
-        return ""
+        return "the machine with it diverges on held-out recordings"
     if gain.share is None:
         return "the held-out recordings show nothing that it could improve"
     if gain.grown:
@@ -114,7 +114,7 @@ def refuted(asked: Asked | None) -> str:
     return f"inverse dynamics finds {found} of its effort in the held-out motion"
 
 
-def _gain(search: Search, held: HeldOut) -> Gain:
+def _gain(search: Search, held: HeldOut) -> Gain | None:
     """On held-out recordings, over commissioning errors alone, held within what is credible."""
     none, best = search.none.fit, search.best
     if none.pull > search.limits.pull:
@@ -130,7 +130,7 @@ def _gain(search: Search, held: HeldOut) -> Gain:
     runs = replace(held.seen.runs, forward=best.fit.local.runs.forward)
     gain = replace(held, seen=replace(held.seen, runs=runs)).gain(none, best.fit)
     # a hold has no size that could be taken out again
-    return gain if best.count else replace(gain, without=None)
+    return gain if best.count or gain is None else replace(gain, without=None)
 
 
 def _numbers(best: LawFit) -> tuple[LawNumber, ...]:
