@@ -8,11 +8,12 @@ import numpy as np
 import pytest
 from toy import CAUSES, GAIN, Toy, _cause, programme, record
 
+from ves_twin.core.budget import Budget
 from ves_twin.core.errors import InvalidInputError, UnknownNameError
 from ves_twin.core.workers import Workers
 from ves_twin.diagnosis.findable import MARGIN, findable_sizes
 from ves_twin.diagnosis.forward import Hypothesis, check_forward
-from ves_twin.diagnosis.null import cached_thresholds, null_thresholds
+from ves_twin.diagnosis.null import LEAST, cached_thresholds, null_thresholds
 from ves_twin.diagnosis.preprocess import preprocess
 from ves_twin.diagnosis.runs import Runs
 from ves_twin.diagnosis.screen import Screen
@@ -177,3 +178,19 @@ def test_a_library_that_names_what_does_not_exist_is_refused():
 
     with pytest.raises(InvalidInputError, match="of the plant itself"):
         check_forward(PerRun())
+
+
+def test_thresholds_of_fewer_rigs_for_want_of_time_are_not_kept(runs, tmp_path):
+    settings = Settings(nulls=40, cache=tmp_path, simulated_nulls=False)
+    budget = Budget()
+    budget.tells = True
+    assert budget.end()
+    late = replace(runs, workers=Workers(1, budget))
+    bank = build_bank(runs)
+    hurried = replace(bank, base=replace(bank.base, runs=late))
+    few = cached_thresholds(hurried, whitening_declared(late), settings)
+    assert len(few.effects) == LEAST
+    assert not list(tmp_path.glob("*.npz"))
+    assert len(cached_thresholds(bank, whitening_declared(runs), settings).effects) == 40
+    again = cached_thresholds(hurried, whitening_declared(late), settings)
+    assert len(again.effects) == 40  # as they were kept

@@ -125,6 +125,7 @@ def test_a_diagnosis_without_time_ends_with_a_verdict_and_says_what_it_left_out(
 @pytest.mark.parametrize(
     ("at", "proves"),
     [
+        ("null distribution", False),
         ("fitting the tolerances", False),
         ("what each cause would change", False),
         ("choosing causes", True),

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -141,7 +140,10 @@ def null_thresholds(
 
 @dataclass(frozen=True)
 class _NullStudy:
-    """What one null rig is drawn from and judged by; none is begun beyond a share of the time."""
+    """What one null rig is drawn from and judged by; none begins beyond a share of the time.
+
+    That share is `until`; None: all are drawn, however late it is.
+    """
 
     bank: SignatureLibrary
     whitening: Whitening
@@ -149,7 +151,7 @@ class _NullStudy:
     misfit: float
     alpha: float
     simulated: bool
-    until: float = math.inf
+    until: float | None = None
 
     def draw(self, seed: np.random.SeedSequence) -> tuple[float, float]:
         runs, rng = self.bank.base.runs, np.random.default_rng(seed)
@@ -179,7 +181,8 @@ class _NullStudy:
 
     def batch(self, seeds: list[np.random.SeedSequence]) -> list[tuple[float, float]]:
         budget = self.bank.base.runs.budget
-        return [self.draw(seed) for seed in seeds if budget.spent < self.until]
+        until = self.until
+        return [self.draw(seed) for seed in seeds if until is None or budget.spent < until]
 
 
 def _in_time(
@@ -262,7 +265,7 @@ def cached_thresholds(
         told = (BENDS, None) if linear else (0.0, level)
         return Thresholds(effect, level, kept["effects"], kept["misfits"], *told)
     found = compute()
-    if settings.simulated_nulls and found.bends:
+    if (settings.simulated_nulls and found.bends) or len(found.effects) < settings.nulls:
         return found  # another day may have the time
     write_arrays(
         path,
