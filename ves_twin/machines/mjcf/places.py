@@ -1,4 +1,4 @@
-"""place_of, typical_speed, typical_span: a target as a place, with its typical sizes."""
+"""place_of, carries, typical_speed, typical_span: a target as a place, and its typical sizes."""
 
 from __future__ import annotations
 
@@ -12,6 +12,7 @@ from ves_twin.effects.effect import Effect
 from ves_twin.effects.element import Element
 from ves_twin.effects.place import Place
 from ves_twin.effects.row import Anywhere
+from ves_twin.machines.mjcf.chain import chain
 from ves_twin.machines.mjcf.description import Mode, RigDescription, Span
 from ves_twin.machines.mjcf.joint_units import joint_units
 
@@ -45,7 +46,7 @@ def place_of(effect: Effect, told: RigDescription, model: mujoco.MjModel) -> Pla
             raise InvalidInputError(f"target of {kind}", target, "a body and an axis, as tool.x")
         _known("body", name, {model.body(i).name for i in range(1, model.nbody)})
         at = model.body(name).id
-        return Place(element, target, mass=float(model.body_mass[at]), carries=_carries(model, at))
+        return Place(element, target, mass=float(model.body_mass[at]), carries=carries(model, at))
     if element is Element.ACTUATOR:
         return _actuator(effect, told, model)
     if element is Element.TENDON:
@@ -53,12 +54,9 @@ def place_of(effect: Effect, told: RigDescription, model: mujoco.MjModel) -> Pla
     return _joint(effect.parts[0], told, model)
 
 
-def _carries(model: mujoco.MjModel, body: int) -> bool:
+def carries(model: mujoco.MjModel, body: int) -> bool:
     """Whether no body is behind one, and ARM joints or more before it."""
-    joints, at = 0, body
-    while at:
-        joints += int(model.body_jntnum[at])
-        at = int(model.body_parentid[at])
+    joints = sum(int(model.body_jntnum[at]) for at in chain(model, body))
     return joints >= ARM and body not in model.body_parentid
 
 

@@ -7,6 +7,8 @@ from collections.abc import Collection
 import mujoco
 import numpy as np
 
+from ves_twin.machines.mjcf.chain import chain
+
 PARALLEL = 0.99
 """Cosine from which two axes count as one: 8 degrees of drawing and mounting."""
 
@@ -32,14 +34,11 @@ def predecessor(
     mujoco.mj_kinematics(model, data)
     own = model.joint(joint).id
     kinds, bodies = model.jnt_type, model.jnt_bodyid
-    chain, body = set(), int(bodies[own])
-    while body:
-        chain.add(body)
-        body = int(model.body_parentid[body])
+    before = set(chain(model, int(bodies[own])))
     for other in range(own - 1, -1, -1):  # joints are numbered from the world on
         along = float(np.dot(data.xaxis[own], data.xaxis[other]))
         name = model.joint(other).name
-        near = int(bodies[other]) in chain and kinds[other] == kinds[own] and name in among
+        near = int(bodies[other]) in before and kinds[other] == kinds[own] and name in among
         if near and abs(along) > PARALLEL:
             return name, float(np.sign(along))
     return None

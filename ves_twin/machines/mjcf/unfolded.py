@@ -24,6 +24,7 @@ from ves_twin.effects.joints import JointCompliance
 from ves_twin.effects.presliding import DahlFriction, OneWayLoad
 from ves_twin.effects.registry import EFFECTS, attributes, build_anywhere, kind_anywhere
 from ves_twin.effects.ripple import Ripple
+from ves_twin.machines.mjcf.chain import chain
 from ves_twin.machines.mjcf.description import Allowed, Mode, RigDescription, Setting
 from ves_twin.machines.mjcf.places import anywhere, driven_joint, place_of
 
@@ -189,12 +190,9 @@ def _neighbours(names: list[str], model: mujoco.MjModel) -> list[str]:
 
 def _turns(model: mujoco.MjModel, body: int) -> bool:
     """Whether any joint between a body and the world lets it turn."""
-    while body:
-        first, count = int(model.body_jntadr[body]), int(model.body_jntnum[body])
-        if any(int(model.jnt_type[i]) != SLIDE for i in range(first, first + count)):
-            return True
-        body = int(model.body_parentid[body])
-    return False
+    bodies = set(chain(model, body))
+    kinds = zip(model.jnt_bodyid.tolist(), model.jnt_type.tolist(), strict=True)
+    return any(at in bodies and kind != SLIDE for at, kind in kinds)
 
 
 def _outputs(told: RigDescription) -> list[str]:

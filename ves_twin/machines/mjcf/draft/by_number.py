@@ -35,8 +35,8 @@ def by_number(log: LogColumns, matches: Matches, spots: tuple[Spot, ...]) -> Mat
     why = f"by its number alone, of {_ends(ours[0])} and {_ends(theirs[0])}"
     new = []
     for number, column in sorted(ours[0].items()):
-        unit = log.units.get(column, "")
-        new.append(Match(column, theirs[0][number], unit or "1", bool(unit), 1.0, (why,)))
+        unit, spot = log.units.get(column, ""), theirs[0][number]
+        new.append(Match(column, spot, unit or spot.unit, bool(unit), 1.0, (why,)))
     taken = {match.column for match in new}
     left = {c: reason for c, reason in matches.left.items() if c not in taken}
     order = {spot: i for i, spot in enumerate(spots)}

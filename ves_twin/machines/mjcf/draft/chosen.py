@@ -9,6 +9,7 @@ import mujoco
 import numpy as np
 
 from ves_twin.core.errors import InvalidInputError
+from ves_twin.machines.mjcf.chain import chain
 from ves_twin.machines.mjcf.description import CORNER, Mode
 from ves_twin.machines.mjcf.draft.check import Checked
 from ves_twin.machines.mjcf.draft.closed_chain import closed_chain
@@ -192,14 +193,11 @@ def _beyond(efforts: Sequence[Match], log: LogColumns, band: float) -> str:
 def _shaken(positions: list[Match], model: mujoco.MjModel) -> tuple[str, ...]:
     """Joints by which a model without actuators is shaken: those measured nearest to the world."""
     bodies = {m.spot.name: int(model.joint(m.spot.name).bodyid[0]) for m in positions}
-    found = []
-    for name, body in bodies.items():
-        above = int(model.body_parentid[body])
-        while above and above not in bodies.values():
-            above = int(model.body_parentid[above])
-        if not above:
-            found.append(name)
-    return tuple(sorted(found))
+    nearest = {
+        name: not any(above in bodies.values() for above in chain(model, body) if above != body)
+        for name, body in bodies.items()
+    }
+    return tuple(sorted(name for name, near in nearest.items() if near))
 
 
 def _of_base(

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 
 import mujoco
 
+from ves_twin.machines.mjcf.chain import chain
 from ves_twin.machines.mjcf.draft.match import Match
 from ves_twin.machines.mjcf.draft.spots import Quantity, single_joints
 from ves_twin.machines.mjcf.loops import has_loops
@@ -44,7 +45,7 @@ def locked_joints(model: mujoco.MjModel, found: Sequence[Match]) -> tuple[str, .
         for name, body in bodies.items()
         if name not in told
         and (name in moved or _is_light(model, body, measured))
-        and not any(_is_on(model, other, body) for other in measured)
+        and not any(body in chain(model, other) for other in measured)
     )
 
 
@@ -72,15 +73,7 @@ def _moved(model: mujoco.MjModel) -> set[str]:
 
 def _is_light(model: mujoco.MjModel, body: int, measured: Sequence[int]) -> bool:
     """Whether a body with all it carries is little of what a measured joint carries."""
-    above = int(model.body_parentid[body])
-    while above and above not in measured:
-        above = int(model.body_parentid[above])
+    before = (at for at in chain(model, body) if at != body and at in measured)
+    above = next(before, 0)
     mass = model.body_subtreemass
     return bool(above and mass[body] <= LIGHT * mass[above])
-
-
-def _is_on(model: mujoco.MjModel, body: int, other: int) -> bool:
-    """Whether a body is another one or hangs on it."""
-    while body and body != other:
-        body = int(model.body_parentid[body])
-    return body == other

@@ -7,12 +7,9 @@ import numpy as np
 from scipy.optimize import least_squares
 
 from ves_twin.core.types import FloatArray
+from ves_twin.machines.mjcf.places import carries
 from ves_twin.machines.mjcf.plausible.reading import Reading
 from ves_twin.machines.mjcf.plausible.seen import Seen
-
-JOINTED = 3
-"""Joints from which a machine is an arm that may carry something: of a pendulum a load opposite
-turns gravity round, as if its zero were elsewhere."""
 
 LOADED = 0.5
 """Share of a machine's mass that a load may have: the strongest arms carry as much as they weigh,
@@ -31,8 +28,9 @@ THIN = 1000
 def load_fits(seen: Seen, beside: FloatArray, good: float) -> bool:
     """Whether a point mass on a last body leaves as little as another reading of the columns.
 
-    Of those efforts that the other reading is right about. An arm of a plant that was fitted with
-    another tool looked as if its wrist were turned.
+    Of those efforts that the other reading is right about, and of arms alone: of a pendulum a load
+    opposite turns gravity round, as if its zero were elsewhere. An arm of a plant that was fitted
+    with another tool looked as if its wrist were turned.
 
     Args:
         seen: columns.
@@ -40,8 +38,6 @@ def load_fits(seen: Seen, beside: FloatArray, good: float) -> bool:
         good: share up to which it is right.
     """
     model = seen.rig.model
-    if len(seen.positions) < JOINTED:
-        return False
     heaviest, reach = LOADED * float(np.sum(model.body_mass)), _reach(model)
     ends, right = ([0.0, *[-reach] * 3], [heaviest, *[reach] * 3]), beside <= good
     for body in _last(model):
@@ -58,15 +54,9 @@ def load_fits(seen: Seen, beside: FloatArray, good: float) -> bool:
 
 
 def _last(model: mujoco.MjModel) -> list[int]:
-    """Bodies that move, and on which no moving one hangs."""
-    moving = {int(body) for body in model.jnt_bodyid}
-    carrying = set[int]()
-    for body in moving:
-        above = int(model.body_parentid[body])
-        while above:
-            carrying.add(above)
-            above = int(model.body_parentid[above])
-    return sorted(moving - carrying)
+    """Moving bodies at the ends of arms, which may carry something."""
+    ends = [body for body in range(1, model.nbody) if carries(model, body)]
+    return sorted({int(model.body_weldid[body]) for body in ends})
 
 
 def _reach(model: mujoco.MjModel) -> float:
