@@ -113,6 +113,7 @@ BAD = [
     (["run", "position_sine", "--sede", "1"], "did you mean '--seed'"),
     (["blind", "make", "--singel", "1"], "did you mean '--single'"),
     (["--vresion"], "did you mean '--version'"),
+    (["diagnose", "x.csv", "--workers", "2"], "unknown option '--workers'; known: --alternate"),
     (["run", "position_sine", "--set", "arm.start=[1e300,0,0]"], "two turns"),
     (["run", "position_sine", "--set", "platform.rate=0.001"], "greater than or equal to 1"),
     (["run", "position_sine", "--set", "parameters.sensor.corner=1e9"], "at most 1000"),

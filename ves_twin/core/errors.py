@@ -39,10 +39,11 @@ class UnknownNameError(VesTwinError):
     def __init__(self, kind: str, name: str, known: Iterable[str]) -> None:
         names = sorted(known)
         name = name if len(name) < 80 else f"{name[:77]}..."
-        near = difflib.get_close_matches(name, names, n=1, cutoff=0.5)
+        bare = {one.lstrip("-"): one for one in names}  # two dashes alone are no likeness
+        near = difflib.get_close_matches(name.lstrip("-"), bare, n=1, cutoff=0.5)
         told = [*names[:MOST_NAMES], f"and {len(names) - MOST_NAMES} more"]
         listed = ", ".join(told if len(names) > MOST_NAMES else names) or "none"
-        hint = f"did you mean '{near[0]}'?" if near else f"known: {listed}"
+        hint = f"did you mean '{bare[near[0]]}'?" if near else f"known: {listed}"
         super().__init__(f"unknown {kind} '{name}'; {hint}")
 
 

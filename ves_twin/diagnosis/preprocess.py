@@ -109,8 +109,11 @@ def _check_length(runs: Runs) -> None:
         fewest = FEWEST_POSES if programme.poses else FEWEST_ROWS
         if len(time) < fewest:
             what = f"rows of {programme.name} at {1.0 / grid.step:.3g} Hz"
-            expected = f"at least {fewest}: a longer recording, stretch or piece (drive.horizon)"
-            raise InvalidInputError(what, len(time), expected)
+            span = "" if programme.poses else f", {1.05 * fewest * grid.step:.2g} s and more"
+            expected = (
+                f"at least {fewest}{span}: a longer recording, stretch (--alternate) or piece"
+            )
+            raise InvalidInputError(what, len(time), f"{expected} (drive.horizon)")
 
 
 def _marked(runs: Runs, empty: Sequence[BoolArray]) -> list[BoolArray]:

@@ -6,6 +6,8 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from time import perf_counter
 
+import numpy as np
+
 from ves_twin.core.errors import VesTwinError
 from ves_twin.core.types import FloatArray
 from ves_twin.diagnosis.envelope import envelope_sd
@@ -51,7 +53,8 @@ def tolerance_reach(
     try:
         prepared = prepare(machine, Material((given,)), experiment)
         forward = prepared.machine.forward
-        seen = preprocess(forward, [prepared.material.measured[0].recording])
+        recording = prepared.material.measured[0].recording
+        seen = preprocess(forward, prepared.machine.pieces(recording))
         begin = perf_counter()
         seen.runs.one(seen.runs.origin)
         needed = (2 * len(seen.runs.nuisances) + 1) * (perf_counter() - begin)
@@ -63,4 +66,6 @@ def tolerance_reach(
     sd = envelope_sd(base).astype(float)
     names = [forward.channels[c].name for c in seen.runs.columns]
     columns = {name: sd[:, c] for c, name in enumerate(names)}
-    return Reach(seen.runs.times[0], columns)
+    time = np.concatenate(seen.runs.times)
+    order = np.argsort(time, kind="stable")  # a piece begins in the one before, by its lead
+    return Reach(time[order], {name: column[order] for name, column in columns.items()})

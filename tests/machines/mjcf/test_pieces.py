@@ -11,6 +11,7 @@ from ves_twin.core.recording.recording import Recording, RecordingInfo
 from ves_twin.diagnosis.forward import Excitation
 from ves_twin.diagnosis.preprocess import preprocess
 from ves_twin.diagnosis.settings import Settings
+from ves_twin.machines.compare import compare
 from ves_twin.machines.diagnose import diagnose
 from ves_twin.machines.load import open_machine
 from ves_twin.machines.machine import Material, Named
@@ -196,6 +197,23 @@ def test_in_pieces_a_hidden_friction_of_a_machine_that_falls_over_is_found(tmp_p
     assert told.gain is not None
     assert told.gain.share > 0.9
     assert "simulated in 6 pieces, each from its own start" in rests_on(told.basis)
+
+
+def test_compare_predicts_piece_by_piece_what_falls_over_and_says_so(tmp_path):
+    log = logged(tmp_path, 1)
+    errors, notes = [], []
+    for horizon in ("", ", horizon = 1.5", ", horizon = 1.5, lead = 0.1"):
+        machine = open_machine(str(rig_in(tmp_path, horizon)))
+        (found,) = compare([machine.read(str(log))], machine).recordings
+        (tilt,) = [one for one in found.channels if one.name == "tilt"]
+        errors.append(tilt.rms)
+        notes.append(" ".join(found.notes))
+        assert len(found.traces.expected["tilt"]) == len(found.traces.time)
+        band = found.traces.reach
+        assert not horizon or (band and all(np.all(np.isfinite(sd)) for sd in band.values()))
+    assert max(errors[1:]) < 0.1 * errors[0]
+    assert "pieces" not in notes[0]
+    assert "predicted in 6 pieces of about 1.5 s, each from its measured start" in notes[1]
 
 
 def simulated(folder, place, friction=0.0, seconds=12.0):

@@ -22,8 +22,10 @@ from ves_twin.machines.mjcf.description import Mode
 from ves_twin.machines.mjcf.experiment import MjcfExperiment
 from ves_twin.machines.mjcf.forward import MjcfForward
 from ves_twin.machines.mjcf.machine import Rig
+from ves_twin.machines.mjcf.pieces import pieces
 from ves_twin.machines.mjcf.places import typical_span
 from ves_twin.machines.mjcf.signals import rig_signals
+from ves_twin.machines.mjcf.started import lead_rows
 
 FORGET = 1.0
 """Time [s] at the begin that is not compared in forward simulation: a start is read from noisy
@@ -90,22 +92,26 @@ class MjcfCase(Case):
         return self.forward.rig.description.rate
 
     def simulated(self) -> Traces:
-        """All that this mode predicts.
+        """All that this mode predicts, piece by piece as a diagnosis simulates it.
 
         Raises:
-            InvalidInputError: a simulation that diverges.
+            InvalidInputError: a simulation that diverges, a joint whose start no row tells.
         """
         forward = self.forward
-        rows = forward.simulate(Excitation.of(self.recording, forward.drive, rate=self.rate), {})
+        lead = lead_rows(forward.rig, self.recording.time)
+        found = [
+            forward.simulate(Excitation.of(piece, forward.drive, rate=self.rate), {})
+            for piece in _pieces(forward, self.recording)
+        ]
+        rows = np.concatenate([piece[lead if k else 0 :] for k, piece in enumerate(found)])
         if not np.all(np.isfinite(rows)):
             came = f"a simulation of {self.name} ({self.mode}) that diverges"
             expected = "a finite motion; try a smaller timestep"
             raise InvalidInputError(forward.rig.description.model, came, expected)
-        columns = enumerate(forward.channels)
-        found: dict[str, list[int]] = {}
-        for c, channel in columns:
-            found.setdefault(channel.signal, []).append(c)
-        return {name: rows[:, at] for name, at in found.items()}
+        columns: dict[str, list[int]] = {}
+        for c, channel in enumerate(forward.channels):
+            columns.setdefault(channel.signal, []).append(c)
+        return {name: rows[:, at] for name, at in columns.items()}
 
     def declared_noise(self) -> dict[str, Noise]:
         """White, as the machine's file declares it."""
@@ -157,6 +163,7 @@ def mjcf_cases(
                 checks=checks,
                 notes=(
                     *((f"the first {forget:g} s, {FORGETS}, are not compared",) if forget else ()),
+                    *_cut(forward, ready),
                     *_beyond(forward, ready),
                     *_wider(own, ready),
                     *_unsized(own, outputs),
@@ -167,6 +174,22 @@ def mjcf_cases(
             )
         )
     return tuple(found)
+
+
+def _pieces(forward: MjcfForward, recording: Recording) -> tuple[Recording, ...]:
+    """Of `drive.horizon`, in the file's own mode: a closed loop does not run away."""
+    own = forward.mode is forward.rig.description.drive.mode
+    return pieces(forward.rig, recording) if own else (recording,)
+
+
+def _cut(forward: MjcfForward, recording: Recording) -> tuple[str, ...]:
+    """That the prediction begins anew from what was measured, where it does."""
+    count = len(_pieces(forward, recording))
+    if count < 2:
+        return ()
+    horizon = forward.rig.description.drive.horizon
+    begin = "each from its measured start"
+    return (f"predicted in {count} pieces of about {horizon:g} s, {begin} (drive.horizon)",)
 
 
 def _beyond(forward: MjcfForward, recording: Recording) -> tuple[str, ...]:

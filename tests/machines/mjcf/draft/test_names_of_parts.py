@@ -142,3 +142,15 @@ def test_a_unit_that_a_name_says_stands_where_no_effort_of_its_joint_speaks(
     )
     ways = [words for _, words in changes([match], driven, model, {"q2": most})]
     assert any(f"q2: named in {unit}, the numbers fit" in words for words in ways) is offered
+
+
+def test_a_column_with_a_joint_s_whole_name_has_no_rivals_that_share_a_part_of_it(tmp_path):
+    text = LEGS.replace("slide1", "leg_left_joint").replace("slide2", "leg_right_joint")
+    head = HEAD.replace("Leg2 length", "leg_right_joint").replace("Leg1 length", "leg_left_joint")
+    log = logged(tmp_path, head.replace("mocap_y_mm", "hall (K)"))
+    (tmp_path / "legs.xml").write_text(text.replace("rail_y", "side_joint"))
+    found = new_machine(tmp_path / "legs.xml", [log], tmp_path / "my.toml").draft
+    (left,) = [guess for guess in found.guesses if guess.column == "leg_left_joint (mm)"]
+    assert left.taken_for.startswith("position of joint leg_left_joint")
+    assert "shares 'leg_left_joint' with" in left.why
+    assert left.others == ""

@@ -64,6 +64,16 @@ def test_a_current_without_a_unit_is_electrical(arm, columns, write, name):
     assert scales(rig)["m1.effort"] == pytest.approx(2.5, rel=0.05)
 
 
+def test_a_constant_that_the_log_does_not_tell_is_not_called_fitted(arm, columns, write):
+    log = {{"tau1": "current1"}.get(n, n): v for n, v in columns.items()}
+    noise = np.random.default_rng(5).standard_normal(len(columns["t"]))
+    found, rig = drafted(arm, write(log | {"current1": noise}))
+    words = "1 N*m per A, as nothing tells it"
+    assert f"current1 is electrical: {words}; put the motor's constant there" in found.look
+    assert any(words in guess.taken_for for guess in found.guesses)
+    assert rig.description.tolerances["gain"] == 0.2
+
+
 @pytest.mark.parametrize("names", [("current_pos1", "tau1"), ("q1", "current_torque1")])
 def test_what_is_current_is_no_ampere(arm, columns, write, names):
     log = {dict(zip(("q1", "tau1"), names, strict=True)).get(n, n): v for n, v in columns.items()}

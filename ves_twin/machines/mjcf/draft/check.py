@@ -255,7 +255,11 @@ class _Judge:
                     f" model{turned}; put the motor's constant there"
                 )
                 said += _other_angle(self.log, found, match.spot.joint, scale, unit)
-            elif fit.sign < 0 and not fit.by_slope and self.power(found, motion) > 0.0:
+                continue
+            if match.fitted:
+                told = f"{match.column} is electrical: {match.constant}"
+                said.append(f"{told}; put the motor's constant there")
+            if fit.sign < 0 and not fit.by_slope and self.power(found, motion) > 0.0:
                 said.append(
                     f"{match.column} brakes its joint more than it drives it (work {fit.work:.0%}):"
                     " look whether its sign is right; in a motion of several joints it may be"

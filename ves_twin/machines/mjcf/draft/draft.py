@@ -284,9 +284,7 @@ def _guesses(check: Checked, mode: Chosen) -> tuple[Guess, ...]:
             continue
         unit = match.unit if match.told else f"{match.unit}?"
         if match.fitted:
-            unit = (
-                f"{match.unit}, fitted: {abs(match.scale):.3g} {match.spot.unit} per {match.unit}"
-            )
+            unit = f"{match.unit}, {match.constant}"
         sign = "-" if match.scale < 0.0 else ""
         taken = f"{sign}{match.spot.label} [{unit}], {way} as {signal_name(match)}"
         found.append(Guess(match.column, taken, ", ".join(match.reasons), "; ".join(match.others)))

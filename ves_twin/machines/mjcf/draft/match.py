@@ -18,6 +18,7 @@ from ves_twin.machines.mjcf.draft.names import (
     ELECTRICAL,
     ENOUGH,
     Likeness,
+    called,
     implied_unit,
     is_setpoint,
     likeness,
@@ -67,6 +68,12 @@ class Match:
     def fitted(self) -> bool:
         """Whether that constant is one that the log gave, and no model's own command."""
         return self.electrical and not (self.spot.unit == "1" and abs(self.scale) == self.prefix)
+
+    @property
+    def constant(self) -> str:
+        """What the column is multiplied with, where `fitted`, and whether the log told it."""
+        told = f"{abs(self.scale):.3g} {self.spot.unit} per {self.unit}"
+        return f"{told}, as nothing tells it" if abs(self.scale) == 1.0 else f"fitted: {told}"
 
     @property
     def prefix(self) -> float:
@@ -180,11 +187,13 @@ def _match(
     chosen: Mapping[str, Spot],
 ) -> Match:
     own, unit = alike[column, spot], spelled(_unit(log, column))
-    near = own.score - RIVAL
+    near, words = own.score - RIVAL, words_of(bare_name(column))
+    whole = called(words, spot)
     others = [
         f"it could be {s.label}"
         for (c, s), found in alike.items()
         if c == column and s != spot and s.moves and found.score > near and s not in chosen.values()
+        if called(words, s) or not whole
     ]
     others += [
         f"{c} would do as well"

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Collection
 from dataclasses import dataclass
 
 from ves_twin.data.unit_names import bare_name, spelled
@@ -190,11 +191,22 @@ def _of_words(words: frozenset[str], spot: Spot) -> list[tuple[float, str]]:
     """Words that the column shares with the spot; single letters are axes, of sensors words."""
     shared = {w for w in spot.words & words if not w.isdigit()}
     long = {w for w in shared if len(w) > 1 or spot.quantity is Quantity.SENSOR}
-    found = [(WORD, f"shares '{max(sorted(long), key=len)}' with {spot.label}")] if long else []
+    found = [(WORD, f"shares '{_told_of(long, spot)}' with {spot.label}")] if long else []
     own = len(long & set(words_of(spot.name)))
     found += [(OWN * own / (own + 1.0), "")] if own else []
     axes = shared & AXES - long
     return [*found, *((AXIS, f"axis {axis}") for axis in sorted(axes))]
+
+
+def _told_of(shared: set[str], spot: Spot) -> str:
+    """The name of the joint where all of it is shared, else the longest of the words."""
+    return (spot.joint or spot.name) if called(shared, spot) else max(sorted(shared), key=len)
+
+
+def called(words: Collection[str], spot: Spot) -> bool:
+    """Whether these words hold the whole name of the spot's joint, or its own where it has none."""
+    own = {w for w in words_of(spot.joint or spot.name) if not w.isdigit() and len(w) > 1}
+    return len(own) > 1 and own <= set(words)
 
 
 def _number(words: frozenset[str], spot: Spot) -> int:
