@@ -127,6 +127,45 @@ def test_every_size_is_one_of_its_own_sign_scaled(signs, crowd):
     assert np.all(np.count_nonzero(weights, axis=1) == 1)
 
 
+@pytest.mark.parametrize(
+    ("signs", "crowd", "known", "simulated"),
+    [
+        ((1,), 6, [0.005], [0.126491]),  # the middle, and what one sd changes
+        ((1,), 1, [0.005], [0.8]),
+        ((-1, 1), 6, [], [0.02]),  # one small size for both signs
+        ((-1, 1), 1, [], [-0.8, 0.02]),
+    ],
+)
+def test_a_bank_scales_small_sizes_from_what_it_has_already(signs, crowd, known, simulated):
+    cause = Hypothesis("lag", "leg.1", ("lag",), (0.01,), (1.0,), signs)
+    asked, weights = rungs(cause, crowd, np.array(known))
+    assert asked[:, 0] == pytest.approx(simulated, rel=1e-4)
+    traces = np.concatenate([asked[:, 0], known])
+    sizes = cause.departures()[:, 0]
+    assert weights @ traces == pytest.approx(sizes)
+    assert np.all(np.count_nonzero(weights, axis=1) == 1)
+    least = np.argmin(np.abs(sizes))
+    assert abs(traces[np.argmax(np.abs(weights[least]))]) <= 0.02
+
+
+def test_a_linear_cause_whose_parameters_are_all_tolerances_takes_no_run():
+    tilt = Hypothesis("tilt", "rig", ("a", "b"), (0.1, 0.2), (1.0, 2.0), linear=True)
+    asked, weights = rungs(tilt, 1, np.array([0.02, 0.05]))
+    assert asked.shape == (0, 2)
+    assert weights @ np.diag([0.02, 0.05]) == pytest.approx(tilt.departures())
+
+
+def test_entries_of_a_tilt_are_sums_of_the_columns_of_its_tolerances(runs):
+    tilt = Hypothesis("tilt", "rig", ("j0.size", "j1.size"), (0.1, 0.1), (1.0, 1.0), linear=True)
+    base, before = linearise(runs, runs.origin), count(runs)
+    bank = build_bank(runs, hypotheses=(tilt,), base=base, sparse=True)
+    assert count(runs) == before
+    assert len(bank.owner) == len(tilt.departures())
+    for entry in range(len(bank.owner)):
+        exact = runs.one(runs.depart(runs.origin, runs.indices(tilt), bank.sizes[entry]))
+        assert bank.signature(entry) == pytest.approx(exact - base.prediction, abs=1e-4)
+
+
 def test_a_sparse_bank_is_not_taken_for_a_full_one(runs, tmp_path):
     sparse = cached_bank(runs, tmp_path, lambda: build_bank(runs, sparse=True), "sparse")
     full = cached_bank(runs, tmp_path, lambda: build_bank(runs))

@@ -172,7 +172,8 @@ def _bending(runs: Runs) -> list[int]:
 def _moved_together(runs: Runs) -> list[IntArray]:
     """Rows of the nuisances by kind of part; of causes that are not linear, by kind of cause too.
 
-    Fewer than MANY say little about each other, and stay alone.
+    Tolerances that are no cause go by their part (`table@chamber.viscous`). Fewer than MANY say
+    little about each other, and stay alone.
     """
     kinds: dict[int, tuple[str, str]] = {}
     for h in runs.forward.hypotheses:
@@ -181,7 +182,8 @@ def _moved_together(runs: Runs) -> list[IntArray]:
     groups: dict[object, list[int]] = {}
     for row in _bending(runs):
         i = int(runs.nuisances[row])
-        groups.setdefault(kinds.get(i, i), []).append(row)
+        part = runs.coordinates[i].parameter.name.rpartition(".")[0]
+        groups.setdefault(kinds.get(i, part), []).append(row)
     found = []
     for rows in groups.values():
         found += [np.array(rows)] if len(rows) >= MANY else [np.array([row]) for row in rows]

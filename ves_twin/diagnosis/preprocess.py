@@ -109,7 +109,8 @@ def _check_length(runs: Runs) -> None:
         fewest = FEWEST_POSES if programme.poses else FEWEST_ROWS
         if len(time) < fewest:
             what = f"rows of {programme.name} at {1.0 / grid.step:.3g} Hz"
-            span = "" if programme.poses else f", {1.05 * fewest * grid.step:.2g} s and more"
+            length = float(np.ptp(programme.time)) + (fewest + 1 - len(time)) * grid.step
+            span = "" if programme.poses else f", so {length:.2f} s"
             expected = (
                 f"at least {fewest}{span}: a longer recording, stretch (--alternate) or piece"
             )

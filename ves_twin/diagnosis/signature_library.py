@@ -29,7 +29,7 @@ LADDER = 6.0
 SAME = 1e-2
 """Sd of one sample by which a kept prediction may be off: rounding of another processor."""
 
-SCHEMA = 5
+SCHEMA = 6
 """Version of the cached file; another one is built anew."""
 
 
@@ -124,14 +124,14 @@ def build_bank(
     climbs = [
         _Climb.of(runs, start, h, hypothesis, sparse)
         for h, hypothesis in enumerate(library)
-        if not (hypothesis.linear and _column(runs, hypothesis) is not None)
+        if not (hypothesis.linear and len(_columns(runs, hypothesis)) == 1)
     ]
     shifts = [end for climb in climbs for end in climb.ends]
     stacks = runs.many(shifts, progress, "signatures") - base.prediction
     found, shapes = _Entries([], [], [], []), list[SingleArray]()
     for climb in climbs:
         own, stacks = stacks[: len(climb.ends)], stacks[len(climb.ends) :]
-        climb.add(found, shapes, own, len(base.columns))
+        climb.add(found, shapes, own, base)
     straight = _straight(base, library)
     rows = len(base.prediction)
     return SignatureLibrary(
@@ -168,10 +168,12 @@ class _Climb:
 
     Attributes:
         hypothesis: number in the library.
-        moved: departures that are simulated, as bounds let them (m, parameters).
-        reached: which of them bounds leave far enough from the point (m,).
+        moved: departures whose traces are told, as bounds let them: simulated ones, then one sd of
+            each parameter that has a column of the base (m, parameters).
+        reached: which of those that are simulated bounds leave far enough from the point.
         ends: points that are simulated.
-        weights: of their traces in each entry (k, m).
+        known: rows of those columns.
+        weights: of traces in each entry (k, m).
         room: farthest departures to either side that bounds let (2, parameters).
     """
 
@@ -179,6 +181,7 @@ class _Climb:
     moved: FloatArray
     reached: BoolArray
     ends: list[FloatArray]
+    known: IntArray
     weights: FloatArray
     room: FloatArray
 
@@ -188,28 +191,31 @@ class _Climb:
     ) -> _Climb:
         where = runs.indices(hypothesis)
         asked = hypothesis.departures()
-        weights = np.eye(len(asked))
+        weights, known = np.eye(len(asked)), np.zeros(0, int)
         if sparse:
             crowd = Counter(h.kind for h in runs.forward.hypotheses)[hypothesis.kind]
-            asked, weights = rungs(hypothesis, crowd)
+            known = _columns(runs, hypothesis)
+            asked, weights = rungs(hypothesis, crowd, runs.sd[where[: len(known)]])
         ends = [runs.depart(start, where, start[where] + row) for row in asked]
-        moved = np.array([end[where] - start[where] for end in ends])
+        moved = np.array([end[where] - start[where] for end in ends]).reshape(asked.shape)
         reached = np.any(np.abs(moved) > 0.5 * np.abs(asked), axis=1)
-        kept = np.flatnonzero(reached)
         room = np.array([runs.low[where], runs.high[where]]) - start[where]
-        ends = [ends[n] for n in kept]
-        return _Climb(number, moved, reached, ends, weights, room)
+        ends = [ends[n] for n in np.flatnonzero(reached)]
+        moved = np.concatenate([moved, np.diag(runs.sd[where])[: len(known)]])
+        return _Climb(number, moved, reached, ends, known, weights, room)
 
     def add(
-        self, found: _Entries, shapes: list[SingleArray], stacks: SingleArray, columns: int
+        self, found: _Entries, shapes: list[SingleArray], own: SingleArray, base: Linearisation
     ) -> None:
         """Its entries, of traces without those that bounds left out; none of what diverges."""
+        stacks, columns = np.concatenate([own, base.columns[self.known]]), len(base.columns)
         place = np.full(len(self.moved), -1)
-        place[self.reached] = np.arange(len(stacks))
+        place[: len(self.reached)][self.reached] = np.arange(len(own))
+        place[len(self.reached) :] = len(own) + np.arange(len(self.known))
         for n, at in enumerate(place):
             good = at >= 0 and np.all(np.isfinite(stacks[at]))
             place[n] = at if good else -1
-        own: dict[int, int] = {}
+        shape = {len(self.reached) + k: int(row) for k, row in enumerate(self.known)}
         for weights in self.weights:
             used = np.flatnonzero(weights)
             sizes = weights @ self.moved
@@ -222,10 +228,10 @@ class _Climb:
                 shapes.append(mixed)
                 continue
             n = int(used[0])
-            if n not in own:
-                own[n] = len(shapes)
+            if n not in shape:
+                shape[n] = columns + len(shapes)
                 shapes.append(stacks[place[n]])
-            found.add(self.hypothesis, sizes, columns + own[n], float(weights[n]))
+            found.add(self.hypothesis, sizes, shape[n], float(weights[n]))
 
 
 def _straight(base: Linearisation, library: tuple[Hypothesis, ...]) -> _Entries:
@@ -237,8 +243,8 @@ def _straight(base: Linearisation, library: tuple[Hypothesis, ...]) -> _Entries:
     """
     runs, found = base.runs, _Entries([], [], [], [])
     for h, hypothesis in enumerate(library):
-        rows = _column(runs, hypothesis)
-        if rows is None:
+        rows = _columns(runs, hypothesis)
+        if len(rows) != 1:
             continue
         sd = runs.sd[runs.nuisances[rows]]
         for spreads in _ladder(hypothesis, float(sd[0])):
@@ -247,10 +253,11 @@ def _straight(base: Linearisation, library: tuple[Hypothesis, ...]) -> _Entries:
     return found
 
 
-def _column(runs: Runs, hypothesis: Hypothesis) -> IntArray | None:
-    """Where among the nuisances a cause of one parameter has a column of its own."""
-    rows = np.flatnonzero(np.isin(runs.nuisances, runs.indices(hypothesis)))
-    return rows if len(hypothesis.parameters) == 1 and len(rows) == 1 else None
+def _columns(runs: Runs, hypothesis: Hypothesis) -> IntArray:
+    """Rows of the nuisances that are a cause's parameters, in their order; none if one is none."""
+    rows = {int(i): row for row, i in enumerate(runs.nuisances)}
+    own = [rows.get(int(i)) for i in runs.indices(hypothesis)]
+    return np.array([] if None in own else own, int)
 
 
 def _ladder(hypothesis: Hypothesis, sd: float) -> list[float]:

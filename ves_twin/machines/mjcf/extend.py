@@ -11,8 +11,9 @@ from ves_twin.diagnosis.verdict import Verdict
 from ves_twin.effects.law_table import put_over
 from ves_twin.machines.claimed_law import claimed_laws
 from ves_twin.machines.mjcf.description import KIND, SCHEMA, Setting
+from ves_twin.machines.mjcf.entry import Entry
 from ves_twin.machines.mjcf.load_description import shipped_rigs
-from ves_twin.machines.mjcf.machine import Entry, Rig
+from ves_twin.machines.mjcf.machine import Rig
 
 
 def extended(rig: Rig, verdict: Verdict) -> Rig:

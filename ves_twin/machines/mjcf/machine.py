@@ -25,54 +25,12 @@ from ves_twin.effects.place import Place
 from ves_twin.effects.registry import EFFECTS, attributes, build_anywhere, kind_anywhere
 from ves_twin.machines.mjcf.check_description import check_description
 from ves_twin.machines.mjcf.description import Allowed, RigDescription, Setting
+from ves_twin.machines.mjcf.entry import Entry
 from ves_twin.machines.mjcf.load_description import load_description
 from ves_twin.machines.mjcf.places import anywhere, place_of
 from ves_twin.machines.mjcf.probe import Probe
 from ves_twin.machines.mjcf.stiff_friction import stiff_friction
 from ves_twin.machines.mjcf.unfolded import unfolded
-
-
-@dataclass(frozen=True)
-class Entry:
-    """One kind of effect on one target: sizes, nominal values, whether it is a cause.
-
-    Attributes:
-        effect: of that kind, with all sizes zero.
-        place: its target.
-        magnitudes: sizes with unit, range and commissioning sd.
-        nominal: value of each, as the rig has it.
-        cause: whether it may be named.
-        per_recording: drawn anew for each recording.
-        source: of the sizes.
-        allowed: what the file says of it.
-    """
-
-    effect: Effect
-    place: Place
-    magnitudes: tuple[Magnitude, ...]
-    nominal: tuple[float, ...]
-    cause: bool
-    per_recording: bool
-    source: str
-    allowed: Allowed
-
-    @property
-    def key(self) -> tuple[str, str]:
-        """Kind and target."""
-        return self.effect.kind, self.effect.target
-
-    def name(self, magnitude: Magnitude) -> str:
-        """Of a parameter: kind@target:magnitude."""
-        return f"{self.effect.kind}@{self.effect.target}:{magnitude.name}"
-
-    def at(self, values: Mapping[str, float]) -> Effect:
-        """The effect where its parameters have values; those left out are nominal."""
-        sizes = {}
-        native = bool(self.effect.attribute)
-        for magnitude, nominal in zip(self.magnitudes, self.nominal, strict=True):
-            value = values.get(self.name(magnitude), nominal)
-            sizes[magnitude.name] = value - nominal if native else value
-        return self.effect.sized(sizes)
 
 
 @dataclass(frozen=True)
@@ -183,7 +141,7 @@ class Rig:
         for entry in self.entries:
             for m, nominal in zip(entry.magnitudes, entry.nominal, strict=True):
                 told = settings.get(entry.key) or entry.allowed
-                low, high = _bounds(entry, m, nominal, told)
+                low, high = entry.bounds(m, nominal, told)
                 name = entry.name(m)
                 one = entry.per_recording
                 found.append(
@@ -239,11 +197,33 @@ class Rig:
         return digest.hexdigest()[:16]
 
     def effects_at(self, values: Mapping[str, float]) -> Iterator[tuple[Effect, Place]]:
-        """Effects that are at work where parameters have values."""
-        for entry in self.entries:
+        """Effects that are at work where parameters have values, in the order of `entries`.
+
+        A library has hundreds, of which a prediction has few at work: the others are not made.
+        """
+        places, standing = self._idle
+        moved = {
+            place[0]
+            for name, value in values.items()
+            if (place := places.get(name)) is not None and value != place[1]
+        }
+        for number in sorted(moved | standing):
+            entry = self.entries[number]
             effect = entry.at(values)
             if not effect.neutral:
                 yield effect, entry.place
+
+    @cached_property
+    def _idle(self) -> tuple[Mapping[str, tuple[int, float]], frozenset[int]]:
+        """Number of the entry of each parameter, with its value of no size; those of a size now."""
+        places, standing = {}, set()
+        for number, entry in enumerate(self.entries):
+            native = bool(entry.effect.attribute)
+            for magnitude, nominal in zip(entry.magnitudes, entry.nominal, strict=True):
+                places[entry.name(magnitude)] = (number, nominal if native else 0.0)
+            if not entry.at({}).neutral:
+                standing.add(number)
+        return places, frozenset(standing)
 
     def check(self) -> None:
         """Raise UnknownNameError or InvalidInputError where the two files do not fit together."""
@@ -291,12 +271,13 @@ class Rig:
             came = f"present.{effect.kind}.{target}"
             raise InvalidInputError(came, told, f"{expected} and value")
         build_anywhere(effect.kind, target, told)
+        own = effect.present(self.model) if effect.attribute else 0.0
         magnitudes = tuple(
-            _sized(m, allowed, setting, f"{effect.kind}@{target}")
+            Entry.sized(m, allowed, setting, f"{effect.kind}@{target}", own)
             for m in effect.magnitudes_at(place)
         )
         if effect.attribute:
-            nominal: tuple[float, ...] = (effect.present(self.model),)
+            nominal: tuple[float, ...] = (own,)
         else:
             nominal = tuple(float(told.get(m.name, 0.0)) for m in magnitudes)
             for m, value in zip(magnitudes, nominal, strict=True):
@@ -330,24 +311,6 @@ class Rig:
         return known[attribute].kind, f"{name}.{axis}" if on and on.axis else name
 
 
-def _bounds(
-    entry: Entry, m: Magnitude, nominal: float, told: Setting | Allowed
-) -> tuple[float, float]:
-    """Of a parameter: what the file says, else the largest departure; never what cannot be."""
-    one_sided = m.sign is Sign.POSITIVE
-    low, high = 0.0 if one_sided else nominal - m.largest, nominal + m.largest
-    native = bool(entry.effect.attribute)
-    least = 0.0 if one_sided and native else entry.effect.least(nominal)
-    what = f"{entry.effect.kind} of {entry.effect.target}"
-    if told.low is not None:
-        low = to_si(told.low, m.unit, f"low of {what}")
-    if told.high is not None:
-        high = to_si(told.high, m.unit, f"high of {what}")
-    if (told.low, told.high) != (None, None) and not low <= nominal <= high:
-        raise InvalidInputError(f"low, high of {what}", (low, high), f"{nominal:g} within them")
-    return min(max(low, least), nominal), high
-
-
 def _value(setting: Setting, effect: Effect, m: Magnitude) -> float:
     """What a setting makes of its attribute: a mass above zero, friction and springs not below."""
     what = f"{setting.attribute} of {effect.target}"
@@ -357,19 +320,3 @@ def _value(setting: Setting, effect: Effect, m: Magnitude) -> float:
     if value <= effect.least(0.0):
         raise InvalidInputError(what, setting.value, "more than zero")
     return value
-
-
-def _sized(m: Magnitude, allowed: Allowed, setting: Setting | None, what: str) -> Magnitude:
-    """A size with what the file says of it."""
-    sd = to_si(setting.sd, m.unit, f"sd of {what}") if setting else 0.0
-    sd = to_si(allowed.sd, m.unit, f"sd of {what}") or sd
-    smallest, largest = m.smallest, m.largest
-    if allowed.largest is not None:
-        largest = to_si(allowed.largest, m.unit, f"largest of {what}")
-        smallest = smallest * largest / m.largest
-    if allowed.smallest is not None:
-        smallest = to_si(allowed.smallest, m.unit, f"smallest of {what}")
-    if not 0.0 < smallest < largest:
-        expected = "0 < smallest < largest; typical sizes of its joint or signal give them"
-        raise InvalidInputError(f"sizes of {what}", (smallest, largest), expected)
-    return replace(m, sd=sd, smallest=smallest, largest=largest)

@@ -18,6 +18,7 @@ from ves_twin.machines.mjcf.draft.match import Match, Matches
 from ves_twin.machines.mjcf.draft.motion import Motion, band_of, motion_of
 from ves_twin.machines.mjcf.draft.rates import differs, rated
 from ves_twin.machines.mjcf.draft.spots import Quantity, is_servo
+from ves_twin.machines.mjcf.draft.too_much_friction import too_much_friction
 from ves_twin.machines.mjcf.inverse import smoothed
 from ves_twin.machines.mjcf.places import driven_joint
 
@@ -97,6 +98,7 @@ def checked(log: LogColumns, matches: Matches, model: mujoco.MjModel) -> Checked
         motion = judge.motion(found)
         found, said = judge.efforts(found, motion)
         findings += said
+        findings += judge.rough(found, motion)
         explained = judge.explained(found, motion)
     findings += _beyond(log, found, model)
     found, said = rated(log, found, corner, model)
@@ -221,13 +223,21 @@ class _Judge:
         y, need = self.recorded(match, motion), self.needed(match, motion)
         return EffortFit.of(y, need, motion.speed[:, self.dof(match)], match.electrical)
 
+    def along(self, found: list[Match], motion: Motion) -> Iterator[tuple[Match, FloatArray]]:
+        """Each effort that acts on one joint, with what it is there (m,)."""
+        for match in self.driving(found):
+            yield match, self.gain(match) * self.recorded(match, motion)
+
     def power(self, found: list[Match], motion: Motion) -> float:
         """Mean of what all efforts give to their joints [W]: what friction takes, so above 0."""
-        total = 0.0
-        for match in self.driving(found):
-            effort = self.gain(match) * self.recorded(match, motion)
-            total += float(np.mean(motion.speed[:, self.dof(match)] * effort))
-        return total
+        rows = (motion.speed[:, self.dof(m)] * effort for m, effort in self.along(found, motion))
+        return sum(float(np.mean(row)) for row in rows)
+
+    def rough(self, found: list[Match], motion: Motion) -> list[str]:
+        """Joints at which the model has more friction than what was measured."""
+        measured = (pair for pair in self.along(found, motion) if not pair[0].electrical)
+        along = {m.spot.joint: (effort, motion.speed[:, self.dof(m)]) for m, effort in measured}
+        return too_much_friction(self.model, along)
 
     def efforts(self, found: list[Match], motion: Motion) -> tuple[list[Match], list[str]]:
         """With signs and constants of efforts as the motion needs them."""
