@@ -92,14 +92,31 @@ def _content(model: mujoco.MjModel) -> bytes:
     return content.tobytes()
 
 
+def _hash(content: bytes) -> str:
+    return hashlib.sha256(content).hexdigest()
+
+
 @dataclass(frozen=True)
-class _Motion:
-    """A motion of a model; equal to another one if its hash is."""
+class _Path:
+    """Where joints are; equal to another one if its hash is."""
 
     key: str
     work: Work = field(compare=False)
-    model: mujoco.MjModel = field(compare=False)
     positions: Mapping[str, FloatArray] = field(compare=False)
+
+
+@dataclass(frozen=True)
+class _Motion:
+    """A path of a model; equal to another one if it is, and the model's numbers are."""
+
+    path: _Path
+    numbers: str
+    recorded: bool
+    model: mujoco.MjModel = field(compare=False)
+
+    def states(self) -> tuple[FloatArray, FloatArray, FloatArray]:
+        """See `_states`."""
+        return _kept_states(self.path) if self.recorded else _states(self.path)
 
 
 def _moved_of(work: Work) -> Moved:
@@ -112,19 +129,16 @@ def _moved_of(work: Work) -> Moved:
     fed = _single(work)
     recorded = {j: work.programme.drive[s][:, 0] for j, s in fed}
     positions = {j: work.position(j, work.seen(s)[:, 0]) for j, s in fed}
-
-    def motion(model: mujoco.MjModel, numbers: bytes) -> _Motion:
-        digest = hashlib.sha256(f"{work.rig.identity}{work.programme.identity}".encode() + numbers)
-        for part in positions.values():
-            digest.update(np.ascontiguousarray(part).tobytes())
-        return _Motion(digest.hexdigest(), work, model, positions)
-
+    digest = hashlib.sha256(f"{work.rig.identity}{work.programme.identity}".encode())
+    for part in (work.model.qpos0, *positions.values()):
+        digest.update(np.ascontiguousarray(part).tobytes())
+    path = _Path(digest.hexdigest(), work, positions)
     as_recorded = all(np.array_equal(positions[j], recorded[j]) for j in recorded)
     if as_recorded and _content(with_inertials_of(rigid, nominal)) == content:
-        efforts = _efforts(motion(nominal, content))
+        efforts = _efforts(_Motion(path, _hash(content), as_recorded, nominal))
         if efforts.linear:
             return efforts.of(rigid)
-    return _moved(motion(rigid, _content(rigid)))
+    return _moved(_Motion(path, _hash(_content(rigid)), as_recorded, rigid))
 
 
 @lru_cache(maxsize=4)
@@ -137,13 +151,13 @@ def _nominal(model: mujoco.MjModel) -> tuple[mujoco.MjModel, bytes]:
 @lru_cache(maxsize=RECORDED)
 def _efforts(motion: _Motion) -> RigidEfforts:
     """Of a motion as it was recorded."""
-    return RigidEfforts(motion.model, *_states(motion))
+    return RigidEfforts(motion.model, *motion.states())
 
 
 @lru_cache(maxsize=KEPT)
 def _moved(motion: _Motion) -> Moved:
     """Of any other one."""
-    return inverted(motion.model, *_states(motion))
+    return inverted(motion.model, *motion.states())
 
 
 def _single(work: Work) -> list[tuple[str, str]]:
@@ -198,27 +212,36 @@ def needed_effort(work: Work, name: str, moved: Moved) -> FloatArray:
     return np.asarray(effort)
 
 
-def _states(motion: _Motion) -> tuple[FloatArray, FloatArray, FloatArray]:
+def _states(path: _Path) -> tuple[FloatArray, FloatArray, FloatArray]:
     """Qpos (n, nq), qvel and qacc (n, nv) of the motion that is fed in."""
-    work = motion.work
+    work = path.work
     told, model, programme = work.rig.description, work.model, work.programme
     rows = len(programme.time)
     q = np.tile(model.qpos0, (rows, 1))
     v, a = np.zeros((rows, model.nv)), np.zeros((rows, model.nv))
     for joint, signal in told.drive.joints.items():
         at, dof = int(model.joint(joint).qposadr[0]), int(model.joint(joint).dofadr[0])
-        if joint not in motion.positions:  # a free joint: MuJoCo has the scalar part first
+        if joint not in path.positions:  # a free joint: MuJoCo has the scalar part first
             q[:, at : at + 7] = programme.drive[signal][:, [0, 1, 2, 6, 3, 4, 5]]
             if not programme.poses:
                 _move_free(model, joint, programme.period, told.drive.smoothing, (q, v, a))
             continue
-        q[:, at] = motion.positions[joint]
+        q[:, at] = path.positions[joint]
         if not programme.poses:
             smooth = smoothed(q[:, at], programme.period, told.drive.smoothing)
             q[:, at] = smooth
             v[:, dof] = np.gradient(smooth, programme.period)
             a[:, dof] = np.gradient(v[:, dof], programme.period)
     return q, v, a
+
+
+@lru_cache(maxsize=RECORDED)
+def _kept_states(path: _Path) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Of a path as it was recorded, along which every model of a fit is asked: read-only."""
+    found = _states(path)
+    for part in found:
+        part.setflags(write=False)
+    return found
 
 
 def _move_free(
