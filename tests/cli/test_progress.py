@@ -59,6 +59,16 @@ def test_a_stage_whose_end_nobody_knows_tells_its_own_time(now):
     assert bar.line() == "diagnose: choosing causes, 45 s so far, 35 s in this stage"
 
 
+def test_a_stage_that_is_over_tells_for_how_long(now):
+    bar = RunProgress("diagnose", 1.0, unit="share")
+    bar.share(0.5, "signatures")
+    now[0] = 110.0
+    bar.share(1.0, "signatures")
+    assert bar.line() == "diagnose: signatures, 100 %, 10 s so far"
+    now[0] = 135.0
+    assert bar.line() == "diagnose: signatures, 100 %, 35 s so far, 25 s since then"
+
+
 def test_quick_work_prints_no_line(capsys, monkeypatch):
     monkeypatch.setattr(progress, "FIRST", 60.0)
     with RunProgress("run", 2.0) as bar:

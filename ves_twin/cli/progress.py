@@ -52,7 +52,7 @@ class RunProgress:
             + " [{elapsed}, {remaining} left]",
         )
         self._stage, self._done = "", 0.0
-        self._begun = self._stage_begun = time.monotonic()
+        self._begun = self._stage_begun = self._stage_over = time.monotonic()
         self._asked = self._stopped = self._running = False
         self._before: Any = None
         self._over = threading.Event()
@@ -72,6 +72,8 @@ class RunProgress:
             self._stage, self._stage_begun = what, time.monotonic()
             self._bar.reset()
             self._bar.set_description_str(f"{self._name}: {what}")
+        if done >= 1.0:
+            self._stage_over = time.monotonic()
         self(done)
 
     def line(self) -> str:
@@ -83,6 +85,9 @@ class RunProgress:
             within = f", {_span(here)} in this stage" if here >= 1.0 else ""
             return f"{what}, {_span(now - self._begun)} so far{within}"
         text = f"{what}, {100.0 * self._done:.0f} %, {_span(now - self._begun)} so far"
+        since = now - self._stage_over
+        if self._stage and self._done >= 1.0 and since >= 1.0:  # what follows has told no name
+            text += f", {_span(since)} since then"
         if 0.0 < self._done < 1.0:
             left = here * (1.0 / self._done - 1.0)
             text += f", about {_span(left)} left" + (" in this stage" if self._stage else "")
