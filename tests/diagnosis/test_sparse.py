@@ -82,6 +82,21 @@ def test_like_tolerances_that_are_moved_together_bend_as_they_do_one_by_one(runs
     assert together.bends[springs] == pytest.approx(alone.bends[springs], rel=0.2)
 
 
+@pytest.mark.parametrize(
+    ("names", "runs_of_it"), [("table@chamber.{}", 1), ("start@{}:position", 3)]
+)
+def test_tolerances_of_one_part_share_a_run_and_others_do_not(names, runs_of_it):
+    more = tuple(Parameter(names.format(n), "1", 0.0, -5.0, 5.0, sd=0.02) for n in range(3))
+    plain = Runs(Jointed(counted=([],)), (programme(),), (0, 1))
+    wider = Runs(Jointed(nuisances=(*NUISANCES, *more), counted=([],)), (programme(),), (0, 1))
+    counts = []
+    for one in (plain, wider):
+        base, before = linearise(one, one.origin), count(one)
+        with_bends(base, together=True)
+        counts.append(count(one) - before)
+    assert counts[1] - counts[0] == runs_of_it
+
+
 @pytest.mark.parametrize(("share", "anew"), [(0.0, 0), (0.1, 0), (3.0, 1), (10.0, 1 + JOINTS)])
 def test_columns_are_computed_anew_by_how_far_a_fit_has_moved(runs, share, anew):
     base = with_bends(linearise(runs, runs.origin))

@@ -183,7 +183,7 @@ def _moved_together(runs: Runs) -> list[IntArray]:
     for row in _bending(runs):
         i = int(runs.nuisances[row])
         part = runs.coordinates[i].parameter.name.rpartition(".")[0]
-        groups.setdefault(kinds.get(i, part), []).append(row)
+        groups.setdefault(kinds.get(i, part or i), []).append(row)
     found = []
     for rows in groups.values():
         found += [np.array(rows)] if len(rows) >= MANY else [np.array([row]) for row in rows]

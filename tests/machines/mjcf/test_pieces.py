@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+
 import mujoco
 import numpy as np
 import pytest
@@ -128,6 +130,17 @@ def test_pieces_are_longer_where_they_would_have_too_few_rows_of_the_analysis(
     assert len(found) == count
     if count < 30:  # those of 0.2 s are refused: more than a third longer is another horizon
         preprocess(MjcfForward.of(rig), found)
+
+
+def test_a_recording_as_long_as_a_refusal_asks_is_taken(tmp_path):
+    forward = MjcfForward.of(Rig.load(str(rig_in(tmp_path))))
+    with pytest.raises(InvalidInputError) as refused:
+        preprocess(forward, [recording_of(60)], None, 47.0)
+    seconds = float(re.search(r"at least 100, so (.*) s:", str(refused.value))[1])
+    rows = round(seconds / 0.01) + 1
+    preprocess(forward, [recording_of(rows)], None, 47.0)
+    with pytest.raises(InvalidInputError, match="at least 100"):
+        preprocess(forward, [recording_of(rows - 6)], None, 47.0)
 
 
 def test_each_piece_has_the_rows_of_its_lead_before_it(tmp_path):
