@@ -395,6 +395,6 @@ def test_a_weight_tells_whether_the_position_or_the_current_counts_backwards(
 
 def test_a_position_far_beyond_its_joint_s_range_is_told(tmp_path):
     found, _ = hoisted(tmp_path, z=1000.0)
-    assert any("joint z from -0.3 to 0.3: another unit?" in words for words in found.look)
+    assert any("joint z from -0.3 to 0.3: another unit" in words for words in found.look)
     found, _ = hoisted(tmp_path)
     assert not any("another unit" in words for words in found.look)

@@ -28,6 +28,21 @@ def test_degrees_that_are_named_in_rad_are_told_though_a_motor_constant_is_fitte
     assert scales(rig)["turn.position"] == pytest.approx(np.pi / 180.0)
 
 
+@pytest.mark.parametrize(("name", "factor"), [("", 57.29578), ("_rad", 57.29578), ("_deg", 1.0)])
+def test_all_angles_in_another_unit_are_told_though_a_wrist_has_friction_alone(
+    arm, columns, write, name, factor
+):
+    """One torque that no unit explains must not hold back what all the others say."""
+    log = {n + name * (n in "q1 q2 q3"): v for n, v in columns.items() if not n.startswith("dq")}
+    for n in ("q1", "q2", "q3"):
+        log[n + name] = factor * columns[n]
+    log["tau3"] = 9.0 * np.tanh(columns["dq3"] / 0.02)
+    found, rig = drafted(arm, write(log))
+    assert any(w.startswith(f"q1{name}, q2{name}, q3{name}: ") for w in found.look)
+    joints = ("turn.position", "lift.position", "bend.position")
+    assert [scales(rig)[j] for j in joints] == pytest.approx([1.0 / factor] * 3, rel=1e-4)
+
+
 def test_speeds_go_with_positions_that_are_swapped(arm, columns, write):
     pairs = {"q2": "q3", "q3": "q2", "dq2": "dq3", "dq3": "dq2"}
     found, _ = drafted(arm, write(changed(columns, **{n: columns[o] for n, o in pairs.items()})))

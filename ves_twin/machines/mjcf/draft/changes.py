@@ -91,16 +91,22 @@ def _in_units(
     for factor, unit in ((DEGREE, "deg"), (0.001, "mm")):
         kind = "rad" if unit == "deg" else "m"
         open_ = [m for m in positions if m.spot.unit == kind and not m.told and m.unit == kind]
-        for group in ([[m] for m in open_] + [open_]) if len(open_) > 1 else [[m] for m in open_]:
+        for group in _groups(open_):
             names = ", ".join(m.column for m in group)
             words = f"numbers fit the model as {unit}, not as {kind} (factor {factor:.4g})"
             new = {m: replace(m, unit=unit) for m in group}
             yield _with(found, new), f"{names}: {words}"
-    for match in positions:
-        if match.told and match.unit in OTHER_ANGLE and match in odd:
-            unit = OTHER_ANGLE[match.unit]
-            words = f"{match.column}: named in {match.unit}, the numbers fit the model as {unit}"
-            yield _with(found, {match: replace(match, unit=unit)}), words
+    for one, other in OTHER_ANGLE.items():
+        named = [m for m in positions if m.told and m.unit == one and m in odd]
+        for group in _groups(named):
+            names = ", ".join(m.column for m in group)
+            words = f"{names}: named in {one}, the numbers fit the model as {other}"
+            yield _with(found, {m: replace(m, unit=other) for m in group}), words
+
+
+def _groups(matches: list[Match]) -> list[list[Match]]:
+    """Each alone, and all together."""
+    return [[m] for m in matches] + [matches] * (len(matches) > 1)
 
 
 def _from_the_world(
@@ -116,7 +122,7 @@ def _from_the_world(
         other, along = own[before[0]], before[1]
         if match.unit == other.unit and abs(match.scale) == abs(other.scale):
             new[match] = match.less(other, along)
-    for group in ([[m] for m in new] + [list(new)]) if len(new) > 1 else [[m] for m in new]:
+    for group in _groups(list(new)):
         names = ", ".join(m.column for m in group)
         formulas = ", ".join(new[m].column for m in group)
         words = f"numbers fit the model as measured from the world: {formulas}"
