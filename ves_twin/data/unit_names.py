@@ -16,6 +16,17 @@ SPELLINGS = {
     "N m": "N*m",
     "mNm": "mN*m",
     "kNm": "kN*m",
+    "Nmm": "mN*m",
+    "N*mm": "mN*m",
+    "N.mm": "mN*m",
+    "Ncm": "cN*m",
+    "N*cm": "cN*m",
+    "rev": "turn",
+    "revs": "turn",
+    "turns": "turn",
+    "revolutions": "turn",
+    "rev/s": "turn/s",
+    "rps": "turn/s",
     "sec": "s",
     "secs": "s",
     "seconds": "s",
@@ -44,10 +55,10 @@ TIME = {"s": 1.0, "ms": 1e-3, "us": 1e-6, "ns": 1e-9, "min": 60.0, "h": 3600.0}
 """Units of time in seconds."""
 
 _KNOWN = (
-    *("m", "mm", "cm", "um", "nm", "in", "rad", "mrad", "deg"),
-    *("N", "kN", "mN", "N*m", "mN*m", "kN*m", "Pa", "kPa", "MPa", "bar", "psi"),
+    *("m", "mm", "cm", "um", "nm", "in", "rad", "mrad", "deg", "turn"),
+    *("N", "kN", "mN", "N*m", "mN*m", "cN*m", "kN*m", "Pa", "kPa", "MPa", "bar", "psi"),
     *("V", "mV", "A", "mA", "W", "K", "degC", "Hz", "rpm", "kg", "g", "%", "1", "counts"),
-    *("m/s", "mm/s", "rad/s", "deg/s", "m/s^2", "rad/s^2", "deg/s^2"),
+    *("m/s", "mm/s", "rad/s", "deg/s", "turn/s", "m/s^2", "rad/s^2", "deg/s^2"),
     *TIME,
 )
 _IN_BRACKETS = re.compile(r"^(?P<name>.*?)\s*[\[({](?P<unit>[^\[\](){}]*)[\])}]\s*$")

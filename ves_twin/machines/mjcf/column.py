@@ -11,11 +11,11 @@ from ves_twin.scenario.fields import Part, named
 
 LAB_UNITS = {
     **dict.fromkeys(("mm", "cm", "um", "in"), "m"),
-    **dict.fromkeys(("deg", "mrad"), "rad"),
+    **dict.fromkeys(("deg", "mrad", "turn"), "rad"),
     **dict.fromkeys(("mm/s", "cm/s"), "m/s"),
-    **dict.fromkeys(("deg/s", "mrad/s", "rpm"), "rad/s"),
+    **dict.fromkeys(("deg/s", "mrad/s", "turn/s", "rpm"), "rad/s"),
     **dict.fromkeys(("kN", "mN"), "N"),
-    **dict.fromkeys(("mN*m", "kN*m"), "N*m"),
+    **dict.fromkeys(("mN*m", "cN*m", "kN*m"), "N*m"),
     **dict.fromkeys(("kPa", "MPa", "bar", "psi"), "Pa"),
 }
 """Other units that a signal may have, which are converted -> SI unit."""

@@ -28,7 +28,10 @@ def test_degrees_that_are_named_in_rad_are_told_though_a_motor_constant_is_fitte
     assert scales(rig)["turn.position"] == pytest.approx(np.pi / 180.0)
 
 
-@pytest.mark.parametrize(("name", "factor"), [("", 57.29578), ("_rad", 57.29578), ("_deg", 1.0)])
+@pytest.mark.parametrize(
+    ("name", "factor"),
+    [("", 57.29578), ("", 0.1591549), ("_rad", 57.29578), ("_deg", 1.0)],
+)
 def test_all_angles_in_another_unit_are_told_though_a_wrist_has_friction_alone(
     arm, columns, write, name, factor
 ):
@@ -41,6 +44,20 @@ def test_all_angles_in_another_unit_are_told_though_a_wrist_has_friction_alone(
     assert any(w.startswith(f"q1{name}, q2{name}, q3{name}: ") for w in found.look)
     joints = ("turn.position", "lift.position", "bend.position")
     assert [scales(rig)[j] for j in joints] == pytest.approx([1.0 / factor] * 3, rel=1e-4)
+
+
+def test_torques_in_thousandths_are_told_by_those_that_friction_does_not_hide(arm, columns, write):
+    log = {n: 1e3 * v if n.startswith("tau") else v for n, v in columns.items()}
+    log["tau3"] = 9e3 * np.tanh(columns["dq3"] / 0.02)
+    found, rig = drafted(arm, write(log))
+    assert any("tau1, tau2, tau3: numbers fit the model as mN*m" in w for w in found.look)
+    assert [scales(rig)[f"m{k}.effort"] for k in (1, 2, 3)] == pytest.approx([1e-3] * 3)
+
+
+def test_torques_of_which_one_is_a_thousand_times_off_keep_their_unit(arm, columns, write):
+    found, rig = drafted(arm, write(changed(columns, tau2=1e3 * columns["tau2"])))
+    assert any("tau2 is 1e+03 times what the model needs" in w for w in found.look)
+    assert scales(rig)["m2.effort"] == 1.0
 
 
 def test_speeds_go_with_positions_that_are_swapped(arm, columns, write):

@@ -15,7 +15,7 @@ from ves_twin.machines.mjcf.places import driven_joint
 from ves_twin.machines.mjcf.plausible.readings import TURNS
 from ves_twin.machines.mjcf.predecessor import predecessor
 
-DEGREE = np.pi / 180.0
+DEGREE, TURN = np.pi / 180.0, 2.0 * np.pi
 
 OTHER_ANGLE = {"deg": "rad", "rad": "deg"}
 
@@ -88,10 +88,11 @@ def _in_units(
     What a name says stands where no effort of that joint speaks, unless the numbers do (`odd`): an
     elbow on a belt was taken for 57 times smaller, as it then explained its shoulder.
     """
-    for factor, unit in ((DEGREE, "deg"), (0.001, "mm")):
-        kind = "rad" if unit == "deg" else "m"
+    for factor, unit, kind in ((DEGREE, "deg", "rad"), (TURN, "turn", "rad"), (0.001, "mm", "m")):
         open_ = [m for m in positions if m.spot.unit == kind and not m.told and m.unit == kind]
         for group in _groups(open_):
+            if unit == "turn" and len(group) == 1:  # a mass that is wrong would do as well
+                continue
             names = ", ".join(m.column for m in group)
             words = f"numbers fit the model as {unit}, not as {kind} (factor {factor:.4g})"
             new = {m: replace(m, unit=unit) for m in group}

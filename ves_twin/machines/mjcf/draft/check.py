@@ -11,10 +11,11 @@ import numpy as np
 from ves_twin.core.types import FloatArray
 from ves_twin.machines.mjcf.cyclic import is_cyclic, turned_by
 from ves_twin.machines.mjcf.draft.changes import DEGREE, changes, misnamed
-from ves_twin.machines.mjcf.draft.effort_fit import FAR, LOADED, TELLS, EffortFit
+from ves_twin.machines.mjcf.draft.effort_fit import FAR, LOADED, STRONG, TELLS, EffortFit
 from ves_twin.machines.mjcf.draft.locked import locked_joints, words_of_locked
 from ves_twin.machines.mjcf.draft.log_columns import LogColumns, is_usual
 from ves_twin.machines.mjcf.draft.match import Match, Matches
+from ves_twin.machines.mjcf.draft.milli import in_milli
 from ves_twin.machines.mjcf.draft.motion import Motion, band_of, motion_of
 from ves_twin.machines.mjcf.draft.rates import differs, rated
 from ves_twin.machines.mjcf.draft.spots import Quantity, is_servo
@@ -25,9 +26,6 @@ from ves_twin.machines.mjcf.places import driven_joint
 GAINED = 0.15
 """Share of one joint's power that a change must explain more to be proposed: well above what
 signs and units that are right gain by chance on rough models."""
-
-STRONG = 0.3
-"""The same for the size of that slope to count."""
 
 OFF = 0.1
 """Weight of a decade between an effort and what the model needs: a factor of 57 is no friction."""
@@ -101,6 +99,8 @@ def checked(log: LogColumns, matches: Matches, model: mujoco.MjModel) -> Checked
         found, said = judge.corrected(found)
         findings += said
         motion = judge.motion(found)
+        found, said = in_milli(found, {m: judge.fit(m, motion) for m in judge.driving(found)})
+        findings += said
         found, said = judge.efforts(found, motion)
         findings += said
         findings += judge.rough(found, motion)
@@ -275,19 +275,20 @@ class _Judge:
             if match.fitted:
                 told = f"{match.column} is electrical: {match.constant}"
                 said.append(f"{told}; put the motor's constant there")
-            if fit.sign < 0 and not fit.by_slope and self.power(found, motion) > 0.0:
+            strong = fit.gain > STRONG and not fit.usable
+            turns = fit.sign < 0 and (fit.by_slope or self.power(found, motion) <= 0.0)
+            if fit.sign < 0 and not (turns or strong):
                 said.append(
                     f"{match.column} brakes its joint more than it drives it (work {fit.work:.0%}):"
                     " look whether its sign is right; in a motion of several joints it may be"
                 )
-            elif fit.sign < 0:
+            elif turns:
                 found[i] = replace(match, scale=-match.scale)
                 why = f"slope {fit.slope:.2f}" if fit.usable else f"work {fit.work:.0%}"
                 said.append(
                     f"{match.column} has the wrong sign for this model ({why}): it is turned; or"
                     " the position of its joint counts the other way"
                 )
-            strong = fit.gain > STRONG and not fit.usable
             times = abs(fit.slope) if strong else fit.size
             odd = strong or not 1.0 / ODD < times < ODD
             if odd and not fit.free and is_usual(self.log.period):

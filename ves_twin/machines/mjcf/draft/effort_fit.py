@@ -11,6 +11,9 @@ from ves_twin.core.types import FloatArray
 TELLS = 0.03
 """Share of an effort's power that the model must explain for the sign of its slope to count."""
 
+STRONG = 0.3
+"""The same for the size of that slope to count."""
+
 LOADED = 0.2
 """Share of an effort's rms that a steady load is, in the log and in the model, for its sign to
 count; and weight against a change by which it would pull the other way, above GAINED: a current

@@ -63,7 +63,7 @@ MEASURED = frozenset({"meas", "measured", "act", "actual", "fb", "feedback", "is
 ELECTRICAL = frozenset({"V", "mV", "A", "mA", "%", "counts", "W", "1"})
 """Units of what drives an actuator when it is no effort: a constant stands between."""
 
-EFFORTS = frozenset({"N", "N*m", "kN", "mN*m", "rad", "m", "rad/s", "m/s"})
+EFFORTS = frozenset({"N", "N*m", "kN", "mN*m", "cN*m", "rad", "m", "rad/s", "m/s"})
 """Units that the command of an actuator with a gain or a servo may have."""
 
 VOLTS = re.compile(r"V[_.]?\d*")

@@ -8,7 +8,7 @@ from dataclasses import replace
 import mujoco
 import numpy as np
 
-from ves_twin.machines.mjcf.draft.changes import DEGREE
+from ves_twin.machines.mjcf.draft.changes import DEGREE, TURN
 from ves_twin.machines.mjcf.draft.log_columns import LogColumns
 from ves_twin.machines.mjcf.draft.match import Match
 from ves_twin.machines.mjcf.draft.spots import Quantity
@@ -24,7 +24,10 @@ SAME, ITSELF = 0.2, 0.05
 DECADE, APART = 0.1, 0.2
 """Weight of a decade between a speed and the rate of its position, and of no likeness at all."""
 
-UNITS = {"rad/s": {"deg/s": 1.0 / DEGREE, "rpm": 30.0 / np.pi}, "m/s": {"mm/s": 1e3}}
+UNITS = {
+    "rad/s": {"deg/s": 1.0 / DEGREE, "rpm": 30.0 / np.pi, "turn/s": 1.0 / TURN},
+    "m/s": {"mm/s": 1e3},
+}
 """Unit of a speed -> others, and how many of them make one."""
 
 
