@@ -89,11 +89,31 @@ def test_an_extension_that_cannot_be_carried_on_is_a_candidate_on_every_rig():
     assert "not beyond their end" in Ves2Machine().refusal(replace(proven, forecast=lost))
 
 
-def test_what_bare_errors_or_ranges_speak_against_is_a_candidate():
-    grown = Gain(0.5, 0.4, 0.6, 4.0, 2.0, {"q": (0.1, 0.14), "v": (0.3, 0.6)})
-    assert (
-        refusal(replace(FIRM, gain=grown)) == "the rms errors on held-out recordings grow with it"
-    )
+@pytest.mark.parametrize(
+    ("errors", "grown"),
+    [
+        ({"q": (0.1, 0.14), "v": (0.3, 0.6)}, True),
+        ({"motor.effort": (0.199, 0.263)}, True),  # the only one, by a third
+        ({"motor.effort": (0.199, 0.21)}, False),  # by a twentieth
+        ({"q": (0.1, 0.04), "v": (0.3, 0.6)}, False),  # made up for
+        ({}, False),
+    ],
+)
+def test_an_extension_whose_bare_errors_grow_is_a_candidate(errors, grown):
+    gain = Gain(0.5, 0.4, 0.6, 4.0, 2.0, errors)
+    told = "the rms errors on held-out recordings grow with it"
+    assert refusal(replace(FIRM, gain=gain)) == grown * told
+
+
+def test_a_size_that_may_be_none_is_named_as_such():
+    cause = replace(said(Kind.NAMED, "a").causes[0], firm=False, sigmas=None)
+    verdict = replace(said(Kind.NAMED, "a"), causes=(cause,))
+    assert "it may be none" in verdict.words
+    late = replace(verdict, causes=(replace(cause, below_row=True),))
+    assert "its clock explains that as well" in late.words
+
+
+def test_what_ranges_speak_against_is_a_candidate():
     sound = Gain(0.9, 0.8, 1.0, 2.0, 1.1)
     ended = Proved("body_place", "wrist.z", {}, 0.01, 8, {}, True, ended=True)
     only, beside = (replace(FIRM, gain=sound, proved=p) for p in ((ended,), (ended, PROVED)))

@@ -47,7 +47,7 @@ def _along(evidence: Evidence, fit: Fit, place: int) -> Fit:
     runs, count, variance = evidence.runs, len(fit.sizes), fit.posterior[place, place]
     if not variance > 0.0 or not np.isfinite(fit.chi2):
         return fit
-    search = Search(evidence, fit.active[:count], fit.local)
+    search = Search(evidence, fit.active[:count], fit.local, fit.farthest)
     line = np.zeros(len(fit.shift))
     line[fit.active] = fit.posterior[:, place] / np.sqrt(variance)
 

@@ -58,6 +58,7 @@ class Fit:
         columns: of the causes, to go on with; None where they would be computed anew.
         held: nuisances that an end of what is allowed holds: coordinates.
         told: sd of the active departures where model error counts (k,); None: the posterior's.
+        farthest: commissioning sd within which its nuisances were held.
     """
 
     causes: tuple[Hypothesis, ...]
@@ -75,6 +76,7 @@ class Fit:
     columns: CauseColumns | None = None
     held: IntArray = field(default_factory=lambda: np.zeros(0, int))
     told: FloatArray | None = None
+    farthest: float = FARTHEST
 
     @property
     def pull(self) -> float:
@@ -153,7 +155,7 @@ def refine(
         if righted is not jacobian:
             search.steps = ITERATIONS
             point, jacobian = search.descend(point, righted)
-    return _fit(causes, search, point, jacobian)
+    return replace(_fit(causes, search, point, jacobian), farthest=farthest)
 
 
 def _fit(causes: tuple[Hypothesis, ...], search: Search, point: Point, jacobian: FloatArray) -> Fit:

@@ -83,7 +83,7 @@ class Case(ABC):
     @property
     @abstractmethod
     def mode(self) -> str:
-        """What is fed in: "motion", "control" or "reference"."""
+        """What is fed in: "motion", "control", "reference", or "free": nothing."""
 
     @property
     @abstractmethod

@@ -68,7 +68,7 @@ class RecordingComparison:
         plant: name of the machine.
         plant_hash: of it.
         made_by: hash of the plant that made the recording; empty for a measured one.
-        mode: what was fed in, "motion", "control" or "reference".
+        mode: what was fed in, "motion", "control", "reference", or "free": nothing.
         slow_below: highest frequency of the analysis grid [Hz].
         poses: whether rows are poses at rest and times their numbers.
         traces: the rows behind it.

@@ -63,8 +63,8 @@ class MjcfCase(Case):
 
     @property
     def mode(self) -> str:
-        """Of the forward."""
-        return self.forward.mode.value
+        """Of the forward; of a model that is let go "free"."""
+        return self.forward.mode.value if self.forward.fed else "free"
 
     @cached_property
     def signals(self) -> Mapping[str, Signal]:

@@ -28,6 +28,7 @@ def check_description(told: RigDescription, model: mujoco.MjModel) -> None:
     _signals(told)
     _parts(told, model)
     _units(told, model)
+    _fed(told, model)
     _moved(told, model)
     _widths(told, model)
     _starts(told, model)
@@ -76,6 +77,14 @@ def _units(told: RigDescription, model: mujoco.MjModel) -> None:
             raise InvalidInputError(
                 what, signal.unit, f"{expected}, as joint {signal.joint} has it"
             )
+
+
+def _fed(told: RigDescription, model: mujoco.MjModel) -> None:
+    """Something is fed in, but of a model without actuators, which may be let go."""
+    drive = told.drive
+    if model.nu and drive.mode is Mode.CONTROL and not (drive.actuators or drive.imposed):
+        expected = "drive.actuators or drive.imposed; none only of a model without actuators"
+        raise InvalidInputError("drive, mode 'control'", "nothing that is fed in", expected)
 
 
 def _moved(told: RigDescription, model: mujoco.MjModel) -> None:

@@ -63,6 +63,8 @@ class Drive(Part):
     in mode CONTROL or REFERENCE; what their actuators must give is then predicted. Joints that are
     `locked` stand where the model has them.
 
+    Of a model without actuators nothing need be fed in: it is let go, in mode CONTROL.
+
     In mode CONTROL simulation begins `lead` after the first row: rows before it tell commands that
     a delay, or a filter, still lets through then. A measured start is read there.
 
@@ -88,8 +90,6 @@ class Drive(Part):
     def _something_is_fed(self) -> Self:
         if self.mode is Mode.MOTION and not self.joints:
             raise ValueError("drive: mode 'motion' needs drive.joints")
-        if self.mode is Mode.CONTROL and not (self.actuators or self.imposed):
-            raise ValueError("drive: mode 'control' needs drive.actuators or drive.imposed")
         if self.mode is not Mode.CONTROL and self.lead:
             raise ValueError(f"drive.lead: {self.lead:g} s in mode {self.mode}; mode 'control'")
         if self.mode is Mode.MOTION and self.horizon:

@@ -29,6 +29,7 @@ HELD_AGAINST = {
 FED_IN = {
     "motion": "joints moved as recorded (inverse dynamics)",
     "control": "efforts fed in as recorded (open loop)",
+    "free": "nothing: the model is let go",
     "reference": "set-points fed into the controllers (closed loop)",
 }
 """How the simulation was fed, by mode."""

@@ -45,6 +45,9 @@ TURN = 0.02
 ODD = 50.0
 """Times what the model needs from which on an effort is in another unit, whatever friction does."""
 
+COUNTS = 16.0 * np.pi
+"""Whole numbers as large as that are no radians: eight turns."""
+
 LITTLE = " Where the model needs next to nothing (a balanced wrist), friction does that, too"
 """What is said of an effort that is large and not like that of the model."""
 
@@ -85,13 +88,14 @@ def checked(log: LogColumns, matches: Matches, model: mujoco.MjModel) -> Checked
     moved = {*(m.spot.name for m in positions), *locked, *cyclic}
     every = [model.joint(i).name for i in range(model.njnt)]
     absent = [name for name in every if name not in moved]
-    band = max((band_of(log.column(m.column), log.period, 0.99) for m in positions), default=1.0)
+    moving = positions or [m for m in matches.found if m.spot.name in cyclic]
+    band = max((band_of(log.column(m.column), log.period, 0.99) for m in moving), default=1.0)
     corner = min(4.0 * max(band, 1.0 / (log.period * log.rows)), 0.2 / log.period)
     found, findings = list(matches.found), []
     motion, explained = None, {}
     findings += words_of_locked(locked)
     before = len(findings)
-    if absent or not positions:
+    if absent or not (positions or cyclic):
         words = ", ".join(name or "one without a name" for name in absent)
         findings.append(f"signs are not checked: no column tells the position of {words}")
     else:
@@ -105,7 +109,7 @@ def checked(log: LogColumns, matches: Matches, model: mujoco.MjModel) -> Checked
         findings += said
         findings += judge.rough(found, motion)
         explained = judge.explained(found, motion)
-    findings[before:before] = _beyond(log, found, model)
+    findings[before:before] = [*_counted(log, found), *_beyond(log, found, model)]
     found, said = rated(log, found, corner, model)
     dofs = {name: int(model.joint(name).dofadr[0]) for name in every if name}
     return Checked(tuple(found), (*findings, *said), explained, motion, corner, dofs, locked)
@@ -325,6 +329,18 @@ def _other_angle(
                 f"{match.column} reaches {most:.3g} {match.unit} at most: if these are {other}, the"
                 f" constant is {abs(scale) * factor:.3g} {unit}"
             )
+
+
+def _counted(log: LogColumns, found: list[Match]) -> Iterator[str]:
+    """Angles of whole numbers alone, which reach many turns: what an encoder counts."""
+    for match in found:
+        if match.spot.quantity is Quantity.POSITION and match.spot.unit == "rad" and not match.told:
+            values = log.as_logged(match.column)
+            if np.ptp(values) > COUNTS and np.all(values == np.round(values)):
+                yield (
+                    f"{match.column} has whole numbers alone, {np.min(values):g} to"
+                    f" {np.max(values):g}: counts of an encoder? scale = 2 pi / counts of a turn"
+                )
 
 
 def _beyond(log: LogColumns, found: list[Match], model: mujoco.MjModel) -> Iterator[str]:

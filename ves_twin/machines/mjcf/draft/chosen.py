@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import mujoco
 import numpy as np
@@ -48,6 +48,7 @@ class Chosen:
             be differentiated twice; else CONTROL.
         why: in words.
         rate: of the analysis [Hz].
+        rated: why it is that, in words.
         smoothing: corner of the low-pass of positions [Hz].
         noise: column -> sd of one row in SI, and how it was told.
         either: the motion could be given as well.
@@ -67,6 +68,7 @@ class Chosen:
     horizon: float = 0.0
     homes: Mapping[str, tuple[float, str]] = field(default_factory=dict)
     typical: Mapping[str, Mapping[str, float]] = field(default_factory=dict)
+    rated: str = "the efforts have no more in them"
 
 
 def chosen(
@@ -83,7 +85,8 @@ def chosen(
 
     Where motion is given, the band is that of the efforts, or the lower one in which the noise of
     differentiated positions stays below DROWNED: it grows with the band's power of 2.5. A short
-    log, which leaves few rows in that band, is predicted from its efforts instead.
+    log, which leaves few rows in that band, is predicted from its efforts instead; where that tells
+    nothing, either, more rows are taken than the band has.
 
     Args:
         log: the columns.
@@ -98,6 +101,9 @@ def chosen(
     efforts = [m for m in check.found if m.spot.quantity is Quantity.EFFORT]
     positions = [m for m in check.found if m.spot.quantity is Quantity.POSITION]
     shaken = () if model.nu else _shaken(positions, model)
+    whole = {m.spot.name for m in positions} == {model.joint(i).name for i in range(model.njnt)}
+    if shaken and whole and len(shaken) == len(check.found):
+        return _let_go(log, check, positions)
     if not (efforts or shaken) or len(efforts) + len(shaken) == len(check.found):
         _refuse(log, matches, check, model)
     noise = _noise(log, check, positions)
@@ -120,42 +126,71 @@ def chosen(
         why = f"no effort is told at {', '.join(free)}" if free else "not every position is told"
         return Chosen(Mode.CONTROL, why, RATES[1], check.corner, noise, imposed=imposed)
     positions = [m for m in positions if m.spot.name in driven]
-    band = _band(log, efforts)
-    share = max(_induced(m, noise, efforts, model, log, band)[1] for m in positions)
-    band = max(min(band, band * (DROWNED / max(share, 1e-9)) ** 0.4), 0.5 * RATES[0])
-    length = log.period * log.rows
-    if 2.0 * band * length < ENOUGH:
-        if closed is None:
-            rows = 2.0 * band * length
-            why = f"{length:.2g} s of motion leave {rows:.0f} rows in the band of the efforts"
-            return Chosen(Mode.CONTROL, why, RATES[1], check.corner, noise, True, imposed)
-        band = min(0.5 * ENOUGH / length, 0.25 / log.period)
-    band = _in_whole_rows(band, log)
-    sharp = {m.column: _induced(m, noise, efforts, model, log, band) for m in positions}
-    worst = max(sharp, key=lambda column: sharp[column][1])
     why = "every joint has a position and an effort"
     if unknown:
         why = f"every joint has a position; what moves {', '.join(imposed)} is not told"
+    otherwise = Chosen(Mode.CONTROL, why, RATES[1], check.corner, noise, True, imposed)
+    return _of_motion(otherwise, log, efforts, positions, model, closed)
+
+
+def _of_motion(
+    otherwise: Chosen,
+    log: LogColumns,
+    efforts: list[Match],
+    positions: list[Match],
+    model: mujoco.MjModel,
+    closed: str | None,
+) -> Chosen:
+    """Motion given, in a band that positions can bear; otherwise efforts, if these tell anything.
+
+    Args:
+        otherwise: mode CONTROL, with the noise; why motion could be given.
+        log: the columns.
+        efforts: that are compared.
+        positions: of joints that are driven.
+        model: of the machine.
+        closed: why nothing can be predicted open loop; None: as far as is known, it can.
+    """
+    noise, band = dict(otherwise.noise), _band(log, efforts)
+    share = max(_induced(m, noise, efforts, model, log, band)[1] for m in positions)
+    least = 0.5 * RATES[0] if closed is None else _swung(log, positions)
+    band = max(min(band, band * (DROWNED / max(share, 1e-9)) ** 0.4), least)
+    length, rate, rated = log.period * log.rows, 2.0 * band, Chosen.rated
+    if rate * length < ENOUGH:
+        if closed is None:
+            rows = rate * length
+            why = f"{length:.2g} s of motion leave {rows:.0f} rows in the band of the efforts"
+            return replace(otherwise, why=why)
+        rate, rated = min(ENOUGH / length, 0.5 / log.period), "as many rows as a diagnosis needs"
+    rate = _in_whole_rows(rate, log)
+    band = min(band, 0.5 * rate) if rated != Chosen.rated else 0.5 * rate
+    sharp = {m.column: _induced(m, noise, efforts, model, log, band, rate) for m in positions}
+    worst = max(sharp, key=lambda column: sharp[column][1])
     if sharp[worst][1] > DROWNED and closed is None:
         share = sharp[worst][1]
         why = f"{worst} is too noisy to be differentiated twice ({share:.0%} of the effort)"
-        return Chosen(Mode.CONTROL, why, RATES[1], check.corner, noise, True, imposed)
+        return replace(otherwise, why=why)
     of_joint = {m.spot.name: sharp[m.column][0] for m in positions}
     for m in efforts:
         noise[m.column] = _with_position(noise[m.column], of_joint[m.spot.joint])
-    why = (closed or why) + _beyond(efforts, log, band)
-    return Chosen(Mode.MOTION, why, 2.0 * band, CORNER * band, noise)
+    why = (closed or otherwise.why) + _beyond(efforts, log, band)
+    return Chosen(Mode.MOTION, why, rate, CORNER * band, noise, rated=rated)
 
 
-def _in_whole_rows(band: float, log: LogColumns) -> float:
-    """The band of as many whole rows as leave ENOUGH, where the nearest number leaves fewer.
+def _swung(log: LogColumns, positions: Sequence[Match]) -> float:
+    """Band [Hz] that efforts of a motion need at least: BAND times what its positions have."""
+    return BAND * max(band_of(log.column(m.column), log.period, 0.99) for m in positions)
+
+
+def _in_whole_rows(rate: float, log: LogColumns) -> float:
+    """The rate of as many whole rows as leave ENOUGH, where the nearest number leaves fewer.
 
     An analysis takes every n-th row: of 300 rows at 83 Hz a rate of 32 Hz is every third, 90 rows.
     """
-    every = 0.5 / (band * log.period)
+    every = 1.0 / (rate * log.period)
     if log.rows / max(round(every), 1) >= ENOUGH:
-        return band
-    return 0.5 / (max(int(every), 1) * log.period)
+        return rate
+    return 1.0 / (max(int(every), 1) * log.period)
 
 
 def _band(log: LogColumns, followed: Sequence[Match]) -> float:
@@ -171,7 +206,8 @@ def _noise(
     moved = [m.factor * log.column(m.column) for m in positions]
     rest, found = rest_of(moved, log.period), {}
     for m in check.found:
-        sd, how = noise_of(log.column(m.column), log.period, rest)
+        values = log.as_logged(m.column) if rest is None else log.column(m.column)
+        sd, how = noise_of(values, log.period, rest)
         found[m.column] = (abs(m.factor) * sd, how)
     return found
 
@@ -198,6 +234,13 @@ def _shaken(positions: list[Match], model: mujoco.MjModel) -> tuple[str, ...]:
         for name, body in bodies.items()
     }
     return tuple(sorted(name for name, near in nearest.items() if near))
+
+
+def _let_go(log: LogColumns, check: Checked, positions: list[Match]) -> Chosen:
+    """Of a model without actuators of which nothing is measured but what swings freely."""
+    noise, band = _noise(log, check, positions), _band(log, positions)
+    why = "no actuator drives the model: it is let go, and nothing is fed in"
+    return Chosen(Mode.CONTROL, why, 2.0 * band, check.corner, noise)
 
 
 def _of_base(
@@ -243,10 +286,10 @@ def _of_loops(
     The band is that of the efforts, or in which differentiated noise stays below DROWNED.
     """
     band = _band(log, drives)
-    share = max(_induced(m, noise, drives, model, log, band, felt)[1] for m in positions)
+    share = max(_induced(m, noise, drives, model, log, band, felt=felt)[1] for m in positions)
     band = max(min(band, band * (DROWNED / max(share, 1e-9)) ** 0.4), 0.5 * RATES[0])
     of_joint = {
-        m.spot.name: _induced(m, noise, drives, model, log, band, felt)[0] for m in positions
+        m.spot.name: _induced(m, noise, drives, model, log, band, felt=felt)[0] for m in positions
     }
     for m in drives:
         noise[m.column] = _with_position(noise[m.column], of_joint[m.spot.joint])
@@ -295,9 +338,12 @@ def _induced(
     model: mujoco.MjModel,
     log: LogColumns,
     band: float,
+    rate: float = 0.0,
     felt: Mapping[str, float] | None = None,
 ) -> tuple[float, float]:
     """Noise that a position makes in its joint's effort: of one row [SI], and as a share of it.
+
+    Of one row: that which makes as much on the rows of the analysis, twice the band if no rate.
 
     White noise s of rows T apart, differentiated twice within a band f: s (2 pi)^2
     sqrt(2 T f^5 / 5). The joint moves the inertia of its branch, or that which is `felt` there.
@@ -310,7 +356,7 @@ def _induced(
     inertia = model.dof_M0[int(joint.dofadr[0])] if felt is None else felt[position.spot.name]
     within = float(inertia) * pull / gain
     size = float(np.std(effort.factor * log.column(effort.column)))
-    return within * np.sqrt(0.5 / (log.period * band)), within / size
+    return within * np.sqrt(1.0 / (log.period * (rate or 2.0 * band))), within / size
 
 
 def _with_position(own: tuple[float, str], induced: float) -> tuple[float, str]:

@@ -62,7 +62,7 @@ def draft_text(
         f"model = {_quoted(model_file)}",
     ]
     if mode.mode is Mode.MOTION and mode.rate < RATES[1]:
-        head.append(f"rate = {two_digits(mode.rate):g}   # Hz: the efforts have no more in them")
+        head.append(f"rate = {two_digits(mode.rate):g}   # Hz: {mode.rated}")
     head += [
         f"clock = {_clock(log)}",
         *([f"window = {_window(log)}"] if log.window else []),

@@ -19,8 +19,8 @@ SPEED = (
     " geschw geschwindigkeit"
 )
 EFFORT = (
-    "tau torque trq tq force f fx u effort load moment current i cur amp volt voltage pwm drive"
-    " motor control ctrl command input kraft drehmoment strom motorstrom spannung"
+    "tau torque trq tq force f fx u effort load moment current i iq isq cur amp volt voltage pwm"
+    " drive motor control ctrl command input kraft drehmoment strom motorstrom spannung"
 )
 MECHANICAL = "tau torque trq tq force effort load moment kraft drehmoment"
 KIND_WORDS = {
@@ -70,10 +70,13 @@ VOLTS = re.compile(r"V[_.]?\d*")
 """Names that mean volts of whatever, not a speed."""
 
 IMPLIED = {
-    **dict.fromkeys(("current", "cur", "amp", "amps", "strom", "motorstrom"), "A"),
+    **dict.fromkeys(("current", "cur", "iq", "isq", "amp", "amps", "strom", "motorstrom"), "A"),
     **dict.fromkeys(("volt", "volts", "voltage", "spannung"), "V"),
 }
 """Words of an electrical quantity -> its unit, where nobody says one."""
+
+COILS = frozenset({"q", "d"})
+"""Axes of a motor's field, behind such a word, and no position: Voltage_q."""
 
 OTHER = frozenset({"ddq", "qdd", "acc", "accel", "acceleration", "temp", "temperature"})
 """Words of what neither joints nor motors have."""
@@ -152,6 +155,8 @@ def implied_unit(column: str) -> str:
     words = _words(column)
     if "rpm" in words:
         return "rpm"
+    if {"i", "q"} <= set(words_of(bare_name(column))):
+        return "A"
     told = [IMPLIED[word] for word in sorted(words) if word in IMPLIED]
     others = KIND_WORDS[Quantity.POSITION] | KIND_WORDS[Quantity.SPEED] | set(MECHANICAL.split())
     return "" if not told or words & (others - AXES) else told[0]
@@ -159,6 +164,8 @@ def implied_unit(column: str) -> str:
 
 def _words(column: str) -> frozenset[str]:
     words = frozenset(words_of(bare_name(column)))
+    if words & {"i", *IMPLIED}:
+        words -= COILS
     return words - {"v"} if VOLTS.fullmatch(bare_name(column)) else words
 
 
