@@ -2,13 +2,22 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass, replace
 from types import SimpleNamespace
 from typing import Any, cast
 
+import numpy as np
 import pytest
+from toy import SD, Toy, programme
 
-from ves_twin.diagnosis.decide import _kind
+from ves_twin.diagnosis.decide import _kind, _probed
+from ves_twin.diagnosis.evidence import Evidence
+from ves_twin.diagnosis.linearise import linearise
+from ves_twin.diagnosis.refine import Fit, refine
+from ves_twin.diagnosis.runs import Runs
+from ves_twin.diagnosis.settings import Settings
 from ves_twin.diagnosis.verdict import Kind
+from ves_twin.diagnosis.whitening import whitening_declared
 
 LIMIT = 3.7
 
@@ -32,3 +41,31 @@ def test_a_part_of_the_truth_strains_no_commissioning_error(
     gains = cast("Any", [SimpleNamespace(low=low, share=low)])
     assert _kind(found(pull), gains, LIMIT) is kind
     assert _kind(found(pull, adequate=True), gains, LIMIT) is Kind.NAMED
+
+
+@dataclass(frozen=True)
+class Found:
+    """What of an explanation is probed."""
+
+    evidence: Evidence
+    chosen: tuple[Fit, ...]
+    fits: tuple[Fit, ...]
+
+
+@pytest.mark.parametrize("sparse", [True, False])
+def test_probes_let_no_commissioning_error_beyond_what_a_fit_was_held_to(sparse: bool) -> None:
+    """A slope 12 sd off is one more fault; beside a friction that is named it stays at 3.7."""
+    fed = programme(1)
+    friction = next(h for h in Toy().hypotheses if h.effect == "friction")
+    clean = Toy().simulate(fed, {"friction.size": 0.05, "plant.slope": 0.6})
+    noise = np.random.default_rng(2).standard_normal(clean.shape) * SD
+    runs = Runs(Toy(), (fed,), (0, 1))
+    evidence = Evidence(runs, (clean + noise).astype(np.float32), whitening_declared(runs))
+    local = linearise(runs, runs.origin)
+    free = refine(evidence, (friction,), runs.origin, local)
+    held = refine(evidence, (friction,), runs.origin, local, farthest=LIMIT)
+    assert free.pull > 2.0 * LIMIT
+    settings = replace(Settings(), sparse=sparse)
+    for fit in (held, free):
+        found = cast("Any", Found(evidence, (fit,), (fit,)))
+        assert _probed(found, settings).chosen[0].pull == pytest.approx(fit.pull, rel=0.05)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import math
 import sys
 from dataclasses import replace
 from pathlib import Path
@@ -228,11 +229,12 @@ def _text(found: Diagnosis, folder: Path) -> str:
         numbers = "".join(f"{e:10.3g}" for e in (error.before_si, tuned, error.after_si))
         lines.append(f"  {name:<18}{numbers}   {error.unit}")
     if verdict.gain is not None and verdict.gain.errors:
-        lines += ["", "  held out             tuned     after   (all fitted elsewhere; the gain"]
-        lines += [f"{'':41}allows for what is new in each recording)"]
-        for name, (before, after) in verdict.gain.errors.items():
-            unit = verdict.residuals[name].unit
-            lines.append(f"  {name:<18}{before:10.3g}{after:10.3g}   {unit}")
+        lines += ["", "  held out            before     tuned     after   (all fitted elsewhere;"]
+        lines += [f"{'':51}the gain allows for what is new in each)"]
+        for name, (tuned, after) in verdict.gain.errors.items():
+            ends = (verdict.gain.given.get(name, math.nan), tuned, after)
+            numbers = "".join(f"{e:10.3g}" for e in ends)
+            lines.append(f"  {name:<18}{numbers}   {verdict.residuals[name].unit}")
     if found.extended is not None and found.refused:
         lines += ["", f"  plant.candidate.toml, no plant.toml: {found.refused}"]
     files = ", ".join(sorted(p.name for p in folder.iterdir()))

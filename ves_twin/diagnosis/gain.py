@@ -20,9 +20,10 @@ BLOCK_SECONDS = 0.5
 WORSE = 1.5
 """Growth of a channel's error that no other makes up for, and that a forecast is never forgiven."""
 
-WORSE_IN_ALL = 1.1
+WORSE_IN_ALL = 1.25
 """Mean growth (geometric) of all channels' errors from which on nothing is gained. A law of a
-swinging pendulum took 70 % of z^2 away, which counts what is fast, and left 32 % more N m."""
+measured pendulum took 70 % of z^2 away, and left 32 % more N m; of blind pendulums right causes
+left up to 13 % more, as starts and offsets of each recording are not tuned there."""
 
 FORWARD_STEP = 1.0
 """Of the fit's own sd, or of the prior of what is new: one side, where nothing moves on."""
@@ -57,6 +58,7 @@ class Gain:
             commissioning errors tuned on the first recordings.
         without: mean z^2 of the extended model with the causes taken out again, all else as tuned;
             None if nobody asked.
+        given: rms error of each channel [its unit] by the model as it was given, nothing tuned.
         errors: rms error of each channel [its unit] by the nominal and by the extended model, as
             tuned on the first recordings and nothing tuned here.
     """
@@ -68,6 +70,7 @@ class Gain:
     after: float
     errors: Mapping[str, tuple[float, float]] = field(default_factory=dict)
     without: float | None = None
+    given: Mapping[str, float] = field(default_factory=dict)
 
     @property
     def passed(self) -> bool:
@@ -164,6 +167,8 @@ def held_out_gain(
     names = [runs.forward.channels[c].name for c in runs.columns]
     pairs = zip(error_before, error_after, strict=True)
     errors = {n: (float(a), float(b)) for n, (a, b) in zip(names, pairs, strict=True)}
+    start = runs.one(runs.origin) if base is None else base.prediction
+    given = dict(zip(names, _rms(runs, measured - start).tolist(), strict=True))
     lengths = _stretches(runs, own)
     seen = lengths > 0.0  # a stretch before what is compared has no sample
     after, before, lengths = after[seen], before[seen], lengths[seen]
@@ -172,16 +177,15 @@ def held_out_gain(
     a, b, n = after[drawn].sum(1), before[drawn].sum(1), lengths[drawn].sum(1)
     mean_before, mean_after = before.sum() / lengths.sum(), after.sum() / lengths.sum()
     without = float(better.without(extended).energies(measured, own).sum() / lengths.sum())
-    excess = mean_before - floor
+    means, excess = (float(mean_before), float(mean_after)), mean_before - floor
     if not excess >= INVISIBLE:  # nor is there any where no row is compared
-        return Gain(None, None, None, float(mean_before), float(mean_after), errors, without)
+        return Gain(None, None, None, *means, errors, without, given)
     # each resample by its own excess: where stretches differ in size, before and after go together
     shares = (b - a) / n / np.maximum(b / n - floor, LEAST_EXCESS * excess)
     tail = 0.5 * (1.0 - confidence)
     low, high = np.quantile(shares, [tail, 1.0 - tail])
     share = (mean_before - mean_after) / excess
-    means = float(mean_before), float(mean_after)
-    return Gain(float(share), float(low), float(high), *means, errors, without)
+    return Gain(float(share), float(low), float(high), *means, errors, without, given)
 
 
 @dataclass(frozen=True)
@@ -294,9 +298,7 @@ class _Carried:
 
     def errors(self, measured: SingleArray) -> FloatArray:
         """Rms of each channel over the rows that were measured."""
-        off = np.square(measured - self.local.prediction, dtype=float)
-        kept = self.local.runs.kept
-        return np.asarray(np.sqrt(np.sum(off, axis=0, where=kept) / np.sum(kept, axis=0)))
+        return _rms(self.local.runs, measured - self.local.prediction)
 
     def _metric(self, whitening: Whitening) -> Metric:
         columns = whitening.apply(self.local.columns).T
@@ -346,6 +348,12 @@ class _Axes:
         bend = dict(zip(every, fit.local.bends[:-1], strict=True))
         bends = np.array([bend.get(names[i], np.inf) for i in [*carried, *new]])
         return _Axes(point, carried, sd, root, new, runs.sd[new], bends)
+
+
+def _rms(runs: Runs, off: SingleArray) -> FloatArray:
+    """Rms of each channel of rows (rows, c) over those that were measured."""
+    squares = np.sum(np.square(off, dtype=float), axis=0, where=runs.kept)
+    return np.asarray(np.sqrt(squares / np.sum(runs.kept, axis=0)))
 
 
 def _starts(runs: Runs, k: int, rows: int) -> IntArray:

@@ -113,8 +113,17 @@ def _check_length(runs: Runs) -> None:
             span = "" if programme.poses else f", so {length:.2f} s"
             expected = (
                 f"at least {fewest}{span}: a longer recording, stretch (--alternate) or piece"
+                f" (drive.horizon){_finer(programme)}"
             )
-            raise InvalidInputError(what, len(time), f"{expected} (drive.horizon)")
+            raise InvalidInputError(what, len(time), expected)
+
+
+def _finer(programme: Excitation) -> str:
+    """That a higher analysis rate would do, where the recording itself has the rows."""
+    rows = len(programme.time)
+    if programme.poses or rows < FEWEST_ROWS:
+        return ""
+    return f", or a higher rate in the machine's file: {rows} rows were recorded"
 
 
 def _marked(runs: Runs, empty: Sequence[BoolArray]) -> list[BoolArray]:

@@ -62,6 +62,8 @@ def taken_words(gain: Gain) -> str:
     """The same, of what, and within which range."""
     share, low, high = _taken(gain)
     span = f" ({low} to {high})" if low else ""
+    if _open(gain):
+        span = ", or none, or a loss: that is not known"
     return f"{share} of the error beyond noise on held-out recordings{span}"
 
 
@@ -82,7 +84,14 @@ def gain_words(verdict: Verdict) -> str:
     share, low, high = _taken(gain)
     span = f" ({low} to {high})" if low else ""
     square = f"of its square in units of noise, {share}{span} goes"
+    if _open(gain):
+        square = "counted in units of noise it may be a loss as well"
     return f"{rms_words(gain)}; {square}{_lost_words(verdict)}"
+
+
+def _open(gain: Gain) -> bool:
+    """Whether the interval of a share says next to nothing: a loss of all there was, or worse."""
+    return gain.low is not None and gain.low < -1.0
 
 
 def _lost_words(verdict: Verdict) -> str:

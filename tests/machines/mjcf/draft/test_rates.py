@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import mujoco
 import numpy as np
 import pytest
 from drafted import changed, drafted, scales
@@ -58,6 +59,50 @@ def test_torques_of_which_one_is_a_thousand_times_off_keep_their_unit(arm, colum
     found, rig = drafted(arm, write(changed(columns, tau2=1e3 * columns["tau2"])))
     assert any("tau2 is 1e+03 times what the model needs" in w for w in found.look)
     assert scales(rig)["m2.effort"] == 1.0
+
+
+@pytest.mark.parametrize(("factor", "told"), [(1.0, False), (1.35, True)])
+def test_torques_that_are_all_a_part_more_than_the_models_are_told(
+    arm, columns, write, factor, told
+):
+    log = {n: factor * v if n.startswith("tau") else v for n, v in columns.items()}
+    found, rig = drafted(arm, write(log))
+    said = [words for words in found.look if words.startswith("beside friction the log has")]
+    assert len(said) == told
+    assert all("1.35 times (tau1), 1.35 times (tau2)" in words for words in said)
+    assert [scales(rig)[f"m{k}.effort"] for k in (1, 2, 3)] == [1.0, 1.0, 1.0]
+
+
+def test_a_position_and_its_speed_that_are_swapped_are_asked_after(swing, write):
+    path, columns = swing
+    found, _ = drafted(path, write(changed(columns, q=columns["dq"], dq=columns["q"])))
+    assert any("q is the rate of dq: are they swapped?" in words for words in found.look)
+
+
+def test_of_columns_without_names_a_speed_is_no_effort(swing, write):
+    path, _ = swing
+    model, rng = mujoco.MjModel.from_xml_path(str(path)), np.random.default_rng(5)
+    data, rows, torque = mujoco.MjData(model), np.zeros((1500, 4)), 0.0
+    for k in range(len(rows)):  # steps: which of both is the cause is clear
+        torque = rng.uniform(-1.0, 1.0) if k % 40 == 0 else torque
+        rows[k] = 0.01 * k, torque, data.qpos[0], data.qvel[0]
+        data.ctrl[0] = torque
+        mujoco.mj_step(model, data, 5)
+    rows[:, 2:] += np.array([1e-4, 0.01]) * rng.standard_normal((1500, 2))
+    named = dict(zip(("t", "column_2", "column_3", "column_4"), rows.T, strict=True))
+    found, rig = drafted(path, write(named))
+    assert found.left["column_4"] == "is the rate of column_3"
+    taken = {n: c.columns for n, c in rig.description.signals.items()}
+    assert taken == {"joint.position": ("column_3",), "drive.effort": ("column_2",)}
+
+
+def test_a_speed_before_a_gear_goes_with_its_position(tmp_path, swing, write):
+    path, columns = swing
+    path.write_text(path.read_text().replace('joint="joint"/>', 'joint="joint" gear="6"/>'))
+    log = {"tau": columns["tau"] / 6.0, "q": 6.0 * columns["q"], "dq": 6.0 * columns["dq"]}
+    found, _ = drafted(path, write({"t": columns["t"], **log}))
+    assert any("q: numbers fit the model as those of the motor" in words for words in found.look)
+    assert any("dq: numbers fit q as those of the motor, too" in words for words in found.look)
 
 
 def test_speeds_go_with_positions_that_are_swapped(arm, columns, write):

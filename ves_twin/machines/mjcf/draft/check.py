@@ -18,6 +18,7 @@ from ves_twin.machines.mjcf.draft.match import Match, Matches
 from ves_twin.machines.mjcf.draft.milli import in_milli
 from ves_twin.machines.mjcf.draft.motion import Motion, band_of, motion_of
 from ves_twin.machines.mjcf.draft.rates import differs, rated
+from ves_twin.machines.mjcf.draft.scaled import words_of_scale
 from ves_twin.machines.mjcf.draft.spots import Quantity, is_servo
 from ves_twin.machines.mjcf.draft.too_much_friction import too_much_friction
 from ves_twin.machines.mjcf.inverse import smoothed
@@ -107,6 +108,7 @@ def checked(log: LogColumns, matches: Matches, model: mujoco.MjModel) -> Checked
         findings += said
         found, said = judge.efforts(found, motion)
         findings += said
+        findings += words_of_scale({m: judge.fit(m, motion) for m in judge.driving(found)})
         findings += judge.rough(found, motion)
         explained = judge.explained(found, motion)
     findings[before:before] = [*_counted(log, found), *_beyond(log, found, model)]

@@ -161,7 +161,7 @@ def _of_motion(
             rows = rate * length
             why = f"{length:.2g} s of motion leave {rows:.0f} rows in the band of the efforts"
             return replace(otherwise, why=why)
-        rate, rated = min(ENOUGH / length, 0.5 / log.period), "as many rows as a diagnosis needs"
+        rate, rated = min(ENOUGH / length, 1.0 / log.period), "as many rows as a diagnosis needs"
     rate = _in_whole_rows(rate, log)
     band = min(band, 0.5 * rate) if rated != Chosen.rated else 0.5 * rate
     sharp = {m.column: _induced(m, noise, efforts, model, log, band, rate) for m in positions}

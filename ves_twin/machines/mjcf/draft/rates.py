@@ -57,8 +57,13 @@ def rated(
         if before is not None and match.unit == speeds[before[0]].unit:
             match = match.less(speeds[before[0]], before[1])
         alike, slope = ratio(log, match, own, corner)
-        if abs(alike) < FOLLOWS:
-            said.append(f"{match.column} does not follow {own.column} ({alike:+.2f}): left out")
+        other = ratio(log, own, match, corner)[0]
+        swapped = abs(other) > max(1.0 - ITSELF, abs(alike))
+        if abs(alike) < FOLLOWS or swapped:
+            words = f"{own.column} is the rate of {match.column}: are they swapped?"
+            if not swapped:
+                words = f"{match.column} does not follow {own.column} ({alike:+.2f}): left out"
+            said.append(words)
             continue
         if slope < 0.0:
             match = replace(match, scale=-match.scale)
@@ -69,6 +74,9 @@ def rated(
             words = f"numbers fit {own.column} as {unit}, not as {match.unit}"
             match = replace(match, unit=unit)
             said.append(f"{match.column}: {words}")
+        elif abs(own.scale) != 1.0 and abs(abs(slope * own.scale) - 1.0) < SAME:
+            match = replace(match, scale=match.scale * abs(own.scale))
+            said.append(f"{match.column}: numbers fit {own.column} as those of the motor, too")
         elif not 0.6 < abs(slope) < 1.6:
             rate = f"{abs(slope):.3g} times the rate of {own.column}"
             said.append(f"{match.column} is {rate}: another unit, or the clock's?")

@@ -17,6 +17,10 @@ from ves_twin.machines.mjcf.inverse import smoothed
 CLEAR = 0.05
 """Share of its power by which an effort must be explained better than the other way round."""
 
+RATE = 0.98
+"""Correlation with the rate of another column from which a column is its speed, and no effort: a
+torque at resonance comes to 0.96."""
+
 MOST = 4
 """Columns among which a pair is looked for; among more one fits by chance."""
 
@@ -25,9 +29,12 @@ def by_shape(log: LogColumns, matches: Matches, spots: tuple[Spot, ...]) -> Matc
     """With position and effort of a machine of one joint and one motor told by their shape.
 
     An effort is u = m x'' + c x' + k x + f sign x' + o of the motion it causes; the other way round
-    that holds worse. Nothing is matched where it does not hold clearly better.
+    that holds worse. Nothing is matched where it does not hold clearly better. A column that is
+    the rate of another is neither.
     """
-    open_ = [c for c in log.values if c in matches.left]
+    columns = [c for c in log.values if c in matches.left]
+    rates = {b: a for a, b in permutations(columns, 2) if _follows(log, a, b)}
+    open_ = [c for c in columns if c not in rates]
     wanted = [s for s in spots if s.quantity in (Quantity.POSITION, Quantity.EFFORT)]
     if matches.found or len(wanted) != 2 or not 2 <= len(open_) <= MOST:
         return matches
@@ -44,7 +51,15 @@ def by_shape(log: LogColumns, matches: Matches, spots: tuple[Spot, ...]) -> Matc
         for column, spot in ((x, position), (u, effort))
     )
     left = {c: why for c, why in matches.left.items() if c not in (x, u)}
+    left |= {b: f"is the rate of {a}" for b, a in rates.items()}
     return replace(matches, found=found, left=left)
+
+
+def _follows(log: LogColumns, x: str, v: str) -> bool:
+    """Whether a column is the rate of another one."""
+    corner = min(2.0 * band_of(log.values[x], log.period, 0.99), 0.4 / log.period)
+    motion, y = (smoothed(log.values[c], log.period, corner) for c in (x, v))
+    return float(np.corrcoef(np.gradient(motion, log.period), y)[0, 1]) > RATE
 
 
 def _explained(log: LogColumns, x: str, u: str) -> float:
