@@ -65,7 +65,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         metavar="N",
         type=float,
         default=30.0,
-        help="processor time that it may take; it says what it leaves out then (default: 30)",
+        help="time that it may take, of the clock where several processes work, else of the"
+        " processor; it says what it leaves out then (default: 30)",
     )
     parser.add_argument("--out", metavar="DIR", help="output folder (default: runs/diagnosis)")
     parser.add_argument("--json", action="store_true", help="the verdict as JSON on stdout")
