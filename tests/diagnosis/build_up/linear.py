@@ -32,6 +32,8 @@ def shape(kind: str, x: np.ndarray) -> np.ndarray:
         "harmonic": np.sin(5.0 * x),
         "twin": v + 0.02 * np.sin(9.0 * x),
         "gap": np.zeros_like(x),
+        "viscous_friction": v,
+        "viscous_asymmetry": np.abs(v),
     }[kind]
 
 

@@ -5,9 +5,10 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
+import linear
 import numpy as np
 import pytest
-from linear import JOINTS, PERIOD, Linear, recorded, seen
+from linear import JOINTS, PERIOD, Linear, motion, recorded, seen
 
 from ves_twin.diagnosis.build_up.halves import halves_at
 from ves_twin.diagnosis.build_up.judges import ERRORS, Judges
@@ -108,3 +109,30 @@ def test_what_takes_a_causes_place_is_proved_by_the_errors_that_proved_the_cause
     assert [trials[n].cause.label for n in after.proved] == ["coulomb@a"]
     (bench,) = after.judges.benches
     assert (bench.memory, bench.even) == kind
+
+
+def onward(seed: int) -> Excitation:
+    """A motion that goes on one way, faster and slower."""
+    there = motion(seed)
+    return replace(there, drive={"q": there.drive["q"] + 6.0 * there.time[:, None]})
+
+
+@pytest.mark.parametrize(
+    ("path", "hidden", "told"),
+    [
+        (onward, "viscous_asymmetry", "viscous_friction"),  # the same there
+        (motion, "viscous_asymmetry", "viscous_asymmetry"),
+        (motion, "viscous_friction", "viscous_friction"),
+    ],
+)
+def test_a_friction_by_direction_is_the_usual_one_where_motion_goes_one_way(
+    monkeypatch, path, hidden, told
+):
+    monkeypatch.setattr(linear, "motion", path)
+    plant = Linear(("viscous_friction", "viscous_asymmetry"))
+    one, two = (seen(plant, recorded(plant, {f"{hidden}@a:size": 1.0}, s)) for s in (5, 6))
+    halves = halves_at(one, two, one.runs.origin, plant.hypotheses)
+    trials = halves.regression.trials
+    chosen = next(n for n, trial in enumerate(trials) if trial.cause.label == f"{hidden}@a")
+    after = simpler(prove(halves.regression, halves.held, [chosen]))
+    assert [trials[n].cause.label for n in after.proved] == [f"{told}@a"]
