@@ -10,6 +10,9 @@ from ves_twin.data.quality.check import Check, failed, passed, unknown
 JITTER = 0.05
 """Rows that lie off the even clock by more than this share of a period are jitter."""
 
+STILL = 1.5
+"""Smallest steps of a column up to which it counts as standing still."""
+
 GAP = 1.5
 """A step longer than so many periods is a gap."""
 
@@ -18,7 +21,8 @@ def check_clock(recording: Recording) -> list[Check]:
     """Rate, gaps and repeats.
 
     A gap is a step of more than 1.5 median periods. Rows are repeats where every measured
-    column equals the row before in a recording that otherwise moves: a logger that held them.
+    column equals the row before in a recording that otherwise moves: a logger that held them. Not
+    where a column that is told in steps moves by one about them: there the machine stands.
     """
     if len(recording) < 3:
         return [unknown("rate", f"{len(recording)} rows are too few to tell a rate")]
@@ -54,12 +58,16 @@ def _gaps(recording: Recording, steps: np.ndarray, period: float) -> Check:
 
 
 def _repeats(recording: Recording) -> Check:
-    changes = np.zeros(len(recording) - 1, dtype=bool)
+    changes, moves = np.zeros((2, len(recording) - 1), dtype=bool)
     for values in recording.signals.values():
         with np.errstate(invalid="ignore"):
-            changes |= np.any(np.diff(values, axis=0) != 0.0, axis=1)
-    held = np.flatnonzero(~changes)
-    if len(held) == len(changes):
+            steps = np.abs(np.diff(values, axis=0))
+        changes |= np.any(steps != 0.0, axis=1)
+        smallest = np.min(np.where(steps > 0.0, steps, np.inf), axis=0)
+        moves |= np.any(steps > STILL * smallest, axis=1)
+    about = np.concatenate([[False], moves, [False]])
+    held = np.flatnonzero(~changes & (about[:-2] | about[2:]))
+    if not changes.any():
         return unknown("repeats", "no signal changes at all")
     if len(held):
         first, repeat = recording.time[held[0] + 1], "repeats" if len(held) == 1 else "repeat"
