@@ -42,8 +42,7 @@ def _fewer(proof: Proof, trial: int) -> list[int]:
     others = [
         k
         for k in regression.rest(kept)
-        if trials[k].cause.target == cause.target
-        and _is_simpler(trials[k].cause, cause)
+        if trials[k].cause.target == cause.target and _is_simpler(trials[k].cause, cause)
     ]
     if not others:
         return []
