@@ -17,6 +17,7 @@ from ves_twin.machines.mjcf.draft.estimates import noise_of, rest_of, travel
 from ves_twin.machines.mjcf.draft.log_columns import LogColumns
 from ves_twin.machines.mjcf.draft.match import Match, Matches
 from ves_twin.machines.mjcf.draft.motion import band_of
+from ves_twin.machines.mjcf.draft.names import is_effort
 from ves_twin.machines.mjcf.draft.spots import ON_JOINT, Quantity, is_motor, single_joints
 
 BAND = 2.0
@@ -101,8 +102,7 @@ def chosen(
     efforts = [m for m in check.found if m.spot.quantity is Quantity.EFFORT]
     positions = [m for m in check.found if m.spot.quantity is Quantity.POSITION]
     shaken = () if model.nu else _shaken(positions, model)
-    whole = {m.spot.name for m in positions} == {model.joint(i).name for i in range(model.njnt)}
-    if shaken and whole and len(shaken) == len(check.found):
+    if shaken and len(shaken) == len(check.found) and _is_free(log, matches, model):
         return _let_go(log, check, positions)
     if not (efforts or shaken) or len(efforts) + len(shaken) == len(check.found):
         _refuse(log, matches, check, model)
@@ -234,6 +234,13 @@ def _shaken(positions: list[Match], model: mujoco.MjModel) -> tuple[str, ...]:
         for name, body in bodies.items()
     }
     return tuple(sorted(name for name, near in nearest.items() if near))
+
+
+def _is_free(log: LogColumns, matches: Matches, model: mujoco.MjModel) -> bool:
+    """Whether every joint is measured, and no column tells an effort that the model cannot take."""
+    told = {m.spot.name for m in matches.of(Quantity.POSITION)}
+    whole = told == {model.joint(i).name for i in range(model.njnt)}
+    return whole and not any(is_effort(c, log.units.get(c, "")) for c in matches.left)
 
 
 def _let_go(log: LogColumns, check: Checked, positions: list[Match]) -> Chosen:

@@ -228,6 +228,17 @@ def is_setpoint(column: str) -> bool:
     return bool(SETPOINT & set(words_of(bare_name(column))))
 
 
+def is_effort(column: str, unit: str) -> bool:
+    """Whether a column looks like what drives a machine, by its unit or a word of its name.
+
+    Args:
+        column: its name.
+        unit: as the log or the name says it; empty if neither does.
+    """
+    told = LAB_UNITS.get(spelled(unit), spelled(unit)) in ("N", "N*m", "A", "V", "mA", "mV")
+    return told or bool(KIND_WORDS[Quantity.EFFORT] & _words(column))
+
+
 def _unit_fits(unit: str, spot: Spot) -> bool:
     """Whether a unit can be a spot's; what drives a motor may be electrical."""
     if not unit:
