@@ -12,7 +12,7 @@ from ves_twin.core.recording.recording import Recording
 from ves_twin.core.workers import Workers
 from ves_twin.diagnosis import view as view_module
 from ves_twin.diagnosis.assess import assess, pull_limit
-from ves_twin.diagnosis.judge_view import judge_as_seen
+from ves_twin.diagnosis.judge_view import judge_as_seen, judge_view
 from ves_twin.diagnosis.null import noise_thresholds
 from ves_twin.diagnosis.runs import silent
 from ves_twin.diagnosis.settings import Settings
@@ -25,6 +25,8 @@ from ves_twin.report.diagnosis.basis import basis_sentences
 HIDDEN = {"coulomb_friction@a:level": 0.057, "coulomb_friction@b:level": 0.03}
 WHIRLS = 0.45
 """Tones of the motor [N m] by which the second link goes round."""
+SWINGS = 0.1
+"""By which it swings, so that one fit can follow it."""
 
 
 def out_of_step(measured, bank, whitening, settings, progress):
@@ -103,3 +105,20 @@ def test_what_simulations_can_follow_is_not_seen_by_its_motion(forward, monkeypa
 
     monkeypatch.setattr(view_module, "looked", followed)
     assert view(forward, recorded(forward, {})).seen_by_motion(silent) is None
+
+
+def test_a_single_cause_that_leaves_noise_is_asked_before_the_motion(forward, monkeypatch):
+    """Half the time of a crane went into its motion, whose answer was not needed."""
+
+    def asked(*_given: object) -> None:
+        raise AssertionError("the motion was asked")
+
+    monkeypatch.setattr(view_module, "looked", out_of_step)
+    values = {p.name: p.nominal for p in forward.parameters}
+    values |= {"coulomb_friction@a:level": HIDDEN["coulomb_friction@a:level"]}
+    followed = [measured(forward.rig, values, 2.0, seed, SWINGS) for seed in (61, 62)]
+    monkeypatch.setattr(View, "seen_by_motion", asked)
+    found = judge_view(view(forward, followed), silent)
+    assert [(cause.effect, cause.target) for cause in found.causes] == [("coulomb_friction", "a")]
+    assert not found.basis.by_motion
+    assert not found.lacks

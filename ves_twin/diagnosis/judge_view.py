@@ -24,14 +24,19 @@ from ves_twin.diagnosis.view import View
 def judge_view(view: View, progress: Progress, alone: bool = False) -> Verdict:
     """The verdict by simulations; by the motion, where they fall out of step and do not tell.
 
-    By the motion first: it takes seconds, and simulations may use up the time.
+    By the motion before several causes, since simulations of those may use up the time; after a
+    glance at single ones, one of which may be enough.
     """
+    findings = view.findings
+    lawless = replace(findings, settings=replace(findings.settings, laws=False))
+    if view.out_of_step and _one_is_enough(view, progress, glance=True):
+        found = judge_as_seen(replace(view, findings=lawless), progress, alone)
+        if not found.lacks:
+            return found
     moved = view.seen_by_motion(progress)
     by_motion = judge_as_seen(moved, progress) if moved else None
     if by_motion is None or not (by_motion.proved or by_motion.lawful):
         return judge_as_seen(view, progress, alone)
-    findings = view.findings
-    lawless = replace(findings, settings=replace(findings.settings, laws=False))
     found = judge_as_seen(replace(view, findings=lawless), progress, alone)
     return by_motion if found.lacks else found
 
@@ -41,9 +46,9 @@ def judge_as_seen(view: View, progress: Progress, alone: bool = False) -> Verdic
     findings, exclude = view.findings, view.material.exclude
     if not view.loud:
         return assemble_verdict(findings, Kind.NOTHING, view.basis, exclude)
-    desk = FitContext(findings.first, findings.limits, findings.settings, progress)
-    if alone and not _one_is_enough(desk):
+    if alone and not _one_is_enough(view, progress):
         return assemble_verdict(findings, Kind.UNKNOWN, view.basis, exclude)
+    desk = FitContext(findings.first, findings.limits, findings.settings, progress)
     held = view.held()
     every = () if view.moved else (*view.material.recordings, *view.material.held_out)
     end = decide(desk, findings.seen.runs.forward, every, held, view.standstill)
@@ -105,9 +110,12 @@ def _lawful(view: View, end: Conclusion, held: HeldOut | None, progress: Progres
     return lawful_explanation(first, end.found, view.limits, chosen, held, progress)
 
 
-def _one_is_enough(desk: FitContext) -> bool:
-    """Whether a single cause leaves noise."""
-    found = explain(desk.first, desk.thresholds, desk.settings, desk.progress, together=False)
+def _one_is_enough(view: View, progress: Progress, glance: bool = False) -> bool:
+    """Whether something is there, and a single cause leaves noise."""
+    if not view.loud:
+        return False
+    had = view.findings
+    found = explain(had.first, had.limits, had.settings, progress, together=False, glance=glance)
     return found is not None and found.adequate
 
 

@@ -123,13 +123,18 @@ class View:
         misfit = self.findings.limits.misfit
         return Limits(misfit, self.pull, self.findings.settings.model_error)
 
+    @property
+    def out_of_step(self) -> bool:
+        """Whether simulations cannot follow it, and no baseline says how the rig moves in order."""
+        return self.findings.limits.in_order is not None and not self.material.baseline
+
     def seen_by_motion(self, progress: Progress) -> View | None:
         """The record by efforts that its motion lacks; None where simulations can follow it.
 
         None, too, where a baseline is given, or the motion is not measured.
         """
         findings, material = self.findings, self.material
-        if findings.limits.in_order is None or material.baseline:
+        if not self.out_of_step:
             return None
         seen, chosen = by_motion(findings.seen, True, noisy=True), findings.settings
         if seen is None:

@@ -12,6 +12,7 @@ from ves_twin.core.types import FloatArray
 from ves_twin.machines.mjcf.cyclic import is_cyclic, turned_by
 from ves_twin.machines.mjcf.draft.changes import DEGREE, changes, misnamed
 from ves_twin.machines.mjcf.draft.effort_fit import FAR, LOADED, STRONG, TELLS, EffortFit
+from ves_twin.machines.mjcf.draft.late import Pushed, words_of_lag
 from ves_twin.machines.mjcf.draft.locked import locked_joints, words_of_locked
 from ves_twin.machines.mjcf.draft.log_columns import LogColumns, is_usual
 from ves_twin.machines.mjcf.draft.match import Match, Matches
@@ -109,6 +110,7 @@ def checked(log: LogColumns, matches: Matches, model: mujoco.MjModel) -> Checked
         found, said = judge.efforts(found, motion)
         findings += said
         findings += words_of_scale({m: judge.fit(m, motion) for m in judge.driving(found)})
+        findings += judge.late(found, motion)
         findings += judge.rough(found, motion)
         explained = judge.explained(found, motion)
     findings[before:before] = [*_counted(log, found), *_beyond(log, found, model)]
@@ -225,10 +227,27 @@ class _Judge:
         actuator = self.model.actuator(match.spot.name)
         return float(actuator.gear[0] * actuator.gainprm[0]) or 1.0
 
+    def smooth(self, match: Match) -> FloatArray:
+        """A recorded effort (n,) in SI, low-passed as the motion."""
+        column = smoothed(self.log.column(match.column), self.log.period, self.corner)
+        return np.asarray(match.factor * column)
+
     def recorded(self, match: Match, motion: Motion) -> FloatArray:
         """A recorded effort (m,) in SI, at the motion's rows."""
-        column = smoothed(self.log.column(match.column), self.log.period, self.corner)
-        return np.asarray(match.factor * column[motion.rows])
+        return self.smooth(match)[motion.rows]
+
+    def late(self, found: list[Match], motion: Motion) -> list[str]:
+        """Efforts that do not come with the motion."""
+        efforts = [
+            Pushed(
+                self.smooth(m),
+                self.needed(m, motion),
+                motion.speed[:, self.dof(m)],
+                m.electrical,
+            )
+            for m in self.driving(found)
+        ]
+        return words_of_lag(efforts, motion.rows, self.log.period)
 
     def fit(self, match: Match, motion: Motion) -> EffortFit:
         """Of a recorded effort, in its unit's SI, beside friction."""
