@@ -234,7 +234,7 @@ class _Judge:
 
     def recorded(self, match: Match, motion: Motion) -> FloatArray:
         """A recorded effort (m,) in SI, at the motion's rows."""
-        return self.smooth(match)[motion.rows]
+        return np.asarray(self.smooth(match)[motion.rows])
 
     def late(self, found: list[Match], motion: Motion) -> list[str]:
         """Efforts that do not come with the motion."""
