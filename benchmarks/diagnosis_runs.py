@@ -23,7 +23,7 @@ from types import FrameType
 import numpy as np
 
 from ves_twin.diagnosis.settings import Settings
-from ves_twin.diagnosis.verdict import Verdict
+from ves_twin.diagnosis.verdict.verdict import Verdict
 from ves_twin.machines.diagnose import verdict_on
 from ves_twin.machines.ves2 import forward as ves2_forward
 from ves_twin.plant.plant import Plant

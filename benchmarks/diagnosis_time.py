@@ -24,7 +24,7 @@ import numpy as np
 import ves_twin as vt
 from ves_twin.diagnosis.diagnose import diagnose
 from ves_twin.diagnosis.settings import Settings
-from ves_twin.diagnosis.verdict import Verdict
+from ves_twin.diagnosis.verdict.verdict import Verdict
 from ves_twin.machines.compare import compare
 from ves_twin.machines.diagnose import verdict_on
 from ves_twin.machines.machine import Named

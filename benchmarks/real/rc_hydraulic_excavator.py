@@ -9,7 +9,7 @@ import numpy as np
 
 from real.machine import Set, effects, machine, read
 from ves_twin.core.recording.recording import Recording
-from ves_twin.diagnosis.forward import Excitation
+from ves_twin.diagnosis.model.forward import Excitation
 from ves_twin.machines.mjcf.forward import MjcfForward
 from ves_twin.machines.mjcf.machine import Rig
 

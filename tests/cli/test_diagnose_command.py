@@ -12,7 +12,7 @@ from ves_twin.cli.main import main
 from ves_twin.core.recording.files import load_recording, save_recording
 from ves_twin.core.recording.recording import Recording, RecordingInfo
 from ves_twin.diagnosis.diagnose import diagnose
-from ves_twin.diagnosis.forward import Excitation
+from ves_twin.diagnosis.model.forward import Excitation
 from ves_twin.diagnosis.settings import Settings
 from ves_twin.machines.diagnose import Diagnosis
 from ves_twin.machines.ves2.forward import DRIVE

@@ -8,16 +8,16 @@ from toy import PERIOD, SD, Toy, programme, record
 
 from ves_twin.core.errors import InvalidInputError
 from ves_twin.core.recording.recording import Recording, RecordingInfo
-from ves_twin.diagnosis import preprocess
+from ves_twin.diagnosis.bank.signature_library import build_bank
+from ves_twin.diagnosis.bank.slices import of_channels, of_recording, of_time
 from ves_twin.diagnosis.diagnose import diagnose
-from ves_twin.diagnosis.forward import Excitation
-from ves_twin.diagnosis.grid import AnalysisGrid
-from ves_twin.diagnosis.likeness import check_likeness
-from ves_twin.diagnosis.runs import Runs
+from ves_twin.diagnosis.model.forward import Excitation
+from ves_twin.diagnosis.model.grid import AnalysisGrid
+from ves_twin.diagnosis.record import preprocess
+from ves_twin.diagnosis.record.likeness import check_likeness
+from ves_twin.diagnosis.record.runs import Runs
 from ves_twin.diagnosis.settings import Settings
-from ves_twin.diagnosis.signature_library import build_bank
-from ves_twin.diagnosis.slices import of_channels, of_recording, of_time
-from ves_twin.diagnosis.verdict import Kind
+from ves_twin.diagnosis.verdict.verdict import Kind
 from ves_twin.report.diagnosis.answer import headline
 from ves_twin.report.diagnosis.limits import limit_sentences
 from ves_twin.report.diagnosis.words import alone_sentences

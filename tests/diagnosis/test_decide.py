@@ -10,14 +10,14 @@ import numpy as np
 import pytest
 from toy import SD, Toy, programme
 
+from ves_twin.diagnosis.bank.linearise import linearise
 from ves_twin.diagnosis.decide import _kind, _probed
-from ves_twin.diagnosis.evidence import Evidence
-from ves_twin.diagnosis.linearise import linearise
-from ves_twin.diagnosis.refine import Fit, refine
-from ves_twin.diagnosis.runs import Runs
+from ves_twin.diagnosis.fit.refine import Fit, refine
+from ves_twin.diagnosis.record.evidence import Evidence
+from ves_twin.diagnosis.record.runs import Runs
+from ves_twin.diagnosis.record.whitening import whitening_declared
 from ves_twin.diagnosis.settings import Settings
-from ves_twin.diagnosis.verdict import Kind
-from ves_twin.diagnosis.whitening import whitening_declared
+from ves_twin.diagnosis.verdict.verdict import Kind
 
 LIMIT = 3.7
 

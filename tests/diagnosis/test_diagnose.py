@@ -15,11 +15,11 @@ from ves_twin.core.errors import InvalidInputError, UnknownNameError
 from ves_twin.core.recording.recording import Recording
 from ves_twin.diagnosis import diagnose as verb
 from ves_twin.diagnosis.diagnose import diagnose
-from ves_twin.diagnosis.forward import Hypothesis, Parameter
-from ves_twin.diagnosis.search import Search
+from ves_twin.diagnosis.fit.search import Search
+from ves_twin.diagnosis.model.forward import Hypothesis, Parameter
+from ves_twin.diagnosis.record.whitening import Whitening
 from ves_twin.diagnosis.settings import Settings
-from ves_twin.diagnosis.verdict import Kind
-from ves_twin.diagnosis.whitening import Whitening
+from ves_twin.diagnosis.verdict.verdict import Kind
 from ves_twin.report.diagnosis.answer import headline
 
 
@@ -309,7 +309,7 @@ class TestMutations:
         whitened = list(self.rigs(Toy(), settings, count, colour=0.4))
         assert sum(v.verdict is not Kind.NOTHING for v in whitened) <= count // 12
         monkeypatch.setattr(Whitening, "adapted", lambda self, z: self)
-        monkeypatch.setattr("ves_twin.diagnosis.null.DECLARED", ((1.0, 1.0), (0.0, 0.0)))
+        monkeypatch.setattr("ves_twin.diagnosis.fit.null.DECLARED", ((1.0, 1.0), (0.0, 0.0)))
         said = list(self.rigs(Toy(), Settings(nulls=60, cache=tmp_path), count, colour=0.4))
         assert sum(v.verdict is not Kind.NOTHING for v in said) >= 3 * count // 4
 
@@ -329,8 +329,8 @@ class TestMutations:
         added = 0.05 * np.sign(np.gradient(u))[:, None] * [1.0, 0.0]
         whole = self.rigs(Toy(), settings, count, added=added)
         assert all(v.verdict is Kind.UNKNOWN for v in whole)
-        monkeypatch.setattr("ves_twin.diagnosis.judge.misfit", lambda *a: 0.0)
-        monkeypatch.setattr("ves_twin.diagnosis.judge._second", lambda *a: 0.0)
+        monkeypatch.setattr("ves_twin.diagnosis.explain.judge.misfit", lambda *a: 0.0)
+        monkeypatch.setattr("ves_twin.diagnosis.explain.judge._second", lambda *a: 0.0)
         said = list(self.rigs(Toy(), settings, count, added=added))
         assert all(v.verdict in (Kind.NAMED, Kind.AMBIGUOUS) for v in said)
 

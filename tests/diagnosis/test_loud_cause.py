@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from ves_twin.diagnosis.settings import Settings
-from ves_twin.diagnosis.verdict import Kind
+from ves_twin.diagnosis.verdict.verdict import Kind
 from ves_twin.machines.diagnose import diagnose
 from ves_twin.suites.law_suite import LIBRARY, MACHINE, LawTruth, hidden_in, machine_of
 from ves_twin.suites.machine import BlindRig

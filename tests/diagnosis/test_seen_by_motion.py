@@ -11,12 +11,12 @@ from lively_arm import lively, measured
 from ves_twin.core.recording.recording import Recording
 from ves_twin.core.workers import Workers
 from ves_twin.diagnosis import view as view_module
-from ves_twin.diagnosis.assess import assess, pull_limit
+from ves_twin.diagnosis.fit.assess import assess, pull_limit
+from ves_twin.diagnosis.fit.null import noise_thresholds
 from ves_twin.diagnosis.judge_view import judge_as_seen, judge_view
-from ves_twin.diagnosis.null import noise_thresholds
-from ves_twin.diagnosis.runs import silent
+from ves_twin.diagnosis.record.runs import silent
 from ves_twin.diagnosis.settings import Settings
-from ves_twin.diagnosis.verdict import Verdict
+from ves_twin.diagnosis.verdict.verdict import Verdict
 from ves_twin.diagnosis.view import Material, View
 from ves_twin.effects.law import Law, LawKind, LawShape
 from ves_twin.machines.mjcf.forward import MjcfForward

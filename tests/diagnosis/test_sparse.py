@@ -8,11 +8,11 @@ import numpy as np
 import pytest
 from toy import GAIN, NUISANCES, Toy, _cause, programme
 
-from ves_twin.diagnosis.forward import Hypothesis, Parameter
-from ves_twin.diagnosis.linearise import linearise, renewed, with_bends
-from ves_twin.diagnosis.rungs import rungs
-from ves_twin.diagnosis.runs import Runs
-from ves_twin.diagnosis.signature_library import build_bank, cached_bank
+from ves_twin.diagnosis.bank.linearise import linearise, renewed, with_bends
+from ves_twin.diagnosis.bank.rungs import rungs
+from ves_twin.diagnosis.bank.signature_library import build_bank, cached_bank
+from ves_twin.diagnosis.model.forward import Hypothesis, Parameter
+from ves_twin.diagnosis.record.runs import Runs
 
 JOINTS = 4
 CURVE = 3.0

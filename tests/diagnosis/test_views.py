@@ -6,13 +6,13 @@ import numpy as np
 import pytest
 from pendulum import MASS, PLANT, STEP
 
-from ves_twin.diagnosis.both_views import both_views
 from ves_twin.diagnosis.build_up.result import Proved
-from ves_twin.diagnosis.forward import Excitation
-from ves_twin.diagnosis.gain import Gain
-from ves_twin.diagnosis.refusal import refusal
-from ves_twin.diagnosis.verdict import Basis, Cause, Kind, Statistics, Verdict
-from ves_twin.diagnosis.widened import LEAST, Widened, widening
+from ves_twin.diagnosis.model.forward import Excitation
+from ves_twin.diagnosis.model.widened import LEAST, Widened, widening
+from ves_twin.diagnosis.unseen.gain import Gain
+from ves_twin.diagnosis.verdict.both_views import both_views
+from ves_twin.diagnosis.verdict.refusal import refusal
+from ves_twin.diagnosis.verdict.verdict import Basis, Cause, Kind, Statistics, Verdict
 from ves_twin.machines.ves2.ves2_machine import Ves2Machine
 from ves_twin.report.diagnosis.answer import headline
 

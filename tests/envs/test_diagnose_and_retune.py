@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 from ves_twin.core.errors import ControllerError, InvalidInputError, UnknownNameError
-from ves_twin.diagnosis.forward import Excitation
+from ves_twin.diagnosis.model.forward import Excitation
 from ves_twin.envs.baselines.diagnosed_retuning import DiagnosedRetuning
 from ves_twin.envs.baselines.fitted_retuning import FittedRetuning
 from ves_twin.envs.baselines.retuning import tuned

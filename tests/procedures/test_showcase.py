@@ -7,7 +7,7 @@ import pytest
 
 from ves_twin.core.errors import InvalidInputError, UnknownNameError
 from ves_twin.core.recording.files import load_recording
-from ves_twin.diagnosis.verdict import Kind
+from ves_twin.diagnosis.verdict.verdict import Kind
 from ves_twin.plant.plant import Plant
 from ves_twin.procedures.procedure import RunContext
 from ves_twin.procedures.registry import load_procedure

@@ -8,9 +8,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from ves_twin.diagnosis.gain import Gain
 from ves_twin.diagnosis.law.result import LawFinding, LawNumber, LawRival
-from ves_twin.diagnosis.verdict import Basis, Kind, Statistics, Verdict
+from ves_twin.diagnosis.unseen.gain import Gain
+from ves_twin.diagnosis.verdict.verdict import Basis, Kind, Statistics, Verdict
 from ves_twin.report.diagnosis.answer import verdict_sentence
 from ves_twin.report.diagnosis.law import (
     draw_law,

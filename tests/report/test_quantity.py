@@ -3,7 +3,7 @@
 import pytest
 
 from ves_twin.core.quantity import shares
-from ves_twin.diagnosis.gain import Gain
+from ves_twin.diagnosis.unseen.gain import Gain
 from ves_twin.report.diagnosis.basis import taken_words
 
 

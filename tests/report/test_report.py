@@ -11,21 +11,21 @@ from toy import Toy, programme, record
 from ves_twin.core.errors import InvalidInputError
 from ves_twin.core.quantity import shares
 from ves_twin.data.quality.check import Check, Grade, failed
-from ves_twin.diagnosis.aliases import Lookalike
+from ves_twin.diagnosis.bank.envelope import ENVELOPE_SD
+from ves_twin.diagnosis.bank.linearise import linearise
 from ves_twin.diagnosis.build_up.result import Inseparable, Left, Proved, Size
 from ves_twin.diagnosis.diagnose import diagnose
-from ves_twin.diagnosis.envelope import ENVELOPE_SD
-from ves_twin.diagnosis.evidence import Evidence
-from ves_twin.diagnosis.gain import Gain
-from ves_twin.diagnosis.linearise import linearise
-from ves_twin.diagnosis.next_experiment import separations
-from ves_twin.diagnosis.preprocess import preprocess
-from ves_twin.diagnosis.refine import refine
-from ves_twin.diagnosis.refusal import refusal
-from ves_twin.diagnosis.rivals import Standing
+from ves_twin.diagnosis.experiment.aliases import Lookalike
+from ves_twin.diagnosis.experiment.next_experiment import separations
+from ves_twin.diagnosis.explain.rivals import Standing
+from ves_twin.diagnosis.fit.refine import refine
+from ves_twin.diagnosis.record.evidence import Evidence
+from ves_twin.diagnosis.record.preprocess import preprocess
+from ves_twin.diagnosis.record.whitening import whitening_declared
 from ves_twin.diagnosis.settings import Settings
-from ves_twin.diagnosis.verdict import ChannelError, Estimate, Kind
-from ves_twin.diagnosis.whitening import whitening_declared
+from ves_twin.diagnosis.unseen.gain import Gain
+from ves_twin.diagnosis.verdict.refusal import refusal
+from ves_twin.diagnosis.verdict.verdict import ChannelError, Estimate, Kind
 from ves_twin.report.diagnosis.answer import headline, next_step, tone
 from ves_twin.report.diagnosis.basis import basis_sentences, gain_words, taken_words
 from ves_twin.report.diagnosis.credibility import Pedigree, credibility
@@ -377,7 +377,7 @@ def test_an_ambiguous_group_is_told_as_one_of_several_with_what_to_record_next(t
 
 def test_the_menu_is_ranked_by_few_commissioning_errors_where_there_are_many(monkeypatch, settings):
     """One of two errors of the plant is kept: the ranking of a loud and a quiet programme holds."""
-    monkeypatch.setattr("ves_twin.diagnosis.next_experiment.NUISANCES", 1)
+    monkeypatch.setattr("ves_twin.diagnosis.experiment.next_experiment.NUISANCES", 1)
     plant = Toy(causes=("lag", "friction", "ripple"))
     data = record(np.random.default_rng(4), {"lag.size": 0.05}, spread=0.0, plant=plant)
     seen = preprocess(plant, [data])
@@ -392,7 +392,7 @@ def test_the_menu_is_ranked_by_few_commissioning_errors_where_there_are_many(mon
     ]
     quiet, loud = programme(8, amplitude=0.1), programme(8, amplitude=2.0)
     few = separations(seen.runs, fits, [quiet, loud])
-    monkeypatch.setattr("ves_twin.diagnosis.next_experiment.NUISANCES", 16)
+    monkeypatch.setattr("ves_twin.diagnosis.experiment.next_experiment.NUISANCES", 16)
     every = separations(seen.runs, fits, [quiet, loud])
     assert few[0].programme is every[0].programme is loud
     for one, other in zip(few, every, strict=True):

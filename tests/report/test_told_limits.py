@@ -7,9 +7,9 @@ from dataclasses import replace
 import pytest
 
 from ves_twin.diagnosis.build_up.result import Proved
-from ves_twin.diagnosis.gain import Gain
 from ves_twin.diagnosis.law.result import LAW
-from ves_twin.diagnosis.verdict import (
+from ves_twin.diagnosis.unseen.gain import Gain
+from ves_twin.diagnosis.verdict.verdict import (
     Basis,
     Cause,
     ChannelError,

@@ -8,7 +8,7 @@ from once import once
 from two_link import programme, rig
 
 import ves_twin as vt
-from ves_twin.diagnosis.forward import Excitation
+from ves_twin.diagnosis.model.forward import Excitation
 from ves_twin.effects.element import Element
 from ves_twin.effects.registry import EFFECTS, build_effect
 from ves_twin.machines.mjcf.description import Mode

@@ -9,7 +9,7 @@ import two_link
 from ves_twin.cli.main import main
 from ves_twin.core.errors import InvalidInputError
 from ves_twin.core.recording.files import load_recording
-from ves_twin.diagnosis.forward import Excitation
+from ves_twin.diagnosis.model.forward import Excitation
 from ves_twin.machines.mjcf.machine import Rig
 from ves_twin.machines.mjcf.mjcf_machine import MjcfMachine
 from ves_twin.machines.mjcf.programmes import FARTHEST, joint_of, releases

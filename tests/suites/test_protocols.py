@@ -24,8 +24,8 @@ from ves_twin.cli.main import main
 from ves_twin.core.errors import InvalidInputError, UnknownNameError
 from ves_twin.core.recording.files import load_recording
 from ves_twin.core.recording.recording import Recording, RecordingInfo
-from ves_twin.diagnosis.forward import Excitation
-from ves_twin.diagnosis.runs import silent
+from ves_twin.diagnosis.model.forward import Excitation
+from ves_twin.diagnosis.record.runs import silent
 from ves_twin.diagnosis.settings import Settings
 from ves_twin.machines.mjcf.forward import MjcfForward
 from ves_twin.machines.mjcf.mjcf_machine import MjcfMachine
@@ -148,7 +148,7 @@ def test_only_a_release_parts_the_two_delays():
 
 
 def test_a_cause_left_out_has_its_alias(tmp_path):
-    from ves_twin.diagnosis.preprocess import preprocess
+    from ves_twin.diagnosis.record.preprocess import preprocess
     from ves_twin.suites.aliases import aliases
 
     nominal = BLIND.record(BlindRig(), "train", np.random.default_rng(0))

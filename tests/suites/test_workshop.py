@@ -7,7 +7,7 @@ import pytest
 
 from ves_twin.core.errors import InvalidInputError
 from ves_twin.core.recording.files import load_recording
-from ves_twin.diagnosis.runs import silent
+from ves_twin.diagnosis.record.runs import silent
 from ves_twin.diagnosis.settings import Settings
 from ves_twin.suites.answer import answer_suite
 from ves_twin.suites.answers import Answer

@@ -11,14 +11,14 @@ import numpy as np
 from arm import arm, motion
 
 from ves_twin.core.recording.recording import Recording, RecordingInfo
-from ves_twin.diagnosis.evidence import Evidence
-from ves_twin.diagnosis.forward import Excitation
+from ves_twin.diagnosis.bank.linearise import linearise
+from ves_twin.diagnosis.fit.refine import refine
 from ves_twin.diagnosis.law.fit_law import LawFit, fit_law
 from ves_twin.diagnosis.law.loud import loud_screen
-from ves_twin.diagnosis.linearise import linearise
-from ves_twin.diagnosis.preprocess import Dataset, preprocess
-from ves_twin.diagnosis.refine import refine
-from ves_twin.diagnosis.whitening import whitening_declared
+from ves_twin.diagnosis.model.forward import Excitation
+from ves_twin.diagnosis.record.evidence import Evidence
+from ves_twin.diagnosis.record.preprocess import Dataset, preprocess
+from ves_twin.diagnosis.record.whitening import whitening_declared
 from ves_twin.effects.law import Law, LawKind, LawShape
 from ves_twin.machines.mjcf.description import Mode
 from ves_twin.machines.mjcf.forward import MjcfForward

@@ -8,7 +8,7 @@ import numpy as np
 from pendulum import BIAS, FRICTION, GAIN, LATE, PLANT, SDS, SPRING, STEP
 
 from ves_twin.core.recording.recording import Recording, RecordingInfo
-from ves_twin.diagnosis.forward import Excitation
+from ves_twin.diagnosis.model.forward import Excitation
 
 ROWS: dict[str, tuple[Mapping[str, float], str]] = {
     "none": ({}, "-"),

@@ -9,7 +9,7 @@ from functools import lru_cache
 import numpy as np
 
 from ves_twin.core.recording.recording import Recording, RecordingInfo
-from ves_twin.diagnosis.forward import Channel, Excitation, Hypothesis, Parameter
+from ves_twin.diagnosis.model.forward import Channel, Excitation, Hypothesis, Parameter
 from ves_twin.diagnosis.settings import Settings
 
 SD = (0.01, 0.05)

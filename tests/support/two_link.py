@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 
-from ves_twin.diagnosis.forward import Excitation
+from ves_twin.diagnosis.model.forward import Excitation
 from ves_twin.machines.mjcf.machine import Rig
 
 MODEL = """

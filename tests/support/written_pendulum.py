@@ -13,7 +13,7 @@ from mujoco import rollout
 from ves_twin.core.errors import InvalidInputError
 from ves_twin.core.signals import Role, Signal
 from ves_twin.core.types import FloatArray
-from ves_twin.diagnosis.forward import Channel, Excitation, Hypothesis, Parameter
+from ves_twin.diagnosis.model.forward import Channel, Excitation, Hypothesis, Parameter
 
 STEP = 0.002
 """Integration step [s]; rows of a recording are a whole number of steps apart."""

@@ -139,7 +139,7 @@ def _make(arguments: argparse.Namespace, folder: Path, key: Path) -> int:
 
 
 def _recipe(arguments: argparse.Namespace) -> Recipe:
-    from ves_twin.diagnosis.tolerances import FEWEST, check_commissioned
+    from ves_twin.diagnosis.fit.tolerances import FEWEST, check_commissioned
     from ves_twin.suites.recipe import Recipe
     from ves_twin.suites.truth import Hidden
 

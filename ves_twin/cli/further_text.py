@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from ves_twin.core.quantity import quantity
-from ves_twin.diagnosis.further_channel import Further
+from ves_twin.diagnosis.experiment.further_channel import Further
 from ves_twin.report.diagnosis.words import spoken
 
 MOST = 15

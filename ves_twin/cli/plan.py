@@ -7,7 +7,7 @@ import sys
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from ves_twin.diagnosis.plan import Plan
+    from ves_twin.diagnosis.experiment.plan import Plan
 
 SUMMARY = "what a recording could find and could not, before it is made"
 

@@ -6,8 +6,8 @@ from collections.abc import Sequence
 from itertools import groupby
 
 from ves_twin.core.quantity import UNSURE, quantity
-from ves_twin.diagnosis.aliases import Lookalike
-from ves_twin.diagnosis.plan import Plan, Prospect
+from ves_twin.diagnosis.experiment.aliases import Lookalike
+from ves_twin.diagnosis.experiment.plan import Plan, Prospect
 from ves_twin.report.diagnosis.words import spoken
 
 MOST = 12

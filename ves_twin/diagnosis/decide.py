@@ -9,28 +9,28 @@ import numpy as np
 
 from ves_twin.core.budget import EndedError
 from ves_twin.core.recording.recording import Recording
-from ves_twin.diagnosis.assess import pull_limit
 from ves_twin.diagnosis.build_up.build_up import Built, build_up
 from ves_twin.diagnosis.build_up.builder import Start
 from ves_twin.diagnosis.build_up.halves import split
-from ves_twin.diagnosis.explain import explain
-from ves_twin.diagnosis.explanation import Explanation
-from ves_twin.diagnosis.fit_context import FitContext
-from ves_twin.diagnosis.fit_job import FEW
-from ves_twin.diagnosis.forecast import forecast
-from ves_twin.diagnosis.forward import Forward
-from ves_twin.diagnosis.gain import Gain
-from ves_twin.diagnosis.held_out import HeldOut
-from ves_twin.diagnosis.inverse_start import inverse_start
-from ves_twin.diagnosis.on_line import on_line
-from ves_twin.diagnosis.preprocess import Dataset
-from ves_twin.diagnosis.profile import profiled
-from ves_twin.diagnosis.refine import ROUGH, Fit, refine
-from ves_twin.diagnosis.search import ITERATIONS
+from ves_twin.diagnosis.build_up.inverse_start import inverse_start
+from ves_twin.diagnosis.explain.explain import explain
+from ves_twin.diagnosis.fit.assess import pull_limit
+from ves_twin.diagnosis.fit.explanation import Explanation
+from ves_twin.diagnosis.fit.fit_context import FitContext
+from ves_twin.diagnosis.fit.fit_job import FEW
+from ves_twin.diagnosis.fit.on_line import on_line
+from ves_twin.diagnosis.fit.profile import profiled
+from ves_twin.diagnosis.fit.refine import ROUGH, Fit, refine
+from ves_twin.diagnosis.fit.search import ITERATIONS
+from ves_twin.diagnosis.fit.spread import spread
+from ves_twin.diagnosis.model.forward import Forward
+from ves_twin.diagnosis.record.preprocess import Dataset
+from ves_twin.diagnosis.record.whitening import whitening_of
 from ves_twin.diagnosis.settings import Settings
-from ves_twin.diagnosis.spread import spread
-from ves_twin.diagnosis.verdict import Kind
-from ves_twin.diagnosis.whitening import whitening_of
+from ves_twin.diagnosis.unseen.forecast import forecast
+from ves_twin.diagnosis.unseen.gain import Gain
+from ves_twin.diagnosis.unseen.held_out import HeldOut
+from ves_twin.diagnosis.verdict.verdict import Kind
 
 ALMOST = 0.95
 """The same of a single cause that leaves more than noise: a wrong one that moves the same channels

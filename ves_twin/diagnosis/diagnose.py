@@ -8,16 +8,16 @@ from ves_twin.core.budget import Budget
 from ves_twin.core.errors import UnknownNameError
 from ves_twin.core.recording.recording import Recording
 from ves_twin.core.workers import Workers
-from ves_twin.diagnosis.both_views import both_views, is_firm
-from ves_twin.diagnosis.forward import Excitation, Forward
+from ves_twin.diagnosis.fit.tolerances import cached_scale, check_commissioned
 from ves_twin.diagnosis.judge_view import judge_view
-from ves_twin.diagnosis.preprocess import preprocess
-from ves_twin.diagnosis.runs import Progress, silent
+from ves_twin.diagnosis.model.forward import Excitation, Forward
+from ves_twin.diagnosis.model.widened import Widened, widening
+from ves_twin.diagnosis.record.preprocess import preprocess
+from ves_twin.diagnosis.record.runs import Progress, silent
 from ves_twin.diagnosis.settings import Settings
-from ves_twin.diagnosis.tolerances import cached_scale, check_commissioned
-from ves_twin.diagnosis.verdict import Kind, Verdict
+from ves_twin.diagnosis.verdict.both_views import both_views, is_firm
+from ves_twin.diagnosis.verdict.verdict import Kind, Verdict
 from ves_twin.diagnosis.view import Material, View
-from ves_twin.diagnosis.widened import Widened, widening
 
 
 def diagnose(

@@ -5,19 +5,19 @@ from __future__ import annotations
 import math
 from dataclasses import replace
 
-from ves_twin.diagnosis.assemble_verdict import assemble_verdict
 from ves_twin.diagnosis.decide import Conclusion, decide
-from ves_twin.diagnosis.disagreement import Alone, disagreement
-from ves_twin.diagnosis.explain import explain
-from ves_twin.diagnosis.explanation import Explanation
-from ves_twin.diagnosis.fit_context import FitContext
-from ves_twin.diagnosis.held_out import HeldOut
+from ves_twin.diagnosis.experiment.next_experiment import separations
+from ves_twin.diagnosis.explain.disagreement import Alone, disagreement
+from ves_twin.diagnosis.explain.explain import explain
+from ves_twin.diagnosis.fit.explanation import Explanation
+from ves_twin.diagnosis.fit.fit_context import FitContext
 from ves_twin.diagnosis.law.explained import Lawful, lawful_explanation, lawful_rest
 from ves_twin.diagnosis.law.own_motion import own_motion
 from ves_twin.diagnosis.law.result import LAW
-from ves_twin.diagnosis.next_experiment import separations
-from ves_twin.diagnosis.runs import Progress
-from ves_twin.diagnosis.verdict import Kind, Proposal, Verdict
+from ves_twin.diagnosis.record.runs import Progress
+from ves_twin.diagnosis.unseen.held_out import HeldOut
+from ves_twin.diagnosis.verdict.assemble_verdict import assemble_verdict
+from ves_twin.diagnosis.verdict.verdict import Kind, Proposal, Verdict
 from ves_twin.diagnosis.view import View
 
 

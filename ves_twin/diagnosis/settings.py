@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from ves_twin.core.budget import Budget
-from ves_twin.diagnosis.grid import RATE
+from ves_twin.diagnosis.model.grid import RATE
 
 
 @dataclass(frozen=True)

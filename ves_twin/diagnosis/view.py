@@ -8,23 +8,23 @@ from time import perf_counter
 
 from ves_twin.core.recording.recording import Recording
 from ves_twin.core.workers import Workers
-from ves_twin.diagnosis.assemble_verdict import Findings
-from ves_twin.diagnosis.assess import pull_limit
-from ves_twin.diagnosis.by_motion import by_motion
-from ves_twin.diagnosis.differential import differential
-from ves_twin.diagnosis.forward import Excitation, Forward
-from ves_twin.diagnosis.held_out import HeldOut
+from ves_twin.diagnosis.bank.rungs import FEWER
+from ves_twin.diagnosis.bank.signature_library import SignatureLibrary, build_bank, cached_bank
+from ves_twin.diagnosis.fit.assess import pull_limit
+from ves_twin.diagnosis.fit.differential import differential
+from ves_twin.diagnosis.fit.looked import looked
+from ves_twin.diagnosis.fit.tolerances import naming_limit
 from ves_twin.diagnosis.law.propose import Limits
-from ves_twin.diagnosis.likeness import check_likeness
-from ves_twin.diagnosis.looked import looked
-from ves_twin.diagnosis.preprocess import Dataset, preprocess
-from ves_twin.diagnosis.rungs import FEWER
-from ves_twin.diagnosis.runs import Progress, Runs
+from ves_twin.diagnosis.model.forward import Excitation, Forward
+from ves_twin.diagnosis.record.by_motion import by_motion
+from ves_twin.diagnosis.record.likeness import check_likeness
+from ves_twin.diagnosis.record.preprocess import Dataset, preprocess
+from ves_twin.diagnosis.record.runs import Progress, Runs
+from ves_twin.diagnosis.record.whitening import Whitening, whitening_of
 from ves_twin.diagnosis.settings import Settings
-from ves_twin.diagnosis.signature_library import SignatureLibrary, build_bank, cached_bank
-from ves_twin.diagnosis.tolerances import naming_limit
-from ves_twin.diagnosis.verdict import Basis
-from ves_twin.diagnosis.whitening import Whitening, whitening_of
+from ves_twin.diagnosis.unseen.held_out import HeldOut
+from ves_twin.diagnosis.verdict.assemble_verdict import Findings
+from ves_twin.diagnosis.verdict.verdict import Basis
 
 DEAR = 0.1
 """Share of the minutes from which a bank is built with fewer runs: on a measured machine what

@@ -12,7 +12,7 @@ import numpy as np
 from ves_twin.core.errors import InvalidInputError
 from ves_twin.core.recording.recording import Recording, RecordingInfo
 from ves_twin.core.types import FloatArray
-from ves_twin.diagnosis.forward import Excitation
+from ves_twin.diagnosis.model.forward import Excitation
 from ves_twin.effects.place import Place
 from ves_twin.envs.channels import Channel, Channels
 from ves_twin.envs.joint_controller import JointController, Tuning, Wanted, effort_of

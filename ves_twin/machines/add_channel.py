@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from ves_twin.diagnosis.further_channel import Further, further_channels
-from ves_twin.diagnosis.plan import columns_of
-from ves_twin.diagnosis.runs import Progress, silent
+from ves_twin.diagnosis.experiment.further_channel import Further, further_channels
+from ves_twin.diagnosis.experiment.plan import columns_of
+from ves_twin.diagnosis.record.runs import Progress, silent
 from ves_twin.diagnosis.settings import Settings
 from ves_twin.machines.load import Given, machine_of
 

@@ -15,8 +15,13 @@ from ves_twin.core.recording.recording import POSES, Recording
 from ves_twin.core.signals import Signal
 from ves_twin.core.types import FloatArray
 from ves_twin.data.quality.check import Check
-from ves_twin.diagnosis.grid import RATE
-from ves_twin.diagnosis.residuals.noise import Noise, NoiseSource, measured_noise, standing_rows
+from ves_twin.diagnosis.model.grid import RATE
+from ves_twin.diagnosis.record.residuals.noise import (
+    Noise,
+    NoiseSource,
+    measured_noise,
+    standing_rows,
+)
 
 if TYPE_CHECKING:
     from ves_twin.machines.ves2.emulation_cost import EmulationCost

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from ves_twin.diagnosis.law.finding import SOURCE
-from ves_twin.diagnosis.verdict import Verdict
+from ves_twin.diagnosis.verdict.verdict import Verdict
 from ves_twin.effects.law import LawKind, LawShape
 from ves_twin.effects.law_table import LawTable
 

@@ -11,9 +11,9 @@ from ves_twin.core.errors import InvalidInputError
 from ves_twin.core.recording.even_clock import FEWEST
 from ves_twin.core.recording.recording import Recording
 from ves_twin.core.types import FloatArray
-from ves_twin.diagnosis.residuals.channel import ChannelComparison, Column, compare_column
-from ves_twin.diagnosis.residuals.coherence import Companions
-from ves_twin.diagnosis.residuals.noise import Noise, NoiseSource, noise_of_difference
+from ves_twin.diagnosis.record.residuals.channel import ChannelComparison, Column, compare_column
+from ves_twin.diagnosis.record.residuals.coherence import Companions
+from ves_twin.diagnosis.record.residuals.noise import Noise, NoiseSource, noise_of_difference
 from ves_twin.machines.case import Case
 from ves_twin.machines.comparison import Basis, Comparison, RecordingComparison, Traces
 from ves_twin.machines.load import Given, machine_of, named

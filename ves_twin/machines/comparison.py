@@ -13,8 +13,8 @@ import numpy as np
 from ves_twin.core.read_only import ReadOnly
 from ves_twin.core.types import FloatArray
 from ves_twin.data.quality.check import Check, Grade
-from ves_twin.diagnosis.envelope import ENVELOPE_SD
-from ves_twin.diagnosis.residuals.channel import ChannelComparison
+from ves_twin.diagnosis.bank.envelope import ENVELOPE_SD
+from ves_twin.diagnosis.record.residuals.channel import ChannelComparison
 from ves_twin.machines.tolerance import Excess
 
 if TYPE_CHECKING:

@@ -6,11 +6,11 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from ves_twin.core.errors import InvalidInputError
-from ves_twin.diagnosis.design import Design, design_excitation
-from ves_twin.diagnosis.forward import Excitation
-from ves_twin.diagnosis.plan import check_channels, columns_of, plan_recording
-from ves_twin.diagnosis.runs import Progress, silent
-from ves_twin.diagnosis.separation import Question
+from ves_twin.diagnosis.experiment.design import Design, design_excitation
+from ves_twin.diagnosis.experiment.plan import check_channels, columns_of, plan_recording
+from ves_twin.diagnosis.experiment.separation import Question
+from ves_twin.diagnosis.model.forward import Excitation
+from ves_twin.diagnosis.record.runs import Progress, silent
 from ves_twin.diagnosis.settings import Settings
 from ves_twin.machines.load import Given, machine_of
 from ves_twin.machines.machine import Machine

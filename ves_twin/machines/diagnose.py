@@ -12,10 +12,10 @@ from ves_twin.core.budget import Budget
 from ves_twin.core.errors import InvalidInputError
 from ves_twin.core.recording.recording import Recording
 from ves_twin.diagnosis import diagnose as core
-from ves_twin.diagnosis.forward import Excitation
-from ves_twin.diagnosis.runs import Progress, silent
+from ves_twin.diagnosis.model.forward import Excitation
+from ves_twin.diagnosis.record.runs import Progress, silent
 from ves_twin.diagnosis.settings import Settings
-from ves_twin.diagnosis.verdict import Verdict
+from ves_twin.diagnosis.verdict.verdict import Verdict
 from ves_twin.machines.load import Given, machine_of, named
 from ves_twin.machines.machine import Machine, Material, Named, Prepared
 from ves_twin.scenario.experiment_file import ExperimentFile

@@ -12,11 +12,11 @@ from ves_twin.core.recording.recording import Recording
 from ves_twin.core.signals import Signal
 from ves_twin.data.quality.check import Check
 from ves_twin.data.suspicions import Range
-from ves_twin.diagnosis.design import DesignSpace
-from ves_twin.diagnosis.forward import Excitation, Forward
-from ves_twin.diagnosis.refusal import refusal
+from ves_twin.diagnosis.experiment.design import DesignSpace
+from ves_twin.diagnosis.model.forward import Excitation, Forward
 from ves_twin.diagnosis.settings import Settings
-from ves_twin.diagnosis.verdict import Verdict
+from ves_twin.diagnosis.verdict.refusal import refusal
+from ves_twin.diagnosis.verdict.verdict import Verdict
 from ves_twin.machines.case import Case
 from ves_twin.machines.drawing import Drawing
 from ves_twin.scenario.experiment_file import ExperimentFile

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from ves_twin.diagnosis.plan import Plan, check_channels, plan_recording
-from ves_twin.diagnosis.runs import Progress, silent
+from ves_twin.diagnosis.experiment.plan import Plan, check_channels, plan_recording
+from ves_twin.diagnosis.record.runs import Progress, silent
 from ves_twin.diagnosis.settings import Settings
 from ves_twin.machines.load import Given, machine_of
 

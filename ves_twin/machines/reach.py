@@ -10,9 +10,9 @@ import numpy as np
 
 from ves_twin.core.errors import VesTwinError
 from ves_twin.core.types import FloatArray
-from ves_twin.diagnosis.envelope import envelope_sd
-from ves_twin.diagnosis.linearise import linearise
-from ves_twin.diagnosis.preprocess import preprocess
+from ves_twin.diagnosis.bank.envelope import envelope_sd
+from ves_twin.diagnosis.bank.linearise import linearise
+from ves_twin.diagnosis.record.preprocess import preprocess
 from ves_twin.machines.diagnose import prepare
 from ves_twin.machines.machine import Machine, Material, Named
 from ves_twin.scenario.experiment_file import ExperimentFile

@@ -11,7 +11,7 @@ import numpy as np
 
 from ves_twin.core.signals import SIGNALS
 from ves_twin.core.types import FloatArray
-from ves_twin.diagnosis.forward import Channel, Excitation, Hypothesis, Parameter
+from ves_twin.diagnosis.model.forward import Channel, Excitation, Hypothesis, Parameter
 from ves_twin.mechanics.gravity.gravity_model import GravityModel
 from ves_twin.mechanics.gravity.observations import to_sensor_matrix
 from ves_twin.plant.plant import Plant

@@ -10,7 +10,7 @@ from ves_twin.core.errors import InvalidInputError, UnknownNameError
 from ves_twin.core.signals import Signal
 from ves_twin.core.toml_file import check_schema, read_toml
 from ves_twin.core.units import to_si
-from ves_twin.diagnosis.residuals.channel import ChannelComparison
+from ves_twin.diagnosis.record.residuals.channel import ChannelComparison
 
 MEASURES = ("rms", "peak", "mean")
 SCHEMA = 1

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from ves_twin.core.recording.recording import Recording
-from ves_twin.diagnosis.runs import Progress, silent
+from ves_twin.diagnosis.record.runs import Progress, silent
 from ves_twin.diagnosis.settings import Settings
 from ves_twin.diagnosis.trend import trend as core
 from ves_twin.diagnosis.trend.calendar import Calendar

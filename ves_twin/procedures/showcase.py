@@ -13,9 +13,9 @@ from pydantic import Field, JsonValue, field_validator, model_validator
 from ves_twin.control.leg_loop import FilterPlace
 from ves_twin.core.cache_folder import cache_folder
 from ves_twin.core.errors import InvalidInputError, UnknownNameError
-from ves_twin.diagnosis.forward import Hypothesis
+from ves_twin.diagnosis.model.forward import Hypothesis
 from ves_twin.diagnosis.settings import Settings
-from ves_twin.diagnosis.verdict import Verdict
+from ves_twin.diagnosis.verdict.verdict import Verdict
 from ves_twin.machines.diagnose import Diagnosis
 from ves_twin.machines.load import machine_of
 from ves_twin.machines.mjcf.machine import Rig

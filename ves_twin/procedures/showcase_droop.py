@@ -14,7 +14,7 @@ from ves_twin.core.types import FloatArray
 from ves_twin.core.whole_file import write_whole
 from ves_twin.diagnosis.diagnose import diagnose
 from ves_twin.diagnosis.settings import Settings
-from ves_twin.diagnosis.verdict import Verdict
+from ves_twin.diagnosis.verdict.verdict import Verdict
 from ves_twin.machines.static_poses import StaticPoses, tilt_name
 from ves_twin.mechanics.gravity.interleaved_split import alternate
 from ves_twin.mechanics.gravity.observations import Observations

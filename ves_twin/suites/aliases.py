@@ -7,12 +7,12 @@ from collections.abc import Sequence
 import numpy as np
 
 from ves_twin.core.types import FloatArray
-from ves_twin.diagnosis.evidence import Evidence
-from ves_twin.diagnosis.refine import refine, residual_about
-from ves_twin.diagnosis.runs import Progress, Runs, silent
-from ves_twin.diagnosis.screen import Candidate, Screen
-from ves_twin.diagnosis.signature_library import SignatureLibrary, build_bank
-from ves_twin.diagnosis.whitening import whitening_declared
+from ves_twin.diagnosis.bank.screen import Candidate, Screen
+from ves_twin.diagnosis.bank.signature_library import SignatureLibrary, build_bank
+from ves_twin.diagnosis.fit.refine import refine, residual_about
+from ves_twin.diagnosis.record.evidence import Evidence
+from ves_twin.diagnosis.record.runs import Progress, Runs, silent
+from ves_twin.diagnosis.record.whitening import whitening_declared
 from ves_twin.suites.draw import DETECTABILITY
 from ves_twin.suites.truth import Truth
 

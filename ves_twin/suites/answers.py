@@ -10,7 +10,7 @@ from typing import TypeVar
 
 from ves_twin.core.errors import FileAccessError, InvalidInputError
 from ves_twin.core.whole_file import write_whole
-from ves_twin.diagnosis.verdict import Verdict
+from ves_twin.diagnosis.verdict.verdict import Verdict
 from ves_twin.suites.old_names import current_excitation, current_label, current_name
 
 T = TypeVar("T")

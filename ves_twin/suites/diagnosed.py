@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from ves_twin.diagnosis.runs import Progress, silent
+from ves_twin.diagnosis.record.runs import Progress, silent
 from ves_twin.diagnosis.settings import Settings
 from ves_twin.machines.diagnose import Diagnosis, diagnose
 from ves_twin.machines.load import open_machine

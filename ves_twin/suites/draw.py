@@ -10,11 +10,11 @@ import numpy as np
 
 from ves_twin.core.errors import InvalidInputError
 from ves_twin.core.types import FloatArray
-from ves_twin.diagnosis.detectability import detectability
-from ves_twin.diagnosis.forward import Hypothesis
-from ves_twin.diagnosis.linearise import Linearisation
-from ves_twin.diagnosis.metric import Metric
-from ves_twin.diagnosis.whitening import Whitening
+from ves_twin.diagnosis.bank.linearise import Linearisation
+from ves_twin.diagnosis.bank.metric import Metric
+from ves_twin.diagnosis.fit.detectability import detectability
+from ves_twin.diagnosis.model.forward import Hypothesis
+from ves_twin.diagnosis.record.whitening import Whitening
 from ves_twin.suites.machine import BlindMachine
 from ves_twin.suites.truth import Hidden, HiddenCause, Truth
 

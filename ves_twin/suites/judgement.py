@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Set
 from enum import StrEnum
 
-from ves_twin.diagnosis.verdict import Kind
+from ves_twin.diagnosis.verdict.verdict import Kind
 from ves_twin.suites.answers import Answer
 
 NAMES = frozenset(kind.value for kind in Kind if kind.names_a_plant)

@@ -9,8 +9,8 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from ves_twin.core.recording.recording import Recording
-from ves_twin.diagnosis.forward import Excitation, Forward
-from ves_twin.diagnosis.grid import RATE
+from ves_twin.diagnosis.model.forward import Excitation, Forward
+from ves_twin.diagnosis.model.grid import RATE
 from ves_twin.suites.hidden_law import HiddenLaw
 from ves_twin.suites.model_error import ModelError
 

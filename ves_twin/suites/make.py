@@ -12,10 +12,10 @@ import numpy as np
 from ves_twin.core.errors import FileAccessError, InvalidInputError
 from ves_twin.core.whole_file import whole_file
 from ves_twin.core.workers import Workers
+from ves_twin.diagnosis.bank.linearise import linearise
 from ves_twin.diagnosis.build_up.discrepancy import discrepancy
-from ves_twin.diagnosis.linearise import linearise
-from ves_twin.diagnosis.preprocess import preprocess
-from ves_twin.diagnosis.whitening import whitening_declared
+from ves_twin.diagnosis.record.preprocess import preprocess
+from ves_twin.diagnosis.record.whitening import whitening_declared
 from ves_twin.suites.aliases import aliases
 from ves_twin.suites.draw import Detectability, draw_truths
 from ves_twin.suites.likes import Likes

@@ -17,7 +17,7 @@ from ves_twin.core.errors import InvalidInputError
 from ves_twin.core.recording.recording import Recording, RecordingInfo
 from ves_twin.core.types import FloatArray
 from ves_twin.core.units import to_si
-from ves_twin.diagnosis.forward import Excitation
+from ves_twin.diagnosis.model.forward import Excitation
 from ves_twin.effects.effect import Effect
 from ves_twin.effects.element import Element
 from ves_twin.effects.joints import Backlash

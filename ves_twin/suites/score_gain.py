@@ -7,9 +7,9 @@ from pathlib import Path
 
 from ves_twin.core.recording.files import load_recording
 from ves_twin.core.recording.recording import Recording
-from ves_twin.diagnosis.metric import Metric
-from ves_twin.diagnosis.preprocess import preprocess
-from ves_twin.diagnosis.whitening import whitening_of
+from ves_twin.diagnosis.bank.metric import Metric
+from ves_twin.diagnosis.record.preprocess import preprocess
+from ves_twin.diagnosis.record.whitening import whitening_of
 from ves_twin.suites.answers import Answer
 from ves_twin.suites.judgement import Judgement, judge
 from ves_twin.suites.machine import BlindMachine

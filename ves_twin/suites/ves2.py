@@ -16,7 +16,7 @@ from ves_twin.core.errors import InvalidInputError
 from ves_twin.core.recording.recording import Recording
 from ves_twin.core.signals import SIGNALS, Role
 from ves_twin.core.types import FloatArray
-from ves_twin.diagnosis.forward import Excitation
+from ves_twin.diagnosis.model.forward import Excitation
 from ves_twin.machines.ves2.forward import RigForward
 from ves_twin.machines.ves2.library import with_departures
 from ves_twin.plant.plant import Plant

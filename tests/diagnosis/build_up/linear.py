@@ -10,8 +10,8 @@ from scipy.signal import lfilter
 
 from ves_twin.core.recording.recording import Recording, RecordingInfo
 from ves_twin.diagnosis.build_up.halves import Halves, halves_at
-from ves_twin.diagnosis.forward import Channel, Excitation, Hypothesis, Parameter
-from ves_twin.diagnosis.preprocess import Dataset, preprocess
+from ves_twin.diagnosis.model.forward import Channel, Excitation, Hypothesis, Parameter
+from ves_twin.diagnosis.record.preprocess import Dataset, preprocess
 
 PERIOD, ROWS = 0.02, 900
 JOINTS = ("a", "b")

@@ -8,15 +8,15 @@ import numpy as np
 import pytest
 from linear import Linear, recorded, seen
 
+from ves_twin.diagnosis.bank.linearise import linearise
 from ves_twin.diagnosis.build_up.bench import STRAINED
 from ves_twin.diagnosis.build_up.converged import _descended, converged
-from ves_twin.diagnosis.evidence import Evidence
-from ves_twin.diagnosis.forward import Excitation
-from ves_twin.diagnosis.forward_wrapper import ForwardWrapper
-from ves_twin.diagnosis.linearise import linearise
-from ves_twin.diagnosis.refine import refine
-from ves_twin.diagnosis.runs import Runs
-from ves_twin.diagnosis.whitening import whitening_declared
+from ves_twin.diagnosis.fit.refine import refine
+from ves_twin.diagnosis.model.forward import Excitation
+from ves_twin.diagnosis.model.forward_wrapper import ForwardWrapper
+from ves_twin.diagnosis.record.evidence import Evidence
+from ves_twin.diagnosis.record.runs import Runs
+from ves_twin.diagnosis.record.whitening import whitening_declared
 from ves_twin.machines.mjcf.forward import MjcfForward
 from ves_twin.machines.mjcf.machine import Rig
 

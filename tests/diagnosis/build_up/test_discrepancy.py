@@ -7,7 +7,7 @@ import pytest
 from toy import Toy, programme
 
 from ves_twin.diagnosis.build_up.discrepancy import discrepancy
-from ves_twin.diagnosis.runs import Runs
+from ves_twin.diagnosis.record.runs import Runs
 
 
 @pytest.fixture(scope="module")

@@ -8,13 +8,13 @@ import numpy as np
 import pytest
 from linear import Linear, recorded, seen
 
+from ves_twin.diagnosis.bank.linearise import linearise
 from ves_twin.diagnosis.build_up.halves import halves_at
 from ves_twin.diagnosis.build_up.idle import idle
 from ves_twin.diagnosis.build_up.proof import prove
-from ves_twin.diagnosis.evidence import Evidence
-from ves_twin.diagnosis.linearise import linearise
-from ves_twin.diagnosis.refine import refine
-from ves_twin.diagnosis.whitening import whitening_declared
+from ves_twin.diagnosis.fit.refine import refine
+from ves_twin.diagnosis.record.evidence import Evidence
+from ves_twin.diagnosis.record.whitening import whitening_declared
 
 HIDDEN = {"viscous@a:size": 1.0, "coulomb@b:size": 0.8}
 

@@ -23,11 +23,11 @@ from ves_twin.diagnosis.build_up.plain_selector import PlainSelector
 from ves_twin.diagnosis.build_up.proof import prove
 from ves_twin.diagnosis.build_up.select import Selector
 from ves_twin.diagnosis.build_up.trials import Library, Trial, columns_of, trials_at
-from ves_twin.diagnosis.evidence import Evidence
-from ves_twin.diagnosis.forward import Excitation
-from ves_twin.diagnosis.preprocess import Dataset
-from ves_twin.diagnosis.runs import Runs, silent
-from ves_twin.diagnosis.whitening import whitening_declared
+from ves_twin.diagnosis.model.forward import Excitation
+from ves_twin.diagnosis.record.evidence import Evidence
+from ves_twin.diagnosis.record.preprocess import Dataset
+from ves_twin.diagnosis.record.runs import Runs, silent
+from ves_twin.diagnosis.record.whitening import whitening_declared
 from ves_twin.machines.mjcf.forward import MjcfForward
 from ves_twin.machines.mjcf.machine import Rig
 

@@ -15,7 +15,7 @@ from ves_twin.diagnosis.build_up.judges import ERRORS, Judges
 from ves_twin.diagnosis.build_up.proof import prove
 from ves_twin.diagnosis.build_up.simpler import simpler
 from ves_twin.diagnosis.build_up.trials import Trial
-from ves_twin.diagnosis.forward import Excitation, Hypothesis, Parameter
+from ves_twin.diagnosis.model.forward import Excitation, Hypothesis, Parameter
 
 
 @dataclass(frozen=True)

@@ -7,8 +7,8 @@ from scipy.stats import norm
 from ves_twin.diagnosis.build_up.converged import converged
 from ves_twin.diagnosis.build_up.discrepancy import discrepancy
 from ves_twin.diagnosis.build_up.sizes import half_widths
-from ves_twin.diagnosis.evidence import Evidence
-from ves_twin.diagnosis.whitening import whitening_declared
+from ves_twin.diagnosis.record.evidence import Evidence
+from ves_twin.diagnosis.record.whitening import whitening_declared
 
 HIDDEN = {"mass": 1.04, "coulomb@a:size": 0.5}
 

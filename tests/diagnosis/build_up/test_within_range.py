@@ -10,7 +10,7 @@ from ves_twin.diagnosis.build_up.halves import halves_at
 from ves_twin.diagnosis.build_up.in_full import in_full
 from ves_twin.diagnosis.build_up.proof import prove
 from ves_twin.diagnosis.build_up.within_range import within_range
-from ves_twin.diagnosis.evidence import Evidence
+from ves_twin.diagnosis.record.evidence import Evidence
 
 
 def told(size: float, kinds=("viscous", "twin")):

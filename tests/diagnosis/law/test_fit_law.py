@@ -13,8 +13,8 @@ from pendulum import FED, MACHINE, SDS, TORQUE, fed
 
 from ves_twin.core.errors import InvalidInputError
 from ves_twin.core.recording.recording import Recording, RecordingInfo
-from ves_twin.diagnosis.evidence import Evidence
-from ves_twin.diagnosis.gain import held_out_gain
+from ves_twin.diagnosis.bank.linearise import linearise
+from ves_twin.diagnosis.fit.refine import Fit, refine
 from ves_twin.diagnosis.law.band import band_of_form
 from ves_twin.diagnosis.law.candidate import Candidate, Closed, Table, matern
 from ves_twin.diagnosis.law.contact import Hold, Play
@@ -32,11 +32,11 @@ from ves_twin.diagnosis.law.propose import Limits, resolved, search_laws
 from ves_twin.diagnosis.law.screen import law_screen, ranges, smooth_candidates
 from ves_twin.diagnosis.law.smoothness import smoothest
 from ves_twin.diagnosis.law.with_law import WithLaw
-from ves_twin.diagnosis.law_forward import LawForward, Variable
-from ves_twin.diagnosis.linearise import linearise
-from ves_twin.diagnosis.preprocess import preprocess
-from ves_twin.diagnosis.refine import Fit, refine
-from ves_twin.diagnosis.whitening import whitening_declared
+from ves_twin.diagnosis.model.law_forward import LawForward, Variable
+from ves_twin.diagnosis.record.evidence import Evidence
+from ves_twin.diagnosis.record.preprocess import preprocess
+from ves_twin.diagnosis.record.whitening import whitening_declared
+from ves_twin.diagnosis.unseen.gain import held_out_gain
 from ves_twin.effects.law import Law, LawKind, LawShape
 from ves_twin.machines.mjcf.forward import MjcfForward
 

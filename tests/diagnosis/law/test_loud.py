@@ -6,12 +6,12 @@ import numpy as np
 import pytest
 from dragged_arm import DRAG, drag, fitted, forward, looked
 
-from ves_twin.diagnosis.evidence import Evidence
 from ves_twin.diagnosis.law.candidate import Table
 from ves_twin.diagnosis.law.closed import closed_forms
 from ves_twin.diagnosis.law.fit_law import fit_law
 from ves_twin.diagnosis.law.loud import LOUD, loud_screen
 from ves_twin.diagnosis.law.screen import ranges
+from ves_twin.diagnosis.record.evidence import Evidence
 
 
 def test_inverse_dynamics_puts_place_and_variable_first_and_knows_the_law():

@@ -11,7 +11,7 @@ from scipy.signal import lfilter
 from sizes import nightly_but
 
 from ves_twin.core.recording.recording import Recording, RecordingInfo
-from ves_twin.diagnosis.forward import Excitation
+from ves_twin.diagnosis.model.forward import Excitation
 from ves_twin.diagnosis.settings import Settings
 from ves_twin.effects.law import LawKind
 from ves_twin.effects.law_table import LawTable

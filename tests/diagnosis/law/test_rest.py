@@ -11,9 +11,9 @@ from arm import arm, motion
 from scipy.signal import lfilter
 
 from ves_twin.core.recording.recording import Recording, RecordingInfo
-from ves_twin.diagnosis.forward import Excitation
+from ves_twin.diagnosis.model.forward import Excitation
 from ves_twin.diagnosis.settings import Settings
-from ves_twin.diagnosis.verdict import Kind
+from ves_twin.diagnosis.verdict.verdict import Kind
 from ves_twin.machines.diagnose import Diagnosis, diagnose
 from ves_twin.machines.mjcf.forward import MjcfForward
 from ves_twin.machines.mjcf.machine import Rig

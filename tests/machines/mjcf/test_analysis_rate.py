@@ -8,9 +8,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from ves_twin.diagnosis.forward import Excitation
-from ves_twin.diagnosis.grid import RATE
-from ves_twin.diagnosis.runs import Runs
+from ves_twin.diagnosis.model.forward import Excitation
+from ves_twin.diagnosis.model.grid import RATE
+from ves_twin.diagnosis.record.runs import Runs
 from ves_twin.machines.mjcf.description import CORNER, RigDescription
 from ves_twin.machines.mjcf.forward import MjcfForward
 from ves_twin.machines.mjcf.machine import Rig

@@ -96,8 +96,8 @@ def test_a_design_refuses_bad_input_in_one_line_and_writes_nothing(
 
 def test_two_delays_are_told_apart_in_half_the_time_of_the_menu(tmp_path, capsys, monkeypatch):
     """The menu's best takes 4 s; the file has the columns of the machine's log."""
-    monkeypatch.setattr("ves_twin.diagnosis.design.SCATTERED", 3)
-    monkeypatch.setattr("ves_twin.diagnosis.design.EACH", 2)
+    monkeypatch.setattr("ves_twin.diagnosis.experiment.design.SCATTERED", 3)
+    monkeypatch.setattr("ves_twin.diagnosis.experiment.design.EACH", 2)
     words = ["plan", "--plant", "pendulum", "--seconds", "2", "--out", str(tmp_path)]
     assert main([*words, "--design", "Actuator delay at drive / sensor delay at joint"]) == 0
     said = capsys.readouterr().out

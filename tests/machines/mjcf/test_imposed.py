@@ -8,7 +8,7 @@ import pytest
 from two_link import TIME, programme, write_files
 
 from ves_twin.core.errors import InvalidInputError, UnknownNameError
-from ves_twin.diagnosis.forward import Excitation
+from ves_twin.diagnosis.model.forward import Excitation
 from ves_twin.machines.mjcf.excitations import offered
 from ves_twin.machines.mjcf.forward import MjcfForward
 from ves_twin.machines.mjcf.machine import Rig

@@ -13,9 +13,9 @@ from pendulum import DAMPING, FED, MACHINE, SDS
 
 from ves_twin.core.errors import InvalidInputError, UnknownNameError
 from ves_twin.core.recording.recording import Recording, RecordingInfo
-from ves_twin.diagnosis.forward import Excitation
+from ves_twin.diagnosis.model.forward import Excitation
 from ves_twin.diagnosis.settings import Settings
-from ves_twin.diagnosis.verdict import Kind
+from ves_twin.diagnosis.verdict.verdict import Kind
 from ves_twin.effects.law import Law, LawKind, LawShape
 from ves_twin.effects.law_table import LawTable
 from ves_twin.machines.diagnose import diagnose

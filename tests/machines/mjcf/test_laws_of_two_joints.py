@@ -10,7 +10,7 @@ from arm import arm, motion
 from numpy.testing import assert_allclose
 
 from ves_twin.core.errors import UnknownNameError, VesTwinError
-from ves_twin.diagnosis.forward import Excitation
+from ves_twin.diagnosis.model.forward import Excitation
 from ves_twin.effects import FrictionBehindGap
 from ves_twin.effects.law import Law, LawKind, LawShape, variable_along
 from ves_twin.machines.mjcf.description import Mode

@@ -9,8 +9,8 @@ import pytest
 
 from ves_twin.core.errors import InvalidInputError
 from ves_twin.core.recording.recording import Recording
-from ves_twin.diagnosis.forward import Excitation
-from ves_twin.diagnosis.preprocess import preprocess
+from ves_twin.diagnosis.model.forward import Excitation
+from ves_twin.diagnosis.record.preprocess import preprocess
 from ves_twin.effects.law import Law, LawKind, LawShape
 from ves_twin.machines.compare import compare
 from ves_twin.machines.mjcf.forward import MjcfForward

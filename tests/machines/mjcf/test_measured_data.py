@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from ves_twin.diagnosis.settings import Settings
-from ves_twin.diagnosis.verdict import Kind
+from ves_twin.diagnosis.verdict.verdict import Kind
 from ves_twin.machines.compare import compare
 from ves_twin.machines.data_folder import find_data
 from ves_twin.machines.diagnose import diagnose

@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 from arm import JOINT, MODEL, TOML, motion
 
-from ves_twin.diagnosis.forward import Excitation
+from ves_twin.diagnosis.model.forward import Excitation
 from ves_twin.effects.law import Law, LawKind, LawShape
 from ves_twin.machines.mjcf.description import Mode
 from ves_twin.machines.mjcf.forward import MjcfForward

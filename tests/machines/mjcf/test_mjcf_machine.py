@@ -15,8 +15,8 @@ from ves_twin.cli.main import main
 from ves_twin.core.errors import InvalidInputError, UnknownNameError
 from ves_twin.core.recording.recording import Recording, RecordingInfo
 from ves_twin.core.units import to_si
-from ves_twin.diagnosis.forward import Excitation
-from ves_twin.diagnosis.residuals.noise import NoiseSource
+from ves_twin.diagnosis.model.forward import Excitation
+from ves_twin.diagnosis.record.residuals.noise import NoiseSource
 from ves_twin.diagnosis.settings import Settings
 from ves_twin.machines.machine import SETPOINTS, Machine, Material, Named
 from ves_twin.machines.mjcf.description import Mode

@@ -11,7 +11,7 @@ from arm import arm, motion
 from numpy.testing import assert_allclose
 
 from ves_twin.core.errors import VesTwinError
-from ves_twin.diagnosis.forward import Excitation
+from ves_twin.diagnosis.model.forward import Excitation
 from ves_twin.effects import BodyMass, MassCentre, Payload
 from ves_twin.machines.mjcf.description import Mode
 from ves_twin.machines.mjcf.extend import write_rig

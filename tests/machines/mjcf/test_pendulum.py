@@ -29,14 +29,14 @@ from rows import EXPECTED, ROWS, row_record
 from sizes import nightly_but
 from written_pendulum import START, Pendulum, edited
 
-from ves_twin.diagnosis.detectability import detectability
+from ves_twin.diagnosis.bank.linearise import linearise
 from ves_twin.diagnosis.diagnose import diagnose
-from ves_twin.diagnosis.forward import Excitation
-from ves_twin.diagnosis.linearise import linearise
-from ves_twin.diagnosis.runs import Runs
+from ves_twin.diagnosis.fit.detectability import detectability
+from ves_twin.diagnosis.model.forward import Excitation
+from ves_twin.diagnosis.record.runs import Runs
+from ves_twin.diagnosis.record.whitening import whitening_declared
 from ves_twin.diagnosis.settings import Settings
-from ves_twin.diagnosis.verdict import Kind
-from ves_twin.diagnosis.whitening import whitening_declared
+from ves_twin.diagnosis.verdict.verdict import Kind
 from ves_twin.suites.machine import BlindRig
 
 WRITTEN = Pendulum.with_command_delay()

@@ -10,8 +10,8 @@ import pytest
 
 from ves_twin.core.errors import InvalidInputError
 from ves_twin.core.recording.recording import Recording, RecordingInfo
-from ves_twin.diagnosis.forward import Excitation
-from ves_twin.diagnosis.preprocess import preprocess
+from ves_twin.diagnosis.model.forward import Excitation
+from ves_twin.diagnosis.record.preprocess import preprocess
 from ves_twin.diagnosis.settings import Settings
 from ves_twin.machines.compare import compare
 from ves_twin.machines.diagnose import diagnose

@@ -13,7 +13,7 @@ from ves_twin.cli.main import main
 from ves_twin.core.errors import VesTwinError
 from ves_twin.core.recording.recording import Recording, RecordingInfo
 from ves_twin.data.import_map import ImportMap
-from ves_twin.diagnosis.forward import Excitation
+from ves_twin.diagnosis.model.forward import Excitation
 from ves_twin.machines.machine import Material, Named
 from ves_twin.machines.mjcf.applied import applied, rig_of
 from ves_twin.machines.mjcf.description import Mode

@@ -15,7 +15,7 @@ from ves_twin.cli.main import main
 from ves_twin.core.errors import InvalidInputError, VesTwinError
 from ves_twin.core.recording.recording import POSES
 from ves_twin.core.resources import resource_folder
-from ves_twin.diagnosis.verdict import Basis, Cause, Estimate, Kind, Statistics, Verdict
+from ves_twin.diagnosis.verdict.verdict import Basis, Cause, Estimate, Kind, Statistics, Verdict
 from ves_twin.machines.data_folder import find_data
 from ves_twin.machines.load import open_machine
 from ves_twin.machines.mjcf.columns import read_rig_recording

@@ -11,7 +11,7 @@ import pytest
 from two_link import TIME, programme, rig, write_files
 
 from ves_twin.core.recording.recording import Recording, RecordingInfo
-from ves_twin.diagnosis.forward import Excitation
+from ves_twin.diagnosis.model.forward import Excitation
 from ves_twin.effects import ActuatorDelay, Backlash, Effect
 from ves_twin.effects.element import Element
 from ves_twin.effects.row import Anywhere

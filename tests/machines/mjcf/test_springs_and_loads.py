@@ -10,7 +10,7 @@ import pytest
 from two_link import TIME, programme, rig
 
 from ves_twin.core.errors import InvalidInputError
-from ves_twin.diagnosis.forward import Excitation
+from ves_twin.diagnosis.model.forward import Excitation
 from ves_twin.effects import JointCompliance
 from ves_twin.effects.element import Element
 from ves_twin.effects.place import Place

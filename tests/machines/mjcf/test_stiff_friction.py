@@ -8,7 +8,7 @@ import pytest
 import two_link
 from two_link import TIME, programme, rig
 
-from ves_twin.diagnosis.forward import Excitation
+from ves_twin.diagnosis.model.forward import Excitation
 from ves_twin.machines.mjcf.description import Mode
 from ves_twin.machines.mjcf.forward import MjcfForward
 

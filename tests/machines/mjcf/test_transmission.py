@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from ves_twin.core.errors import InvalidInputError
-from ves_twin.diagnosis.forward import Excitation
+from ves_twin.diagnosis.model.forward import Excitation
 from ves_twin.machines.mjcf.forward import MjcfForward
 from ves_twin.machines.mjcf.machine import Rig
 from ves_twin.machines.mjcf.transmission import Transmission, arms_of

@@ -7,7 +7,7 @@ from pendulum import BLIND, PLANT, SPRING
 from ves_twin.core.errors import InvalidInputError
 from ves_twin.diagnosis.diagnose import diagnose
 from ves_twin.diagnosis.settings import Settings
-from ves_twin.diagnosis.verdict import Kind
+from ves_twin.diagnosis.verdict.verdict import Kind
 from ves_twin.suites.machine import BlindRig
 
 

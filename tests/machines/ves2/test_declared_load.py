@@ -7,7 +7,7 @@ import pytest
 
 import ves_twin as vt
 from ves_twin.core.errors import InvalidInputError
-from ves_twin.diagnosis.forward import Excitation
+from ves_twin.diagnosis.model.forward import Excitation
 from ves_twin.machines.ves2.declared_load import LOAD, loads_of, with_load
 from ves_twin.machines.ves2.forward import DRIVE, RigForward
 from ves_twin.machines.ves2.inputs import prepare_inputs

@@ -13,17 +13,17 @@ import pytest
 import ves_twin as vt
 from ves_twin.core.recording.recording import Recording
 from ves_twin.core.types import FloatArray
-from ves_twin.diagnosis.forward import Excitation, Hypothesis, Parameter
-from ves_twin.diagnosis.forward_wrapper import ForwardWrapper
+from ves_twin.diagnosis.bank.linearise import linearise
+from ves_twin.diagnosis.fit.refine import bare_residual, refine
 from ves_twin.diagnosis.law.candidate import Candidate
 from ves_twin.diagnosis.law.fit_law import LawFit, fit_law
 from ves_twin.diagnosis.law.lean import LeanEvidence
 from ves_twin.diagnosis.law.propose import Limits, Search, search_laws
-from ves_twin.diagnosis.law_forward import LawForward, LawPlace
-from ves_twin.diagnosis.linearise import linearise
-from ves_twin.diagnosis.preprocess import Dataset, preprocess
-from ves_twin.diagnosis.refine import bare_residual, refine
-from ves_twin.diagnosis.whitening import whitening_declared
+from ves_twin.diagnosis.model.forward import Excitation, Hypothesis, Parameter
+from ves_twin.diagnosis.model.forward_wrapper import ForwardWrapper
+from ves_twin.diagnosis.model.law_forward import LawForward, LawPlace
+from ves_twin.diagnosis.record.preprocess import Dataset, preprocess
+from ves_twin.diagnosis.record.whitening import whitening_declared
 from ves_twin.effects.law import Law, LawKind, LawShape
 from ves_twin.effects.law_table import LawTable
 from ves_twin.machines.machine import Named

@@ -15,7 +15,7 @@ from scipy.signal import lfilter
 
 from ves_twin.core.recording.recording import Recording
 from ves_twin.diagnosis.diagnose import diagnose
-from ves_twin.diagnosis.search import Search
+from ves_twin.diagnosis.fit.search import Search
 from ves_twin.diagnosis.settings import Settings
 from ves_twin.suites.answers import Answer
 from ves_twin.suites.machine import BlindRig
@@ -126,8 +126,8 @@ def test_without_whitening_noise_with_a_memory_is_called_a_fault(
     monkeypatch, tmp_path, still, cases
 ):
     """Samples are then taken as independent: the slow part of the noise is counted many times."""
-    monkeypatch.setattr("ves_twin.diagnosis.whitening.prediction_filters", unfiltered)
-    monkeypatch.setattr("ves_twin.diagnosis.whitening.COLOURS", np.zeros(1))
+    monkeypatch.setattr("ves_twin.diagnosis.record.whitening.prediction_filters", unfiltered)
+    monkeypatch.setattr("ves_twin.diagnosis.record.whitening.COLOURS", np.zeros(1))
     settings, count = Settings(nulls=40, cache=tmp_path), cases(3)
     assert score(SLOW_NONE[:count], settings, standstill=still)[QUIET] == (0, count)
 
@@ -147,9 +147,9 @@ def test_without_refinement_nobody_is_named(monkeypatch, settings, cases):
 @pytest.mark.slow
 def test_without_adequacy_what_the_library_lacks_gets_a_name_of_it(monkeypatch, settings, cases):
     """The best of eight wrong causes is named, since nobody asks whether it leaves noise."""
-    monkeypatch.setattr("ves_twin.diagnosis.judge.misfit", lambda *a: 0.0)
-    monkeypatch.setattr("ves_twin.diagnosis.judge._second", lambda *a: 0.0)
-    monkeypatch.setattr("ves_twin.diagnosis.judge.pull_limit", lambda *a: np.inf)
+    monkeypatch.setattr("ves_twin.diagnosis.explain.judge.misfit", lambda *a: 0.0)
+    monkeypatch.setattr("ves_twin.diagnosis.explain.judge._second", lambda *a: 0.0)
+    monkeypatch.setattr("ves_twin.diagnosis.explain.judge.pull_limit", lambda *a: np.inf)
     count = cases(3)
     hits, of = score(LACKING[:count], settings)[ABSTAINS]
     assert of == count

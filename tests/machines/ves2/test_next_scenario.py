@@ -7,7 +7,7 @@ import ves_twin as vt
 from ves_twin.cli.main import main
 from ves_twin.core.errors import FileAccessError, VesTwinError
 from ves_twin.core.recording.files import load_recording, save_recording
-from ves_twin.diagnosis.forward import Excitation
+from ves_twin.diagnosis.model.forward import Excitation
 from ves_twin.machines.ves2.forward import DRIVE
 from ves_twin.machines.ves2.next_scenario import SCENARIO, SETPOINTS, write_next_experiment
 from ves_twin.scenario.setpoint_file import read_setpoints

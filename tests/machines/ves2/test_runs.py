@@ -5,7 +5,7 @@ import pytest
 
 import ves_twin as vt
 from ves_twin.core.recording.recording import Recording, RecordingInfo
-from ves_twin.diagnosis.forward import Excitation
+from ves_twin.diagnosis.model.forward import Excitation
 from ves_twin.machines.ves2 import forward as ves2_forward
 from ves_twin.machines.ves2.forward import COMPARED, DRIVE, WRENCH, RigForward
 from ves_twin.machines.ves2.library import with_departures

@@ -3,7 +3,7 @@
 import numpy as np
 
 import ves_twin as vt
-from ves_twin.diagnosis.forward import Excitation
+from ves_twin.diagnosis.model.forward import Excitation
 from ves_twin.machines.ves2.forward import RigForward
 from ves_twin.simulator.replay import replay_scenario
 

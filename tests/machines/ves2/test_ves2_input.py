@@ -8,9 +8,9 @@ import pytest
 import ves_twin as vt
 from ves_twin.core.errors import InvalidInputError, UnknownNameError, VesTwinError
 from ves_twin.core.recording.recording import Recording
-from ves_twin.diagnosis.forward import Excitation
-from ves_twin.diagnosis.likeness import check_likeness
-from ves_twin.diagnosis.preprocess import preprocess
+from ves_twin.diagnosis.model.forward import Excitation
+from ves_twin.diagnosis.record.likeness import check_likeness
+from ves_twin.diagnosis.record.preprocess import preprocess
 from ves_twin.machines.ves2.forward import DRIVE, RigForward
 from ves_twin.machines.ves2.inputs import prepare_inputs
 from ves_twin.simulator.replay import replay_scenario

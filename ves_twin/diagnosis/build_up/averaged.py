@@ -10,10 +10,10 @@ import numpy as np
 from scipy.linalg import cho_factor, cho_solve, solve_triangular
 
 from ves_twin.core.types import BoolArray, FloatArray, IntArray
+from ves_twin.diagnosis.bank.inner import inner
 from ves_twin.diagnosis.build_up.memory import independent_rows
 from ves_twin.diagnosis.build_up.regression import BEYOND, Regression
-from ves_twin.diagnosis.inner import inner
-from ves_twin.diagnosis.whitening import Whitening
+from ves_twin.diagnosis.record.whitening import Whitening
 
 STEPS = 4_000
 """Of the chain: 1 500, 4 000 and 10 000 hold the same share of sizes within 1 % (same cases)."""

@@ -9,11 +9,11 @@ from functools import cached_property
 import numpy as np
 
 from ves_twin.core.types import BoolArray, FloatArray, IntArray
+from ves_twin.diagnosis.bank.metric import Metric
 from ves_twin.diagnosis.build_up.discrepancy import apart, carried
 from ves_twin.diagnosis.build_up.paired import Difference, paired
 from ves_twin.diagnosis.build_up.regression import Half, LinearFit, Regression
-from ves_twin.diagnosis.metric import Metric
-from ves_twin.diagnosis.whitening import Whitening
+from ves_twin.diagnosis.record.whitening import Whitening
 
 STRAINED = 5.0
 """Sd beyond which a tolerance is not taken to do a cause's work, unless it is that far off beside

@@ -9,7 +9,6 @@ import numpy as np
 from scipy.stats import norm
 
 from ves_twin.core.types import FloatArray
-from ves_twin.diagnosis.adequacy import cells, misfit
 from ves_twin.diagnosis.build_up.averaged import averaged_half_widths
 from ves_twin.diagnosis.build_up.builder import Builder, Start
 from ves_twin.diagnosis.build_up.halves import Halves, carried_point
@@ -26,14 +25,15 @@ from ves_twin.diagnosis.build_up.simpler import simpler
 from ves_twin.diagnosis.build_up.sizes import half_widths
 from ves_twin.diagnosis.build_up.weighed import weighed
 from ves_twin.diagnosis.build_up.within_range import within_range
-from ves_twin.diagnosis.evidence import Evidence
-from ves_twin.diagnosis.explanation import Explanation
-from ves_twin.diagnosis.fit_context import FitContext
-from ves_twin.diagnosis.preprocess import Dataset
-from ves_twin.diagnosis.refine import Fit, bare_residual
-from ves_twin.diagnosis.runs import Runs
-from ves_twin.diagnosis.search import Search
-from ves_twin.diagnosis.whitening import Whitening
+from ves_twin.diagnosis.fit.explanation import Explanation
+from ves_twin.diagnosis.fit.fit_context import FitContext
+from ves_twin.diagnosis.fit.refine import Fit, bare_residual
+from ves_twin.diagnosis.fit.search import Search
+from ves_twin.diagnosis.record.adequacy import cells, misfit
+from ves_twin.diagnosis.record.evidence import Evidence
+from ves_twin.diagnosis.record.preprocess import Dataset
+from ves_twin.diagnosis.record.runs import Runs
+from ves_twin.diagnosis.record.whitening import Whitening
 
 
 @dataclass(frozen=True)

@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ves_twin.core.types import FloatArray
+from ves_twin.diagnosis.bank.rungs import FEWER
 from ves_twin.diagnosis.build_up.best_proved import best_proved, most_promising
 from ves_twin.diagnosis.build_up.discrepancy import discrepancy, usual_shrinkage
 from ves_twin.diagnosis.build_up.halves import Halves, halves_at
@@ -18,12 +19,11 @@ from ves_twin.diagnosis.build_up.plain_selector import PlainSelector
 from ves_twin.diagnosis.build_up.select import Selector
 from ves_twin.diagnosis.build_up.trials import Library, Trial
 from ves_twin.diagnosis.build_up.weighed import weighed
-from ves_twin.diagnosis.evidence import Evidence
-from ves_twin.diagnosis.fit_context import FitContext
-from ves_twin.diagnosis.preprocess import Dataset
-from ves_twin.diagnosis.refine import Fit, bare_residual
-from ves_twin.diagnosis.rungs import FEWER
-from ves_twin.diagnosis.runs import Progress
+from ves_twin.diagnosis.fit.fit_context import FitContext
+from ves_twin.diagnosis.fit.refine import Fit, bare_residual
+from ves_twin.diagnosis.record.evidence import Evidence
+from ves_twin.diagnosis.record.preprocess import Dataset
+from ves_twin.diagnosis.record.runs import Progress
 
 Way = type[Selector] | type[PlainSelector]
 

@@ -7,12 +7,12 @@ from scipy.linalg import cho_factor, cho_solve
 from scipy.optimize import OptimizeResult, least_squares
 
 from ves_twin.core.types import FloatArray, SingleArray
+from ves_twin.diagnosis.bank.inner import inner
+from ves_twin.diagnosis.bank.linearise import linearise
 from ves_twin.diagnosis.build_up.bench import STRAINED
-from ves_twin.diagnosis.evidence import Evidence
-from ves_twin.diagnosis.forward import Hypothesis
-from ves_twin.diagnosis.inner import inner
-from ves_twin.diagnosis.linearise import linearise
-from ves_twin.diagnosis.refine import WORTH, Fit, refine
+from ves_twin.diagnosis.fit.refine import WORTH, Fit, refine
+from ves_twin.diagnosis.model.forward import Hypothesis
+from ves_twin.diagnosis.record.evidence import Evidence
 
 AGAIN = 5
 """Times that all columns are computed anew: a resonance with a cubic spring settles in four."""

@@ -7,8 +7,8 @@ from dataclasses import replace
 import numpy as np
 
 from ves_twin.core.types import FloatArray
-from ves_twin.diagnosis.runs import Runs
-from ves_twin.diagnosis.whitening import ORDER, Whitening, prediction_filters
+from ves_twin.diagnosis.record.runs import Runs
+from ves_twin.diagnosis.record.whitening import ORDER, Whitening, prediction_filters
 
 SHRINKAGE = 0.1
 """Usual share of the innovations' covariance that is taken without its correlations between

@@ -8,13 +8,13 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ves_twin.core.types import FloatArray, SingleArray
+from ves_twin.diagnosis.bank.linearise import Linearisation, linearise
 from ves_twin.diagnosis.build_up.regression import Half, Regression
 from ves_twin.diagnosis.build_up.trial_columns import TrialColumns
 from ves_twin.diagnosis.build_up.trials import Library, Trial, trials_at
-from ves_twin.diagnosis.forward import Hypothesis
-from ves_twin.diagnosis.linearise import Linearisation, linearise
-from ves_twin.diagnosis.preprocess import Dataset
-from ves_twin.diagnosis.runs import Progress, Runs, silent
+from ves_twin.diagnosis.model.forward import Hypothesis
+from ves_twin.diagnosis.record.preprocess import Dataset
+from ves_twin.diagnosis.record.runs import Progress, Runs, silent
 
 STRETCHES = 10
 """Stretches that a record is cut into where nothing else is held out, every second one for proof:

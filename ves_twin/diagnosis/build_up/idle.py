@@ -7,9 +7,9 @@ import numpy as np
 from ves_twin.core.types import FloatArray
 from ves_twin.diagnosis.build_up.halves import carried_point
 from ves_twin.diagnosis.build_up.proof import Proof
-from ves_twin.diagnosis.preprocess import Dataset
-from ves_twin.diagnosis.refine import Fit
-from ves_twin.diagnosis.runs import Runs
+from ves_twin.diagnosis.fit.refine import Fit
+from ves_twin.diagnosis.record.preprocess import Dataset
+from ves_twin.diagnosis.record.runs import Runs
 
 EARNS = 0.01
 """Share of what is left of held-out squares, channels where it acts, that a cause must take away:

@@ -10,9 +10,9 @@ from ves_twin.core.types import FloatArray
 from ves_twin.diagnosis.build_up.bench import STRAINED
 from ves_twin.diagnosis.build_up.converged import converged
 from ves_twin.diagnosis.build_up.regression import Regression
-from ves_twin.diagnosis.evidence import Evidence
-from ves_twin.diagnosis.forward import Hypothesis
-from ves_twin.diagnosis.refine import Fit, refine
+from ves_twin.diagnosis.fit.refine import Fit, refine
+from ves_twin.diagnosis.model.forward import Hypothesis
+from ves_twin.diagnosis.record.evidence import Evidence
 
 
 def in_full(

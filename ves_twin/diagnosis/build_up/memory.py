@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from ves_twin.core.types import FloatArray
-from ves_twin.diagnosis.runs import Runs
+from ves_twin.diagnosis.record.runs import Runs
 
 GONE = 0.05
 """Autocorrelation at which memory counts as gone."""

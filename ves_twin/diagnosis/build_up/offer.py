@@ -12,7 +12,7 @@ from ves_twin.diagnosis.build_up.halves import Halves, carried_point
 from ves_twin.diagnosis.build_up.memory import independent_rows
 from ves_twin.diagnosis.build_up.proof import NULL_FROM, Proof
 from ves_twin.diagnosis.build_up.regression import Half
-from ves_twin.diagnosis.refine import Fit
+from ves_twin.diagnosis.fit.refine import Fit
 
 FAILED = 1e30
 """Rms that stands for a simulation that broke off: worse than any that did not."""

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ves_twin.core.types import FloatArray, IntArray
-from ves_twin.diagnosis.whitening import Whitening
+from ves_twin.diagnosis.record.whitening import Whitening
 
 
 @dataclass(frozen=True)

@@ -10,14 +10,14 @@ from itertools import pairwise
 import numpy as np
 
 from ves_twin.core.types import BoolArray, FloatArray, IntArray, SingleArray
+from ves_twin.diagnosis.bank.inner import inner
 from ves_twin.diagnosis.build_up.discrepancy import discrepancy, usual_shrinkage
 from ves_twin.diagnosis.build_up.eliminated import Eliminated
 from ves_twin.diagnosis.build_up.products import Products
 from ves_twin.diagnosis.build_up.trial_columns import TrialColumns
 from ves_twin.diagnosis.build_up.trials import Trial
-from ves_twin.diagnosis.inner import inner
-from ves_twin.diagnosis.runs import Runs
-from ves_twin.diagnosis.whitening import Whitening
+from ves_twin.diagnosis.record.runs import Runs
+from ves_twin.diagnosis.record.whitening import Whitening
 
 WIDE = 5.0
 """Prior sd of a cause's contribution, in rms of everything that is to be explained: wide enough to

@@ -10,7 +10,7 @@ from ves_twin.diagnosis.build_up.paired import loss
 from ves_twin.diagnosis.build_up.plain_selector import USUAL
 from ves_twin.diagnosis.build_up.proof import Proof
 from ves_twin.diagnosis.build_up.stand_ins import SIGNIFICANT
-from ves_twin.diagnosis.forward import Hypothesis
+from ves_twin.diagnosis.model.forward import Hypothesis
 
 INEFFECTIVE = 0.1
 """Share of a cause's held-out improvement up to which further numbers are worth none."""

@@ -6,9 +6,9 @@ import numpy as np
 from scipy.stats import t as student
 
 from ves_twin.core.types import FloatArray
-from ves_twin.diagnosis.evidence import Evidence
-from ves_twin.diagnosis.inner import inner
-from ves_twin.diagnosis.refine import Fit, bare_residual
+from ves_twin.diagnosis.bank.inner import inner
+from ves_twin.diagnosis.fit.refine import Fit, bare_residual
+from ves_twin.diagnosis.record.evidence import Evidence
 
 BLOCKS = 8
 """Stretches of time whose scores are taken as independent. 4 to 40 were tried on 17 cases of the

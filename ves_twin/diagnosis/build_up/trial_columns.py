@@ -9,7 +9,7 @@ import numpy as np
 
 from ves_twin.core.types import FloatArray, SingleArray
 from ves_twin.diagnosis.build_up.trials import Trial, columns_of
-from ves_twin.diagnosis.runs import Progress, Runs, silent
+from ves_twin.diagnosis.record.runs import Progress, Runs, silent
 
 
 @dataclass(frozen=True)

@@ -8,9 +8,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from ves_twin.core.types import FloatArray, SingleArray
-from ves_twin.diagnosis.forward import Hypothesis
-from ves_twin.diagnosis.rungs import rungs
-from ves_twin.diagnosis.runs import Progress, Runs, silent
+from ves_twin.diagnosis.bank.rungs import rungs
+from ves_twin.diagnosis.model.forward import Hypothesis
+from ves_twin.diagnosis.record.runs import Progress, Runs, silent
 
 STRAIGHT = 0.01
 """Relative change of a column between two sizes up to which a cause counts as linear: a tenth of

@@ -11,8 +11,8 @@ from ves_twin.diagnosis.build_up.exchanged import exchanged
 from ves_twin.diagnosis.build_up.in_full import in_full
 from ves_twin.diagnosis.build_up.proof import Proof
 from ves_twin.diagnosis.build_up.stand_ins import stand_ins
-from ves_twin.diagnosis.evidence import Evidence
-from ves_twin.diagnosis.refine import Fit
+from ves_twin.diagnosis.fit.refine import Fit
+from ves_twin.diagnosis.record.evidence import Evidence
 
 NEAR = 0.01
 """Share of its range from an end within which a size is at that end: bounds hold it there."""

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from ves_twin.diagnosis.evidence import Evidence
-from ves_twin.diagnosis.refine import Fit, bare_residual
+from ves_twin.diagnosis.fit.refine import Fit, bare_residual
+from ves_twin.diagnosis.record.evidence import Evidence
 
 
 def adapted(evidence: Evidence, fit: Fit) -> Evidence:

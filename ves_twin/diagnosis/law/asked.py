@@ -10,10 +10,10 @@ from scipy.optimize import lsq_linear
 
 from ves_twin.core.types import FloatArray
 from ves_twin.diagnosis.build_up.halves import carried_point
-from ves_twin.diagnosis.by_motion import along_motion, by_motion, missing_at
 from ves_twin.diagnosis.law.fit_law import LawFit
-from ves_twin.diagnosis.law_forward import LawForward
-from ves_twin.diagnosis.preprocess import Dataset
+from ves_twin.diagnosis.model.law_forward import LawForward
+from ves_twin.diagnosis.record.by_motion import along_motion, by_motion, missing_at
+from ves_twin.diagnosis.record.preprocess import Dataset
 from ves_twin.effects.law import Law, LawKind, LawShape, joints_of, variable_along
 
 FAR = 3.0

@@ -7,11 +7,11 @@ from scipy.linalg import block_diag
 from scipy.stats import norm
 
 from ves_twin.core.types import FloatArray
-from ves_twin.diagnosis.evidence import Evidence
 from ves_twin.diagnosis.law.candidate import Candidate, Closed, Table
 from ves_twin.diagnosis.law.fit_law import LawFit
 from ves_twin.diagnosis.law.screen import columns_about, knots
 from ves_twin.diagnosis.law.smoothness import best_of, projected
+from ves_twin.diagnosis.record.evidence import Evidence
 
 
 def band_of_form(

@@ -6,10 +6,10 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 from ves_twin.core.types import FloatArray
-from ves_twin.diagnosis.forward import Excitation, Parameter
-from ves_twin.diagnosis.forward_wrapper import ForwardWrapper
-from ves_twin.diagnosis.law_forward import LawForward, LawPlace
-from ves_twin.diagnosis.refine import Fit
+from ves_twin.diagnosis.fit.refine import Fit
+from ves_twin.diagnosis.model.forward import Excitation, Parameter
+from ves_twin.diagnosis.model.forward_wrapper import ForwardWrapper
+from ves_twin.diagnosis.model.law_forward import LawForward, LawPlace
 from ves_twin.effects.law import Law
 
 

@@ -10,9 +10,9 @@ from functools import cached_property
 import numpy as np
 
 from ves_twin.core.types import FloatArray
-from ves_twin.diagnosis.forward import Hypothesis, Parameter
 from ves_twin.diagnosis.law.forms import SHARP, TONE, Form
-from ves_twin.diagnosis.law_forward import STEP, LawPlace, Variable
+from ves_twin.diagnosis.model.forward import Hypothesis, Parameter
+from ves_twin.diagnosis.model.law_forward import STEP, LawPlace, Variable
 from ves_twin.effects.law import Law, LawShape
 
 REACH = 1e9

@@ -8,14 +8,14 @@ from dataclasses import replace
 import numpy as np
 
 from ves_twin.core.types import FloatArray
-from ves_twin.diagnosis.evidence import Evidence
 from ves_twin.diagnosis.law.candidate import Candidate, Closed, Table
 from ves_twin.diagnosis.law.fit_law import LawFit, fit_law
 from ves_twin.diagnosis.law.forms import FORMS
 from ves_twin.diagnosis.law.screen import columns_about
 from ves_twin.diagnosis.law.sizes import Sizes
 from ves_twin.diagnosis.law.smoothness import projected
-from ves_twin.diagnosis.runs import Progress, silent
+from ves_twin.diagnosis.record.evidence import Evidence
+from ves_twin.diagnosis.record.runs import Progress, silent
 
 COST = 7.0
 """Chi^2 that a number must take away to be worth it, before the full fit weighs it in nats."""

@@ -7,23 +7,23 @@ from time import perf_counter
 
 from ves_twin.core.recording.recording import Recording
 from ves_twin.core.types import FloatArray
-from ves_twin.diagnosis.assess import Assessment
 from ves_twin.diagnosis.build_up.build_up import Built
-from ves_twin.diagnosis.evidence import Evidence
-from ves_twin.diagnosis.explanation import Explanation
-from ves_twin.diagnosis.gain import Gain
-from ves_twin.diagnosis.held_out import HeldOut
+from ves_twin.diagnosis.fit.assess import Assessment
+from ves_twin.diagnosis.fit.explanation import Explanation
+from ves_twin.diagnosis.fit.refine import Fit
 from ves_twin.diagnosis.law.finding import law_finding
 from ves_twin.diagnosis.law.lean import LeanEvidence
 from ves_twin.diagnosis.law.propose import Limits, Search, search_laws
 from ves_twin.diagnosis.law.rest import search_rest
 from ves_twin.diagnosis.law.result import LAW, LawFinding
 from ves_twin.diagnosis.law.screen import runs_of
-from ves_twin.diagnosis.law_forward import LawForward
-from ves_twin.diagnosis.refine import Fit
-from ves_twin.diagnosis.runs import Progress, Runs
+from ves_twin.diagnosis.model.law_forward import LawForward
+from ves_twin.diagnosis.record.evidence import Evidence
+from ves_twin.diagnosis.record.runs import Progress, Runs
+from ves_twin.diagnosis.record.whitening import whitening_of
 from ves_twin.diagnosis.settings import Settings
-from ves_twin.diagnosis.whitening import whitening_of
+from ves_twin.diagnosis.unseen.gain import Gain
+from ves_twin.diagnosis.unseen.held_out import HeldOut
 
 LONGEST = 300.0
 """Time [s] that a search nobody asked for may take."""

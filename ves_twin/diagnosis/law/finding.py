@@ -8,8 +8,7 @@ import numpy as np
 from scipy.stats import norm
 
 from ves_twin.core.types import FloatArray
-from ves_twin.diagnosis.gain import Gain
-from ves_twin.diagnosis.held_out import HeldOut
+from ves_twin.diagnosis.fit.refine import refine
 from ves_twin.diagnosis.law.asked import HALF, Asked, asked_of_motion
 from ves_twin.diagnosis.law.band import band_of_form
 from ves_twin.diagnosis.law.candidate import Closed, Table
@@ -18,9 +17,10 @@ from ves_twin.diagnosis.law.propose import Search
 from ves_twin.diagnosis.law.result import LawFinding, LawNumber, LawRival
 from ves_twin.diagnosis.law.screen import columns_about, values_of
 from ves_twin.diagnosis.law.smoothness import best_of, projected
-from ves_twin.diagnosis.law_forward import LawForward, Variable
-from ves_twin.diagnosis.refine import refine
-from ves_twin.diagnosis.runs import Progress, silent
+from ves_twin.diagnosis.model.law_forward import LawForward, Variable
+from ves_twin.diagnosis.record.runs import Progress, silent
+from ves_twin.diagnosis.unseen.gain import Gain
+from ves_twin.diagnosis.unseen.held_out import HeldOut
 from ves_twin.effects.law import Law, LawShape, variable_along
 
 SOURCE = "ves-twin diagnose"

@@ -9,14 +9,14 @@ import numpy as np
 from scipy.linalg import cho_factor, cho_solve
 
 from ves_twin.core.types import FloatArray, IntArray, SingleArray
-from ves_twin.diagnosis.evidence import Evidence
+from ves_twin.diagnosis.bank.linearise import STEP_SD, Linearisation
+from ves_twin.diagnosis.fit.refine import Fit
 from ves_twin.diagnosis.law.candidate import Candidate
 from ves_twin.diagnosis.law.lean import LeanEvidence
 from ves_twin.diagnosis.law.smoothness import Smoothness, smoothest
 from ves_twin.diagnosis.law.with_law import WithLaw
-from ves_twin.diagnosis.linearise import STEP_SD, Linearisation
-from ves_twin.diagnosis.refine import Fit
-from ves_twin.diagnosis.runs import Runs
+from ves_twin.diagnosis.record.evidence import Evidence
+from ves_twin.diagnosis.record.runs import Runs
 
 ROUNDS = 8
 """Linearisations at most."""

@@ -7,10 +7,10 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from ves_twin.core.types import FloatArray, SingleArray
-from ves_twin.diagnosis.evidence import Evidence
 from ves_twin.diagnosis.law.candidate import Candidate, Closed, Table
 from ves_twin.diagnosis.law.forms import TONE
 from ves_twin.diagnosis.law.sizes import Sizes
+from ves_twin.diagnosis.record.evidence import Evidence
 
 
 class Hats:

@@ -8,14 +8,14 @@ from dataclasses import dataclass
 import numpy as np
 
 from ves_twin.core.types import FloatArray, SingleArray
-from ves_twin.diagnosis.by_motion import along_motion, by_motion, missing_at, motions
-from ves_twin.diagnosis.evidence import Evidence
 from ves_twin.diagnosis.law.candidate import Candidate, Table
 from ves_twin.diagnosis.law.fit_law import LawFit
 from ves_twin.diagnosis.law.screen import smooth_candidates
 from ves_twin.diagnosis.law.smoothness import Smoothness, best_of, projected
-from ves_twin.diagnosis.law_forward import LawPlace
-from ves_twin.diagnosis.preprocess import Dataset
+from ves_twin.diagnosis.model.law_forward import LawPlace
+from ves_twin.diagnosis.record.by_motion import along_motion, by_motion, missing_at, motions
+from ves_twin.diagnosis.record.evidence import Evidence
+from ves_twin.diagnosis.record.preprocess import Dataset
 from ves_twin.effects.law import LawKind, joints_of, variable_along
 
 LOUD = 1e4

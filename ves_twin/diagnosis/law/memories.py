@@ -9,15 +9,15 @@ from itertools import product
 import numpy as np
 
 from ves_twin.core.types import FloatArray
-from ves_twin.diagnosis.evidence import Evidence
+from ves_twin.diagnosis.bank.metric import Metric
 from ves_twin.diagnosis.law.candidate import Candidate
 from ves_twin.diagnosis.law.contact import Hold, Play, Stop
 from ves_twin.diagnosis.law.fit_law import LawFit, fit_law
 from ves_twin.diagnosis.law.lean import LeanEvidence
 from ves_twin.diagnosis.law.with_law import WithLaw
-from ves_twin.diagnosis.law_forward import LawPlace
-from ves_twin.diagnosis.metric import Metric
-from ves_twin.diagnosis.runs import Progress, silent
+from ves_twin.diagnosis.model.law_forward import LawPlace
+from ves_twin.diagnosis.record.evidence import Evidence
+from ves_twin.diagnosis.record.runs import Progress, silent
 from ves_twin.effects.law import LawKind, joints_of
 
 HELD = range(2, 15)

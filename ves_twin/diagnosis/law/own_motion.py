@@ -14,15 +14,15 @@ from ves_twin.diagnosis.build_up.paired import paired
 from ves_twin.diagnosis.build_up.proof import FALSE_SHARE
 from ves_twin.diagnosis.build_up.report import SHAKEN
 from ves_twin.diagnosis.build_up.result import BuildUp, Proved
-from ves_twin.diagnosis.forward import Hypothesis
+from ves_twin.diagnosis.fit.refine import Fit
 from ves_twin.diagnosis.law.candidate import Table
 from ves_twin.diagnosis.law.screen import COARSE, knots, values_of
 from ves_twin.diagnosis.law.smoothness import best_of, projected
 from ves_twin.diagnosis.law.with_law import WithLaw
-from ves_twin.diagnosis.law_forward import LawForward, LawPlace
-from ves_twin.diagnosis.preprocess import Dataset
-from ves_twin.diagnosis.refine import Fit
-from ves_twin.diagnosis.runs import Progress, Runs, silent
+from ves_twin.diagnosis.model.forward import Hypothesis
+from ves_twin.diagnosis.model.law_forward import LawForward, LawPlace
+from ves_twin.diagnosis.record.preprocess import Dataset
+from ves_twin.diagnosis.record.runs import Progress, Runs, silent
 from ves_twin.effects.law import LawKind, joints_of, variable_along
 
 PART = 0.1

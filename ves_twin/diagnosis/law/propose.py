@@ -7,8 +7,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ves_twin.diagnosis.adequacy import cells, misfit
-from ves_twin.diagnosis.evidence import Evidence
+from ves_twin.diagnosis.fit.refine import Fit
 from ves_twin.diagnosis.law.adapted import adapted
 from ves_twin.diagnosis.law.candidate import Candidate, Mesh, Table
 from ves_twin.diagnosis.law.closed import closed_forms
@@ -25,9 +24,10 @@ from ves_twin.diagnosis.law.screen import (
     smooth_candidates,
 )
 from ves_twin.diagnosis.law.tones import tone_laws
-from ves_twin.diagnosis.law_forward import LawForward, LawPlace
-from ves_twin.diagnosis.refine import Fit
-from ves_twin.diagnosis.runs import Progress, silent
+from ves_twin.diagnosis.model.law_forward import LawForward, LawPlace
+from ves_twin.diagnosis.record.adequacy import cells, misfit
+from ves_twin.diagnosis.record.evidence import Evidence
+from ves_twin.diagnosis.record.runs import Progress, silent
 from ves_twin.effects.law import LawKind
 
 LEADERS = 4

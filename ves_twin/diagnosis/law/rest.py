@@ -8,8 +8,9 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ves_twin.core.types import FloatArray
+from ves_twin.diagnosis.bank.linearise import FORWARD_STEP, linearise
 from ves_twin.diagnosis.build_up.discrepancy import discrepancy
-from ves_twin.diagnosis.evidence import Evidence
+from ves_twin.diagnosis.fit.refine import Fit, bare_residual
 from ves_twin.diagnosis.law.beside import Beside
 from ves_twin.diagnosis.law.candidate import Table
 from ves_twin.diagnosis.law.closed import closed_forms
@@ -17,12 +18,11 @@ from ves_twin.diagnosis.law.fit_law import LawFit, fit_law
 from ves_twin.diagnosis.law.propose import CLAIM, LEADERS, WORTH, Limits, Search
 from ves_twin.diagnosis.law.rest_screen import rest_screen
 from ves_twin.diagnosis.law.screen import ranges, smooth_candidates
-from ves_twin.diagnosis.law_forward import LawForward
-from ves_twin.diagnosis.linearise import FORWARD_STEP, linearise
-from ves_twin.diagnosis.preprocess import Dataset
-from ves_twin.diagnosis.refine import Fit, bare_residual
-from ves_twin.diagnosis.runs import Progress, Runs, silent
-from ves_twin.diagnosis.whitening import Whitening
+from ves_twin.diagnosis.model.law_forward import LawForward
+from ves_twin.diagnosis.record.evidence import Evidence
+from ves_twin.diagnosis.record.preprocess import Dataset
+from ves_twin.diagnosis.record.runs import Progress, Runs, silent
+from ves_twin.diagnosis.record.whitening import Whitening
 
 EQUAL = 3.0
 """Nats within which a law with fewer numbers is as good: odds below 20."""

@@ -7,12 +7,12 @@ from collections.abc import Sequence
 import numpy as np
 
 from ves_twin.core.types import FloatArray
-from ves_twin.diagnosis.evidence import Evidence
 from ves_twin.diagnosis.law.candidate import Table
 from ves_twin.diagnosis.law.fit_law import LawFit
 from ves_twin.diagnosis.law.screen import columns_about
 from ves_twin.diagnosis.law.smoothness import best_of, projected
-from ves_twin.diagnosis.runs import Progress, silent
+from ves_twin.diagnosis.record.evidence import Evidence
+from ves_twin.diagnosis.record.runs import Progress, silent
 from ves_twin.effects.law import WITHIN
 
 ROUNDS = 3

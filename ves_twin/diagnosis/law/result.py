@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from ves_twin.diagnosis.gain import Gain
+from ves_twin.diagnosis.unseen.gain import Gain
 from ves_twin.effects.law import WITHIN, joints_of
 
 LAW = "a law"

@@ -8,14 +8,14 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ves_twin.core.types import FloatArray, SingleArray
-from ves_twin.diagnosis.evidence import Evidence
 from ves_twin.diagnosis.law.candidate import Candidate, Mesh, Table
 from ves_twin.diagnosis.law.fit_law import LawFit
 from ves_twin.diagnosis.law.lean import LeanEvidence
 from ves_twin.diagnosis.law.smoothness import Smoothness, smoothest
 from ves_twin.diagnosis.law.with_law import WithLaw
-from ves_twin.diagnosis.law_forward import LawForward, LawPlace, Variable
-from ves_twin.diagnosis.runs import Progress, Runs, silent
+from ves_twin.diagnosis.model.law_forward import LawForward, LawPlace, Variable
+from ves_twin.diagnosis.record.evidence import Evidence
+from ves_twin.diagnosis.record.runs import Progress, Runs, silent
 from ves_twin.effects.law import LawKind, variable_along
 
 KNOTS = {"position": 19, "speed": 21, "time": 25, "command": 13}

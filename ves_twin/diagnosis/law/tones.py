@@ -8,15 +8,15 @@ from dataclasses import replace
 import numpy as np
 
 from ves_twin.core.types import FloatArray
-from ves_twin.diagnosis.evidence import Evidence
 from ves_twin.diagnosis.law.candidate import Closed
 from ves_twin.diagnosis.law.fit_law import LawFit, fit_law
 from ves_twin.diagnosis.law.forms import TONE
 from ves_twin.diagnosis.law.screen import columns_about
 from ves_twin.diagnosis.law.sizes import Sizes
 from ves_twin.diagnosis.law.smoothness import projected
-from ves_twin.diagnosis.law_forward import LawPlace, Variable
-from ves_twin.diagnosis.runs import Progress, silent
+from ves_twin.diagnosis.model.law_forward import LawPlace, Variable
+from ves_twin.diagnosis.record.evidence import Evidence
+from ves_twin.diagnosis.record.runs import Progress, silent
 from ves_twin.effects.law import LawKind
 
 RIPPLES = (1.5, 20.0)

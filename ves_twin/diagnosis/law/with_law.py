@@ -10,10 +10,10 @@ import numpy as np
 
 from ves_twin.core.errors import InvalidInputError
 from ves_twin.core.types import FloatArray
-from ves_twin.diagnosis.forward import Excitation, Hypothesis, Parameter
-from ves_twin.diagnosis.forward_wrapper import ForwardWrapper
 from ves_twin.diagnosis.law.candidate import Candidate
-from ves_twin.diagnosis.law_forward import LawForward
+from ves_twin.diagnosis.model.forward import Excitation, Hypothesis, Parameter
+from ves_twin.diagnosis.model.forward_wrapper import ForwardWrapper
+from ves_twin.diagnosis.model.law_forward import LawForward
 
 
 @dataclass(frozen=True)

@@ -8,11 +8,11 @@ from functools import cached_property
 import numpy as np
 
 from ves_twin.core.types import FloatArray
-from ves_twin.diagnosis.assess import Assessment
-from ves_twin.diagnosis.forward import Hypothesis
-from ves_twin.diagnosis.metric import Metric
-from ves_twin.diagnosis.null import Thresholds
-from ves_twin.diagnosis.signature_library import SignatureLibrary
+from ves_twin.diagnosis.bank.metric import Metric
+from ves_twin.diagnosis.bank.signature_library import SignatureLibrary
+from ves_twin.diagnosis.fit.assess import Assessment
+from ves_twin.diagnosis.fit.null import Thresholds
+from ves_twin.diagnosis.model.forward import Hypothesis
 
 PROBE = 10.0
 """Size of a cause, in sigma of one recording, at which its signature is taken: visible, and still

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ves_twin.core.types import FloatArray
-from ves_twin.diagnosis.forward import Hypothesis
+from ves_twin.diagnosis.model.forward import Hypothesis
 from ves_twin.diagnosis.trend.joint import LEAST, Joint, directions
 from ves_twin.diagnosis.trend.shapes import Shapes
 

@@ -9,10 +9,10 @@ import numpy as np
 
 from ves_twin.core.types import FloatArray
 from ves_twin.core.workers import Workers
-from ves_twin.diagnosis.adequacy import cells, misfit
-from ves_twin.diagnosis.evidence import Evidence
-from ves_twin.diagnosis.forward import Hypothesis
-from ves_twin.diagnosis.refine import Fit, bare_residual, refine
+from ves_twin.diagnosis.fit.refine import Fit, bare_residual, refine
+from ves_twin.diagnosis.model.forward import Hypothesis
+from ves_twin.diagnosis.record.adequacy import cells, misfit
+from ves_twin.diagnosis.record.evidence import Evidence
 from ves_twin.diagnosis.trend.day import Day
 from ves_twin.diagnosis.trend.one_rig import Sharing
 

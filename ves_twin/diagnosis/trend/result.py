@@ -12,7 +12,7 @@ from ves_twin.core.whole_file import write_whole
 from ves_twin.diagnosis.trend.calendar import Calendar
 from ves_twin.diagnosis.trend.change import Change
 from ves_twin.diagnosis.trend.one_rig import OneRig
-from ves_twin.diagnosis.verdict import Basis, Findable
+from ves_twin.diagnosis.verdict.verdict import Basis, Findable
 
 SCHEMA = 1
 """Version of trend.json; fields are added without a new one, never changed."""

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ves_twin.diagnosis.forward import Hypothesis, Parameter
+from ves_twin.diagnosis.model.forward import Hypothesis, Parameter
 from ves_twin.diagnosis.settings import Settings
 from ves_twin.diagnosis.trend.day import Day
 from ves_twin.diagnosis.trend.false_alarms import Limits, Scores, false_alarm_limits, scores
@@ -15,7 +15,7 @@ from ves_twin.diagnosis.trend.joint import Joint, directions
 from ves_twin.diagnosis.trend.one_rig import OneRig, Sharing, one_rig
 from ves_twin.diagnosis.trend.result import TrendStatistics
 from ves_twin.diagnosis.trend.shapes import Shapes
-from ves_twin.diagnosis.verdict import Findable
+from ves_twin.diagnosis.verdict.verdict import Findable
 
 FOUND = 0.52
 """Normal quantile of 70 %: how often the smallest change is found."""

@@ -10,16 +10,21 @@ import numpy as np
 from ves_twin.core.errors import InvalidInputError
 from ves_twin.core.recording.recording import Recording
 from ves_twin.core.workers import Workers
-from ves_twin.diagnosis.assess import assess, pull_limit
-from ves_twin.diagnosis.forward import Forward, Hypothesis
-from ves_twin.diagnosis.likeness import check_likeness
-from ves_twin.diagnosis.null import Thresholds, cached_thresholds
-from ves_twin.diagnosis.preprocess import Dataset, preprocess
-from ves_twin.diagnosis.runs import Progress, silent
+from ves_twin.diagnosis.bank.signature_library import (
+    SignatureLibrary,
+    bank_key,
+    build_bank,
+    cached_bank,
+)
+from ves_twin.diagnosis.fit.assess import assess, pull_limit
+from ves_twin.diagnosis.fit.null import Thresholds, cached_thresholds
+from ves_twin.diagnosis.model.forward import Forward, Hypothesis
+from ves_twin.diagnosis.record.likeness import check_likeness
+from ves_twin.diagnosis.record.preprocess import Dataset, preprocess
+from ves_twin.diagnosis.record.runs import Progress, silent
+from ves_twin.diagnosis.record.whitening import whitening_of
 from ves_twin.diagnosis.settings import Settings
-from ves_twin.diagnosis.signature_library import SignatureLibrary, bank_key, build_bank, cached_bank
 from ves_twin.diagnosis.trend.day import Day
-from ves_twin.diagnosis.whitening import whitening_of
 
 FITTED = (-1.0, -np.inf, -1.0)
 """Limits that every record passes, so that its commissioning errors are always fitted by the full

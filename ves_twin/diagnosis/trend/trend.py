@@ -12,10 +12,10 @@ from ves_twin.core.errors import InvalidInputError, UnknownNameError
 from ves_twin.core.recording.recording import Recording
 from ves_twin.core.types import FloatArray
 from ves_twin.core.workers import Workers
-from ves_twin.diagnosis.forward import Forward
-from ves_twin.diagnosis.runs import Progress, silent
+from ves_twin.diagnosis.fit.tolerances import naming_limit
+from ves_twin.diagnosis.model.forward import Forward
+from ves_twin.diagnosis.record.runs import Progress, silent
 from ves_twin.diagnosis.settings import Settings
-from ves_twin.diagnosis.tolerances import naming_limit
 from ves_twin.diagnosis.trend.calendar import Calendar
 from ves_twin.diagnosis.trend.change import Change, Course, change_of
 from ves_twin.diagnosis.trend.follow import Followed, follow
@@ -23,7 +23,7 @@ from ves_twin.diagnosis.trend.one_rig import OneRig, one_rig
 from ves_twin.diagnosis.trend.result import Answer, DaySize, FollowedCause, Trend
 from ves_twin.diagnosis.trend.series import Series
 from ves_twin.diagnosis.trend.study import Study
-from ves_twin.diagnosis.verdict import Basis
+from ves_twin.diagnosis.verdict.verdict import Basis
 
 ALPHA = 0.01
 """Rate of false alarms for a whole series, where nobody states another."""

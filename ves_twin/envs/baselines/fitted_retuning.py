@@ -10,7 +10,7 @@ from scipy.optimize import least_squares
 
 from ves_twin.core.recording.recording import Recording
 from ves_twin.core.types import FloatArray
-from ves_twin.diagnosis.forward import Excitation
+from ves_twin.diagnosis.model.forward import Excitation
 from ves_twin.envs.baselines.retuning import Retuning
 from ves_twin.envs.policy import TrialSpec
 from ves_twin.machines.mjcf.forward import MjcfForward

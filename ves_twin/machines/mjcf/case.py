@@ -13,8 +13,8 @@ from ves_twin.core.recording.recording import POSES, Recording
 from ves_twin.core.signals import Signal
 from ves_twin.core.types import FloatArray
 from ves_twin.data.quality.gate import quality_gate
-from ves_twin.diagnosis.forward import Excitation
-from ves_twin.diagnosis.residuals.noise import Noise, NoiseSource
+from ves_twin.diagnosis.model.forward import Excitation
+from ves_twin.diagnosis.record.residuals.noise import Noise, NoiseSource
 from ves_twin.effects.law import held_words, variable_along
 from ves_twin.machines.case import Case, Traces
 from ves_twin.machines.mjcf.applied import applied

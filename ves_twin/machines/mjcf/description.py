@@ -8,7 +8,7 @@ from typing import Annotated, Any, Literal, Self
 from pydantic import Field, model_validator
 
 from ves_twin.data.import_map import Window
-from ves_twin.diagnosis.grid import RATE
+from ves_twin.diagnosis.model.grid import RATE
 from ves_twin.effects.element import Element
 from ves_twin.effects.law_table import LawTable
 from ves_twin.machines.mjcf.column import Column, Number

@@ -9,7 +9,7 @@ import numpy as np
 
 from ves_twin.core.recording.recording import Recording
 from ves_twin.core.types import FloatArray
-from ves_twin.diagnosis.forward import Excitation
+from ves_twin.diagnosis.model.forward import Excitation
 from ves_twin.machines.mjcf.description import Mode
 from ves_twin.machines.mjcf.excitations import BANDS, FADE, HIGHEST, ROWS, drive_of
 from ves_twin.machines.mjcf.forward import MjcfForward

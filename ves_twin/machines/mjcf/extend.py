@@ -7,7 +7,7 @@ from pathlib import Path
 
 from ves_twin.core.toml_file import write_toml
 from ves_twin.diagnosis.law.finding import SOURCE
-from ves_twin.diagnosis.verdict import Verdict
+from ves_twin.diagnosis.verdict.verdict import Verdict
 from ves_twin.effects.law_table import put_over
 from ves_twin.machines.claimed_law import claimed_laws
 from ves_twin.machines.mjcf.description import KIND, SCHEMA, Setting

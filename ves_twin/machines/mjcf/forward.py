@@ -11,8 +11,8 @@ import numpy as np
 from ves_twin.core.errors import InvalidInputError
 from ves_twin.core.types import FloatArray
 from ves_twin.core.units import to_si
-from ves_twin.diagnosis.forward import Channel, Excitation, Hypothesis, Parameter
-from ves_twin.diagnosis.law_forward import LawPlace
+from ves_twin.diagnosis.model.forward import Channel, Excitation, Hypothesis, Parameter
+from ves_twin.diagnosis.model.law_forward import LawPlace
 from ves_twin.effects.law import Law, LawKind, variable_along
 from ves_twin.machines.mjcf.description import Compared, Mode
 from ves_twin.machines.mjcf.inverse import efforts_of_motion

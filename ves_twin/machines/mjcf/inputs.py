@@ -9,7 +9,7 @@ import numpy as np
 from ves_twin.core.recording.recording import Recording
 from ves_twin.core.types import FloatArray
 from ves_twin.core.units import to_si
-from ves_twin.diagnosis.forward import Excitation
+from ves_twin.diagnosis.model.forward import Excitation
 from ves_twin.machines.mjcf.description import Mode, Span
 from ves_twin.machines.mjcf.forward import MjcfForward
 from ves_twin.machines.mjcf.joint_units import joint_units

@@ -8,8 +8,8 @@ from itertools import combinations, product
 import numpy as np
 
 from ves_twin.core.units import to_si
-from ves_twin.diagnosis.forward import Channel
-from ves_twin.diagnosis.law_forward import LawPlace, Variable
+from ves_twin.diagnosis.model.forward import Channel
+from ves_twin.diagnosis.model.law_forward import LawPlace, Variable
 from ves_twin.effects.law import SIGNS, WITHIN, LawKind
 from ves_twin.machines.mjcf.description import Mode, Span
 from ves_twin.machines.mjcf.joint_units import joint_units

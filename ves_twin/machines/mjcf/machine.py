@@ -13,7 +13,7 @@ import mujoco
 from ves_twin.core.engine_log import log_engine
 from ves_twin.core.errors import FileAccessError, InvalidInputError, UnknownNameError, one_line
 from ves_twin.core.units import to_si
-from ves_twin.diagnosis.forward import Hypothesis, Parameter
+from ves_twin.diagnosis.model.forward import Hypothesis, Parameter
 from ves_twin.effects.bodies import MassCentre, Payload
 from ves_twin.effects.effect import Effect
 from ves_twin.effects.law import Law

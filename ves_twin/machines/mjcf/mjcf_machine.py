@@ -15,10 +15,10 @@ from ves_twin.data.import_map import ImportMap
 from ves_twin.data.quality.check import Check
 from ves_twin.data.quality.gate import quality_gate
 from ves_twin.data.suspicions import Range
-from ves_twin.diagnosis.forward import Excitation
-from ves_twin.diagnosis.preprocess import FEWEST_ROWS
+from ves_twin.diagnosis.model.forward import Excitation
+from ves_twin.diagnosis.record.preprocess import FEWEST_ROWS
 from ves_twin.diagnosis.settings import Settings
-from ves_twin.diagnosis.verdict import Verdict
+from ves_twin.diagnosis.verdict.verdict import Verdict
 from ves_twin.effects.registry import causes_anywhere
 from ves_twin.machines.case import Case
 from ves_twin.machines.data_folder import find_data

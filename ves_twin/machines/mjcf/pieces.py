@@ -9,8 +9,8 @@ import numpy as np
 
 from ves_twin.core.errors import InvalidInputError
 from ves_twin.core.recording.recording import POSES, Recording
-from ves_twin.diagnosis.grid import AnalysisGrid
-from ves_twin.diagnosis.preprocess import FEWEST_ROWS
+from ves_twin.diagnosis.model.grid import AnalysisGrid
+from ves_twin.diagnosis.record.preprocess import FEWEST_ROWS
 from ves_twin.machines.mjcf.description import Mode
 from ves_twin.machines.mjcf.machine import Rig
 from ves_twin.machines.mjcf.places import SINGLE

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ves_twin.core.errors import InvalidInputError
-from ves_twin.diagnosis.forward import Excitation
+from ves_twin.diagnosis.model.forward import Excitation
 from ves_twin.effects.joints import ForceOffset
 from ves_twin.effects.place import Place
 from ves_twin.machines.mjcf.description import Mode

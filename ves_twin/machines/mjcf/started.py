@@ -14,7 +14,7 @@ from ves_twin.core.recording.recording import Recording
 from ves_twin.core.signals import Role, Signal
 from ves_twin.core.types import FloatArray
 from ves_twin.core.units import to_si
-from ves_twin.diagnosis.preprocess import MOST_SETTLING
+from ves_twin.diagnosis.record.preprocess import MOST_SETTLING
 from ves_twin.machines.mjcf.column import Number
 from ves_twin.machines.mjcf.description import Mode, RigDescription, Start
 from ves_twin.machines.mjcf.joint_units import joint_units

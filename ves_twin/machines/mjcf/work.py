@@ -12,7 +12,7 @@ import mujoco
 import numpy as np
 
 from ves_twin.core.types import FloatArray
-from ves_twin.diagnosis.forward import Excitation
+from ves_twin.diagnosis.model.forward import Excitation
 from ves_twin.effects.effect import Effect
 from ves_twin.effects.element import Element
 from ves_twin.effects.joints import CoulombFriction

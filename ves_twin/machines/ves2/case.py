@@ -13,7 +13,7 @@ from ves_twin.core.recording.recording import Recording
 from ves_twin.core.signals import SIGNALS, Signal
 from ves_twin.core.types import FloatArray
 from ves_twin.data.quality.gate import quality_gate
-from ves_twin.diagnosis.residuals.noise import Noise
+from ves_twin.diagnosis.record.residuals.noise import Noise
 from ves_twin.effects.law import held_words, variable_along
 from ves_twin.machines.case import Case, Traces
 from ves_twin.machines.ves2.declared_noise import declared_noise

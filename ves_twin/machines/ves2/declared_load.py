@@ -9,7 +9,7 @@ import numpy as np
 from ves_twin.core.errors import InvalidInputError
 from ves_twin.core.recording.recording import Recording
 from ves_twin.core.signals import Role, Signal
-from ves_twin.diagnosis.forward import Excitation
+from ves_twin.diagnosis.model.forward import Excitation
 
 LOAD = Signal(
     "load.mass", ("",), ("kg",), Role.REFERENCE, "tool", "declared point mass at O3 of the arm"

@@ -7,7 +7,7 @@ from scipy.signal import butter, lfilter
 
 from ves_twin.core.signals import SIGNALS
 from ves_twin.core.types import FloatArray
-from ves_twin.diagnosis.residuals.noise import Noise, NoiseSource
+from ves_twin.diagnosis.record.residuals.noise import Noise, NoiseSource
 from ves_twin.machines.ves2.forward import noise_of
 from ves_twin.mechanics.kinematics.stewart import pose_jacobian
 from ves_twin.plant.plant import Plant

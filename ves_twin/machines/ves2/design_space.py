@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ves_twin.core.types import FloatArray
-from ves_twin.diagnosis.forward import Excitation
+from ves_twin.diagnosis.model.forward import Excitation
 from ves_twin.machines.ves2.excitations import SPEED_SHARE, carried_out
 from ves_twin.machines.ves2.forward import DRIVE
 from ves_twin.mechanics.kinematics.stewart import StewartGeometry

@@ -11,7 +11,7 @@ import numpy as np
 from ves_twin.core.errors import EndedEarlyError, FileAccessError, UnreachableError
 from ves_twin.core.recording.recording import Recording
 from ves_twin.core.signals import SIGNALS
-from ves_twin.diagnosis.forward import Excitation
+from ves_twin.diagnosis.model.forward import Excitation
 from ves_twin.machines.ves2.forward import DRIVE
 from ves_twin.plant.plant import Plant
 from ves_twin.scenario.schema import Scenario

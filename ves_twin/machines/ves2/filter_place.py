@@ -10,9 +10,9 @@ import numpy as np
 
 from ves_twin.control.leg_loop import FilterPlace
 from ves_twin.core.types import FloatArray
-from ves_twin.diagnosis.forward import Excitation, Hypothesis, Parameter
-from ves_twin.diagnosis.forward_wrapper import ForwardWrapper
-from ves_twin.diagnosis.law_forward import LawPlace
+from ves_twin.diagnosis.model.forward import Excitation, Hypothesis, Parameter
+from ves_twin.diagnosis.model.forward_wrapper import ForwardWrapper
+from ves_twin.diagnosis.model.law_forward import LawPlace
 from ves_twin.effects.law import Law
 from ves_twin.machines.ves2.forward import RigForward
 

@@ -14,8 +14,8 @@ from ves_twin.core.errors import EndedEarlyError, UnreachableError
 from ves_twin.core.recording.recording import Recording, RecordingInfo
 from ves_twin.core.signals import SIGNALS
 from ves_twin.core.types import FloatArray
-from ves_twin.diagnosis.forward import Channel, Excitation, Hypothesis, Parameter
-from ves_twin.diagnosis.law_forward import LawPlace
+from ves_twin.diagnosis.model.forward import Channel, Excitation, Hypothesis, Parameter
+from ves_twin.diagnosis.model.law_forward import LawPlace
 from ves_twin.effects.law import Law, LawKind, variable_along
 from ves_twin.effects.law_table import LawTable
 from ves_twin.machines.ves2.declared_load import LOAD, load_in

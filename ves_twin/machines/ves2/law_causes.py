@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from ves_twin.diagnosis.forward import Hypothesis, Parameter
-from ves_twin.diagnosis.verdict import Verdict
+from ves_twin.diagnosis.model.forward import Hypothesis, Parameter
+from ves_twin.diagnosis.verdict.verdict import Verdict
 from ves_twin.effects.law import Law
 from ves_twin.effects.law_table import CAUSE, FACTORS, LawTable
 from ves_twin.plant.plant import Plant

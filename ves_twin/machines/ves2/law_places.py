@@ -8,7 +8,7 @@ import numpy as np
 
 from ves_twin.core.signals import SIGNALS
 from ves_twin.core.types import FloatArray
-from ves_twin.diagnosis.law_forward import LawPlace, Variable
+from ves_twin.diagnosis.model.law_forward import LawPlace, Variable
 from ves_twin.effects.joints import CoulombFriction
 from ves_twin.effects.law import LawKind
 from ves_twin.effects.row import JOINTS, LEGS

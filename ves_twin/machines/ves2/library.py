@@ -8,7 +8,7 @@ import numpy as np
 
 from ves_twin.control.leg_loop import FilterPlace
 from ves_twin.core.types import FloatArray
-from ves_twin.diagnosis.forward import Hypothesis, Parameter
+from ves_twin.diagnosis.model.forward import Hypothesis, Parameter
 from ves_twin.effects.effect import Effect
 from ves_twin.effects.hydraulics import ValveNull
 from ves_twin.effects.law_table import CAUSE as LAW

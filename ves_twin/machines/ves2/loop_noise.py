@@ -12,8 +12,8 @@ import numpy as np
 
 from ves_twin.core.signals import SIGNALS
 from ves_twin.core.types import FloatArray
-from ves_twin.diagnosis.residuals.noise import Noise
-from ves_twin.diagnosis.residuals.spectrum import HANN, Power, score
+from ves_twin.diagnosis.record.residuals.noise import Noise
+from ves_twin.diagnosis.record.residuals.spectrum import HANN, Power, score
 from ves_twin.plant.plant import Plant
 from ves_twin.scenario.schema import Scenario
 from ves_twin.simulator.simulate import simulate

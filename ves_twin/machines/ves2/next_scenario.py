@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 
 from ves_twin.core.toml_file import write_toml
-from ves_twin.diagnosis.forward import Excitation
+from ves_twin.diagnosis.model.forward import Excitation
 from ves_twin.machines.machine import SCENARIO, SETPOINTS
 from ves_twin.machines.ves2.excitations import write_setpoints
 from ves_twin.plant.plant import Plant

@@ -16,10 +16,10 @@ from ves_twin.data.import_map import ImportMap
 from ves_twin.data.open_log import open_log
 from ves_twin.data.quality.check import Check
 from ves_twin.data.suspicions import Range
-from ves_twin.diagnosis.forward import Excitation
-from ves_twin.diagnosis.refusal import refusal
+from ves_twin.diagnosis.model.forward import Excitation
 from ves_twin.diagnosis.settings import Settings
-from ves_twin.diagnosis.verdict import Verdict
+from ves_twin.diagnosis.verdict.refusal import refusal
+from ves_twin.diagnosis.verdict.verdict import Verdict
 from ves_twin.effects.registry import causes_of_today
 from ves_twin.machines.case import Case
 from ves_twin.machines.claimed_law import claimed_laws

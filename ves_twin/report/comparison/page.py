@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from ves_twin.core.quantity import UNSURE, digits, percent, quantity
 from ves_twin.data.quality.check import Grade
-from ves_twin.diagnosis.residuals.channel import ChannelComparison
+from ves_twin.diagnosis.record.residuals.channel import ChannelComparison
 from ves_twin.machines.comparison import Basis, Comparison, RecordingComparison
 from ves_twin.report.comparison.pictures import (
     OTHER,

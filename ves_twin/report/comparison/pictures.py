@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from ves_twin.diagnosis.envelope import ENVELOPE_SD
-from ves_twin.diagnosis.residuals.cells import Cell
-from ves_twin.diagnosis.residuals.channel import ChannelComparison
+from ves_twin.diagnosis.bank.envelope import ENVELOPE_SD
+from ves_twin.diagnosis.record.residuals.cells import Cell
+from ves_twin.diagnosis.record.residuals.channel import ChannelComparison
 from ves_twin.machines.comparison import RecordingComparison
 from ves_twin.report.colours import BEFORE, MEASURED, REFERENCE, RESIDUAL
 from ves_twin.report.figure import new_figure, svg

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from ves_twin.core.quantity import digits, percent, quantity
 from ves_twin.data.quality.check import Grade
-from ves_twin.diagnosis.residuals.cells import Cell
-from ves_twin.diagnosis.residuals.channel import FAR, LOUD, ChannelComparison
+from ves_twin.diagnosis.record.residuals.cells import Cell
+from ves_twin.diagnosis.record.residuals.channel import FAR, LOUD, ChannelComparison
 from ves_twin.machines.comparison import Basis, Comparison, RecordingComparison
 from ves_twin.machines.tolerance import Excess
 

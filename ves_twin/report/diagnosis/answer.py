@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from ves_twin.core.quantity import percent
 from ves_twin.diagnosis.build_up.result import UNFINISHED
-from ves_twin.diagnosis.disagreement import disagree
+from ves_twin.diagnosis.explain.disagreement import disagree
 from ves_twin.diagnosis.law.result import LAW
-from ves_twin.diagnosis.verdict import Cause, Kind, Verdict
+from ves_twin.diagnosis.verdict.verdict import Cause, Kind, Verdict
 from ves_twin.report.diagnosis.basis import gain_words, taken_share
 from ves_twin.report.diagnosis.coarse_step import finer
 from ves_twin.report.diagnosis.law import worth_sentence

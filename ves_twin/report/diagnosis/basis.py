@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from ves_twin.core.quantity import shares
-from ves_twin.diagnosis.gain import Gain
-from ves_twin.diagnosis.tolerances import FEWEST
-from ves_twin.diagnosis.verdict import Basis, Kind, Verdict
+from ves_twin.diagnosis.fit.tolerances import FEWEST
+from ves_twin.diagnosis.unseen.gain import Gain
+from ves_twin.diagnosis.verdict.verdict import Basis, Kind, Verdict
 from ves_twin.report.diagnosis.coarse_step import coarse_sentence
 from ves_twin.report.diagnosis.out_of_step import out_of_step_sentence
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from ves_twin.core.quantity import digits, quantity
-from ves_twin.diagnosis.verdict import Verdict
+from ves_twin.diagnosis.verdict.verdict import Verdict
 
 COARSE = 0.5
 """Error of the step, of what is left of a channel, from which it is told: below, it adds an eighth

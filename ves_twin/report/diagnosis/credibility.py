@@ -9,8 +9,8 @@ from dataclasses import dataclass
 from enum import StrEnum
 
 from ves_twin.core.quantity import digits
-from ves_twin.diagnosis.rivals import Standing
-from ves_twin.diagnosis.verdict import Verdict
+from ves_twin.diagnosis.explain.rivals import Standing
+from ves_twin.diagnosis.verdict.verdict import Verdict
 from ves_twin.report.diagnosis.basis import gain_words
 
 

@@ -5,9 +5,9 @@ from __future__ import annotations
 from math import inf
 
 from ves_twin.core.quantity import digits, percent, quantity
-from ves_twin.diagnosis.rivals import Rival, Standing
-from ves_twin.diagnosis.tolerances import FEWEST
-from ves_twin.diagnosis.verdict import Kind, Verdict
+from ves_twin.diagnosis.explain.rivals import Rival, Standing
+from ves_twin.diagnosis.fit.tolerances import FEWEST
+from ves_twin.diagnosis.verdict.verdict import Kind, Verdict
 from ves_twin.report.diagnosis.words import TOLD, capital, ends_words, name_of, spoken
 
 STRAINED = 3.0

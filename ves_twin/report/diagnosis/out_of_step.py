@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from ves_twin.core.quantity import digits
-from ves_twin.diagnosis.verdict import Verdict
+from ves_twin.diagnosis.verdict.verdict import Verdict
 
 
 def out_of_step_sentence(verdict: Verdict) -> str:

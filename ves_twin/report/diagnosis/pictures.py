@@ -7,11 +7,11 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ves_twin.diagnosis.adequacy import EnergyCell
-from ves_twin.diagnosis.envelope import ENVELOPE_SD
-from ves_twin.diagnosis.forward import Channel
-from ves_twin.diagnosis.report_traces import ReportTraces, Traces
-from ves_twin.diagnosis.verdict import Verdict
+from ves_twin.diagnosis.bank.envelope import ENVELOPE_SD
+from ves_twin.diagnosis.model.forward import Channel
+from ves_twin.diagnosis.record.adequacy import EnergyCell
+from ves_twin.diagnosis.verdict.report_traces import ReportTraces, Traces
+from ves_twin.diagnosis.verdict.verdict import Verdict
 from ves_twin.report.colours import AFTER, BEFORE, MEASURED, RESIDUAL, TOLERANCES
 from ves_twin.report.figure import new_figure, svg
 from ves_twin.report.html import Html

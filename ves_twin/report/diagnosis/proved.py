@@ -6,7 +6,7 @@ from collections.abc import Callable, Mapping
 
 from ves_twin.core.quantity import UNSURE, percent, quantity
 from ves_twin.diagnosis.build_up.result import TOGETHER, Left, Proved
-from ves_twin.diagnosis.verdict import Verdict
+from ves_twin.diagnosis.verdict.verdict import Verdict
 from ves_twin.report.diagnosis.words import spoken
 from ves_twin.report.html import Html, bullets, paragraph, section, table
 

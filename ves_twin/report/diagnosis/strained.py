@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from ves_twin.core.quantity import quantity
-from ves_twin.diagnosis.rivals import Standing
-from ves_twin.diagnosis.verdict import Estimate, Verdict
+from ves_twin.diagnosis.explain.rivals import Standing
+from ves_twin.diagnosis.verdict.verdict import Estimate, Verdict
 from ves_twin.report.diagnosis.words import TOLD, interval_words, spoken
 
 STRANGEST = 2

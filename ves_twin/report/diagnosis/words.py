@@ -7,9 +7,9 @@ from collections.abc import Sequence
 import numpy as np
 
 from ves_twin.core.quantity import digits, percent, quantity
-from ves_twin.diagnosis.residual_structure import Loud
-from ves_twin.diagnosis.rivals import Place
-from ves_twin.diagnosis.verdict import Cause, Estimate, Kind, Verdict
+from ves_twin.diagnosis.explain.rivals import Place
+from ves_twin.diagnosis.record.residual_structure import Loud
+from ves_twin.diagnosis.verdict.verdict import Cause, Estimate, Kind, Verdict
 from ves_twin.effects.ripple import NUMBERED, Ripple
 
 TOLD = 6

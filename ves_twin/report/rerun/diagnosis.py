@@ -12,8 +12,8 @@ from rerun.encodings import AbsoluteTimeRange, TimeInt
 from ves_twin.core.errors import InvalidInputError
 from ves_twin.core.types import FloatArray
 from ves_twin.core.whole_file import whole_file
-from ves_twin.diagnosis.report_traces import ReportTraces, Traces
-from ves_twin.diagnosis.verdict import Verdict
+from ves_twin.diagnosis.verdict.report_traces import ReportTraces, Traces
+from ves_twin.diagnosis.verdict.verdict import Verdict
 from ves_twin.machines.drawing import Drawing
 from ves_twin.report.colours import AFTER, BEFORE, MEASURED, TOLERANCES, Colour, rgb
 from ves_twin.report.diagnosis.answer import (

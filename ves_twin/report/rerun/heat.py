@@ -8,8 +8,8 @@ import numpy as np
 import rerun as rr
 
 from ves_twin.core.types import FloatArray
-from ves_twin.diagnosis.forward import Channel
-from ves_twin.diagnosis.report_traces import Traces
+from ves_twin.diagnosis.model.forward import Channel
+from ves_twin.diagnosis.verdict.report_traces import Traces
 
 STRETCHES, HEIGHT, LINE = 240, 60, 6
 """Stretches of time across the map, its pixels from top to bottom, and those of a channel's line at

@@ -9,8 +9,8 @@ import numpy as np
 import rerun as rr
 
 from ves_twin.core.types import FloatArray, SingleArray
-from ves_twin.diagnosis.forward import Channel
-from ves_twin.diagnosis.report_traces import Traces
+from ves_twin.diagnosis.model.forward import Channel
+from ves_twin.diagnosis.verdict.report_traces import Traces
 from ves_twin.machines.drawing import Drawing
 from ves_twin.report.colours import AFTER, BEFORE, MEASURED, rgb
 from ves_twin.report.rerun.poses import frame_rows

@@ -10,7 +10,7 @@ import pytest
 from drafted import changed, drafted, scales
 from three_joints import ARM
 
-from ves_twin.diagnosis.forward import Excitation
+from ves_twin.diagnosis.model.forward import Excitation
 from ves_twin.machines.mjcf.columns import read_rig_recording
 from ves_twin.machines.mjcf.forward import MjcfForward
 from ves_twin.machines.mjcf.plausible.implausible import implausible

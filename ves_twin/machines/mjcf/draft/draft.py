@@ -15,7 +15,7 @@ from ves_twin.core.errors import InvalidInputError
 from ves_twin.core.quantity import quantity
 from ves_twin.core.recording.recording import Recording
 from ves_twin.core.types import BoolArray, FloatArray
-from ves_twin.diagnosis.forward import Excitation
+from ves_twin.diagnosis.model.forward import Excitation
 from ves_twin.machines.mjcf.columns import read_rig_recording
 from ves_twin.machines.mjcf.description import KIND, Mode, RigDescription
 from ves_twin.machines.mjcf.draft.by_number import by_number

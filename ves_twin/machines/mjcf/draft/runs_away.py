@@ -6,7 +6,7 @@ import numpy as np
 
 from ves_twin.core.recording.recording import Recording
 from ves_twin.core.types import FloatArray
-from ves_twin.diagnosis.forward import Excitation
+from ves_twin.diagnosis.model.forward import Excitation
 from ves_twin.machines.mjcf.forward import MjcfForward
 
 NUDGE = 1e-3

@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 
 from ves_twin.core.recording.recording import Recording
-from ves_twin.diagnosis.forward import Excitation
+from ves_twin.diagnosis.model.forward import Excitation
 from ves_twin.machines.mjcf.column import Column
 from ves_twin.machines.mjcf.description import Compared
 from ves_twin.machines.mjcf.draft.estimates import travel, typical

@@ -9,7 +9,7 @@ from itertools import combinations
 import numpy as np
 
 from ves_twin.data.column_expression import quoted
-from ves_twin.diagnosis.likeness import FACTORS
+from ves_twin.diagnosis.record.likeness import FACTORS
 from ves_twin.machines.mjcf.forward import MjcfForward
 from ves_twin.machines.mjcf.machine import Rig
 from ves_twin.machines.mjcf.places import driven_joint

@@ -11,7 +11,7 @@ from scipy.optimize import nnls
 
 from ves_twin.core.recording.recording import POSES, Recording
 from ves_twin.core.types import FloatArray
-from ves_twin.diagnosis.forward import Excitation
+from ves_twin.diagnosis.model.forward import Excitation
 from ves_twin.machines.mjcf.cyclic import is_cyclic, turned_by
 from ves_twin.machines.mjcf.forward import MjcfForward
 from ves_twin.machines.mjcf.inertials import inertials, point_mass, set_inertials

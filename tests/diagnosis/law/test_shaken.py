@@ -1,0 +1,60 @@
+"""Tests of names that a law at their place shakes."""
+
+from dataclasses import replace
+
+import pytest
+
+from ves_twin.diagnosis.build_up.result import Proved
+from ves_twin.diagnosis.law.result import LawFinding
+from ves_twin.diagnosis.law.shaken import shaken
+from ves_twin.diagnosis.unseen.gain import Gain
+
+CLEAR = Gain(0.04, 0.02, 0.07, 160.0, 154.0)
+
+LAW = LawFinding(
+    claimed=False,
+    reason="it takes only 4 % of the held-out excess away",
+    place="slide",
+    kind="effort",
+    of=("position@slide within 0.0014",),
+    units=("m", "N"),
+    shape="table",
+    form="",
+    numbers=(),
+    knots=((-1.0, 1.0),),
+    values=(1.0, -1.0),
+    band=(),
+    seen=((-1.0, 1.0),),
+    points=(),
+    transient=False,
+    nats=26.0,
+    misfit=9.0,
+    misfit_limit=5.0,
+    further=0.0,
+    also=(),
+    gain=CLEAR,
+    part=True,
+)
+
+
+def spring(before: float, after: float) -> Proved:
+    takes = {"force": (before, after)}
+    return Proved("cubic_spring", "slide", {}, 1e-6, 20, takes, True)
+
+
+@pytest.mark.parametrize(
+    ("law", "one", "firm"),
+    [
+        (LAW, spring(9.0, 8.7), False),  # hysteresis, of which the spring takes a little
+        (LAW, spring(90.0, 8.7), True),  # a spring that is there, beside a small law
+        (replace(LAW, place="swing"), spring(9.0, 8.7), True),
+        (replace(LAW, place="swing + slide"), spring(9.0, 8.7), False),
+        (replace(LAW, gain=replace(CLEAR, low=-0.01)), spring(9.0, 8.7), True),
+        (replace(LAW, gain=None), spring(9.0, 8.7), True),
+        (replace(LAW, part=False), spring(9.0, 8.7), True),
+        (None, spring(9.0, 8.7), True),
+    ],
+)
+def test_a_law_at_its_place_shakes_a_name_that_takes_little_more(law, one, firm):
+    (told,) = shaken((one,), law)
+    assert told == replace(one, firm=firm)

@@ -1,0 +1,1 @@
+"""One cause or two that explain a record, their rivals, recordings that disagree."""

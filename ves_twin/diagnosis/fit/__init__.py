@@ -1,0 +1,1 @@
+"""Sizes of causes by the full simulation, thresholds, how sure each is."""

@@ -1,0 +1,1 @@
+"""Recordings beside the runs that predict them: rows, noise, what is left."""

@@ -1,0 +1,1 @@
+"""Recordings that no fit has seen, and what an extended model is worth there."""
