@@ -16,7 +16,7 @@ from pathlib import Path
 import numpy as np
 
 from ves_twin.cli.main import main as ves_twin
-from ves_twin.machines.mjcf.machine import Rig
+from ves_twin.machines.mjcf.rig.machine import Rig
 from ves_twin.suites.hidden_law import Acts, HiddenLaw, draw_law
 from ves_twin.suites.machine import BlindRig
 from ves_twin.suites.mjcf import BlindMjcf

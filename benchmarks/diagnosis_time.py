@@ -28,8 +28,8 @@ from ves_twin.diagnosis.verdict.verdict import Verdict
 from ves_twin.machines.compare import compare
 from ves_twin.machines.diagnose import verdict_on
 from ves_twin.machines.machine import Named
-from ves_twin.machines.mjcf.machine import Rig
-from ves_twin.machines.mjcf.programmes import Multisine, multisine
+from ves_twin.machines.mjcf.inputs.programmes import Multisine, multisine
+from ves_twin.machines.mjcf.rig.machine import Rig
 from ves_twin.plant.plant import Plant
 from ves_twin.report.comparison.page import comparison_page
 from ves_twin.suites import mjcf as generator

@@ -14,7 +14,7 @@ import numpy as np
 
 import ves_twin as vt
 from ves_twin.machines.diagnose import verdict_on
-from ves_twin.machines.mjcf.machine import Rig
+from ves_twin.machines.mjcf.rig.machine import Rig
 from ves_twin.report.colours import MEASURED, REFERENCE
 from ves_twin.report.diagnosis.pictures import draw_answer
 from ves_twin.report.diagnosis.words import fitted_word

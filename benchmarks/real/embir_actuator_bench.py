@@ -10,7 +10,7 @@ from itertools import product
 from pathlib import Path
 
 from real.machine import OF_JOINTS, Set, effects, machine, read, stretch
-from ves_twin.machines.mjcf.machine import Rig
+from ves_twin.machines.mjcf.rig.machine import Rig
 
 SHAFT = """<mujoco model="shaft">
   <option gravity="0 0 0"><flag contact="disable"/></option>

@@ -11,8 +11,8 @@ from pathlib import Path
 import mujoco
 
 from ves_twin.core.recording.recording import Recording
-from ves_twin.machines.mjcf.columns import read_rig_recording
-from ves_twin.machines.mjcf.machine import Rig
+from ves_twin.machines.mjcf.recordings.columns import read_rig_recording
+from ves_twin.machines.mjcf.rig.machine import Rig
 
 
 @dataclass(frozen=True)

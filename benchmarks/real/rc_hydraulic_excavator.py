@@ -10,8 +10,8 @@ import numpy as np
 from real.machine import Set, effects, machine, read
 from ves_twin.core.recording.recording import Recording
 from ves_twin.diagnosis.model.forward import Excitation
-from ves_twin.machines.mjcf.forward import MjcfForward
-from ves_twin.machines.mjcf.machine import Rig
+from ves_twin.machines.mjcf.motion.forward import MjcfForward
+from ves_twin.machines.mjcf.rig.machine import Rig
 
 NEUTRAL = 7.474
 """Duty at rest [%], on the data's page."""

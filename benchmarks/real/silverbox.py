@@ -11,8 +11,8 @@ from scipy.signal import resample_poly
 from real.machine import Set, effects, machine, read
 from ves_twin.core.recording.recording import Recording
 from ves_twin.diagnosis.model.forward import Excitation
-from ves_twin.machines.mjcf.forward import MjcfForward
-from ves_twin.machines.mjcf.machine import Rig
+from ves_twin.machines.mjcf.motion.forward import MjcfForward
+from ves_twin.machines.mjcf.rig.machine import Rig
 
 RATE = 1e7 / 2**14
 """Of the recording [Hz]."""

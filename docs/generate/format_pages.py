@@ -14,8 +14,8 @@ from ves_twin.core.recording.recording import RecordingInfo
 from ves_twin.core.signals import SIGNALS
 from ves_twin.data.import_map import ImportMap
 from ves_twin.diagnosis.verdict.verdict import Verdict
-from ves_twin.machines.mjcf.description import KIND, SCHEMA, RigDescription
-from ves_twin.machines.mjcf.experiment import MjcfExperiment
+from ves_twin.machines.mjcf.recordings.experiment import MjcfExperiment
+from ves_twin.machines.mjcf.rig.description import KIND, SCHEMA, RigDescription
 from ves_twin.procedures.registry import PROCEDURES, procedure_class
 from ves_twin.scenario.experiment import Experiment
 from ves_twin.scenario.schema import Scenario

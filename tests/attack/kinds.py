@@ -25,8 +25,8 @@ from ves_twin.data.inspect_log import TableReport, inspect_log
 from ves_twin.data.inspection_text import inspection_text
 from ves_twin.data.open_log import open_log
 from ves_twin.envs.rig_set import RigSet
-from ves_twin.machines.mjcf.experiment import MjcfExperiment
-from ves_twin.machines.mjcf.machine import Rig
+from ves_twin.machines.mjcf.recordings.experiment import MjcfExperiment
+from ves_twin.machines.mjcf.rig.machine import Rig
 from ves_twin.scenario.setpoint_file import read_setpoints
 from ves_twin.suites.answers import read_answers
 from ves_twin.suites.suite import load_suite

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from ves_twin.cli.main import main
-from ves_twin.machines.mjcf.machine import Rig
+from ves_twin.machines.mjcf.rig.machine import Rig
 
 CART = """
 <mujoco model="cart">

@@ -19,7 +19,7 @@ from ves_twin.diagnosis.settings import Settings
 from ves_twin.diagnosis.verdict.verdict import Verdict
 from ves_twin.diagnosis.view import Material, View
 from ves_twin.effects.law import Law, LawKind, LawShape
-from ves_twin.machines.mjcf.forward import MjcfForward
+from ves_twin.machines.mjcf.motion.forward import MjcfForward
 from ves_twin.report.diagnosis.basis import basis_sentences
 
 HIDDEN = {"coulomb_friction@a:level": 0.057, "coulomb_friction@b:level": 0.03}

@@ -14,7 +14,7 @@ from ves_twin.control.controller import PlatformController
 from ves_twin.core.code_file import load_class
 from ves_twin.effects.registry import EFFECTS, parse_effects
 from ves_twin.envs.evaluation import Trial, evaluate
-from ves_twin.machines.mjcf.forward import MjcfForward
+from ves_twin.machines.mjcf.motion.forward import MjcfForward
 from ves_twin.plant.assembly import assemble
 
 PAGES = Path(__file__).parents[2] / "docs" / "plugins"

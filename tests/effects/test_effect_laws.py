@@ -30,9 +30,9 @@ from ves_twin.effects.registry import (
     effects_table,
     parse_effects,
 )
-from ves_twin.machines.mjcf.description import Mode
-from ves_twin.machines.mjcf.forward import MjcfForward
-from ves_twin.machines.mjcf.machine import Rig
+from ves_twin.machines.mjcf.motion.forward import MjcfForward
+from ves_twin.machines.mjcf.rig.description import Mode
+from ves_twin.machines.mjcf.rig.machine import Rig
 from ves_twin.plant.assembly import assemble
 from ves_twin.simulator.log_faults import logged
 

@@ -14,7 +14,7 @@ from ves_twin.envs.evaluation import Trial, built, evaluate, run_episode
 from ves_twin.envs.joint_task import JointTask
 from ves_twin.envs.policy import Policy
 from ves_twin.machines.machine import Machine
-from ves_twin.machines.mjcf.forward import MjcfForward
+from ves_twin.machines.mjcf.motion.forward import MjcfForward
 
 ID = "VesTwin/DiagnoseAndRetune-v0"
 

@@ -11,8 +11,8 @@ import ves_twin as vt
 from ves_twin.diagnosis.model.forward import Excitation
 from ves_twin.effects.element import Element
 from ves_twin.effects.registry import EFFECTS, build_effect
-from ves_twin.machines.mjcf.description import Mode
-from ves_twin.machines.mjcf.forward import MjcfForward
+from ves_twin.machines.mjcf.motion.forward import MjcfForward
+from ves_twin.machines.mjcf.rig.description import Mode
 from ves_twin.machines.ves2 import forward as ves2_forward
 from ves_twin.machines.ves2.forward import DRIVE, RigForward
 from ves_twin.simulator.log_faults import LogFaults

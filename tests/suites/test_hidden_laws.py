@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from ves_twin.diagnosis.settings import Settings
-from ves_twin.machines.mjcf.machine import Rig
+from ves_twin.machines.mjcf.rig.machine import Rig
 from ves_twin.suites.hidden_law import LAW_KINDS, Acts, draw_law
 from ves_twin.suites.law_suite import (
     FILES,

@@ -10,9 +10,9 @@ from ves_twin.cli.main import main
 from ves_twin.core.errors import InvalidInputError
 from ves_twin.core.recording.files import load_recording
 from ves_twin.diagnosis.model.forward import Excitation
-from ves_twin.machines.mjcf.machine import Rig
+from ves_twin.machines.mjcf.inputs.programmes import FARTHEST, joint_of, releases
 from ves_twin.machines.mjcf.mjcf_machine import MjcfMachine
-from ves_twin.machines.mjcf.programmes import FARTHEST, joint_of, releases
+from ves_twin.machines.mjcf.rig.machine import Rig
 from ves_twin.suites.machine import BlindRig
 from ves_twin.suites.mjcf import BlindMjcf
 from ves_twin.suites.suite import load_suite

@@ -27,9 +27,9 @@ from ves_twin.core.recording.recording import Recording, RecordingInfo
 from ves_twin.diagnosis.model.forward import Excitation
 from ves_twin.diagnosis.record.runs import silent
 from ves_twin.diagnosis.settings import Settings
-from ves_twin.machines.mjcf.forward import MjcfForward
 from ves_twin.machines.mjcf.mjcf_machine import MjcfMachine
-from ves_twin.machines.mjcf.started import start_signal, started
+from ves_twin.machines.mjcf.motion.forward import MjcfForward
+from ves_twin.machines.mjcf.motion.started import start_signal, started
 from ves_twin.suites.answer import answer_suite
 from ves_twin.suites.answers import Answer, read_answers, write_answers
 from ves_twin.suites.machine import BlindRig

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from ves_twin.core.errors import InvalidInputError
-from ves_twin.machines.mjcf.machine import Rig
+from ves_twin.machines.mjcf.rig.machine import Rig
 from ves_twin.suites.hidden_law import LAW_KINDS, Acts, draw_law, takes
 from ves_twin.suites.law_suite import MACHINE, hidden_kinds
 from ves_twin.suites.machine import BlindRig

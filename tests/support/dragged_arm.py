@@ -20,9 +20,9 @@ from ves_twin.diagnosis.record.evidence import Evidence
 from ves_twin.diagnosis.record.preprocess import Dataset, preprocess
 from ves_twin.diagnosis.record.whitening import whitening_declared
 from ves_twin.effects.law import Law, LawKind, LawShape
-from ves_twin.machines.mjcf.description import Mode
-from ves_twin.machines.mjcf.forward import MjcfForward
-from ves_twin.machines.mjcf.machine import Rig
+from ves_twin.machines.mjcf.motion.forward import MjcfForward
+from ves_twin.machines.mjcf.rig.description import Mode
+from ves_twin.machines.mjcf.rig.machine import Rig
 
 DRAG = 0.6
 """N m s^2/rad^2: at chi^2 of 10^6 a sample."""

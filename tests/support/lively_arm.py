@@ -10,8 +10,8 @@ import numpy as np
 from ves_twin.core.recording.recording import Recording, RecordingInfo
 from ves_twin.diagnosis.model.forward import Excitation
 from ves_twin.effects.law import Law
-from ves_twin.machines.mjcf.forward import MjcfForward
-from ves_twin.machines.mjcf.machine import Rig
+from ves_twin.machines.mjcf.motion.forward import MjcfForward
+from ves_twin.machines.mjcf.rig.machine import Rig
 
 MODEL = """
 <mujoco>

@@ -7,9 +7,9 @@ from dataclasses import replace
 import numpy as np
 
 from ves_twin.diagnosis.model.forward import Excitation
-from ves_twin.machines.mjcf.forward import MjcfForward
-from ves_twin.machines.mjcf.machine import Rig
-from ves_twin.machines.mjcf.programmes import multisine
+from ves_twin.machines.mjcf.inputs.programmes import multisine
+from ves_twin.machines.mjcf.motion.forward import MjcfForward
+from ves_twin.machines.mjcf.rig.machine import Rig
 from ves_twin.suites.mjcf import BlindMjcf
 
 STEP = 0.002

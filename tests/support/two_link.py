@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 
 from ves_twin.diagnosis.model.forward import Excitation
-from ves_twin.machines.mjcf.machine import Rig
+from ves_twin.machines.mjcf.rig.machine import Rig
 
 MODEL = """
 <mujoco model="two_link">

@@ -9,7 +9,7 @@ import mujoco
 import numpy as np
 
 from ves_twin.core.types import FloatArray
-from ves_twin.machines.mjcf.work import Work
+from ves_twin.machines.mjcf.motion.work import Work
 
 
 @dataclass(frozen=True)

@@ -17,14 +17,14 @@ from ves_twin.effects.place import Place
 from ves_twin.envs.channels import Channel, Channels
 from ves_twin.envs.joint_controller import JointController, Tuning, Wanted, effort_of
 from ves_twin.machines.machine import Machine
-from ves_twin.machines.mjcf.description import Mode
-from ves_twin.machines.mjcf.machine import Rig
+from ves_twin.machines.mjcf.inputs.programmes import driven
 from ves_twin.machines.mjcf.mjcf_machine import MjcfMachine
-from ves_twin.machines.mjcf.programmes import driven
-from ves_twin.machines.mjcf.signals import rig_signals
-from ves_twin.machines.mjcf.started import start_of
-from ves_twin.machines.mjcf.stepping import motion_of_drive
-from ves_twin.machines.mjcf.work import Work
+from ves_twin.machines.mjcf.motion.started import start_of
+from ves_twin.machines.mjcf.motion.stepping import motion_of_drive
+from ves_twin.machines.mjcf.motion.work import Work
+from ves_twin.machines.mjcf.recordings.signals import rig_signals
+from ves_twin.machines.mjcf.rig.description import Mode
+from ves_twin.machines.mjcf.rig.machine import Rig
 
 SECONDS = 4.0
 """Length of a trial [s]."""

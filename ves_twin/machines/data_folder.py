@@ -12,7 +12,7 @@ from ves_twin.core.errors import InvalidInputError
 from ves_twin.core.missing_file import missing_file
 
 if TYPE_CHECKING:
-    from ves_twin.machines.mjcf.description import Data
+    from ves_twin.machines.mjcf.rig.description import Data
 
 VARIABLE = "VES_TWIN_DATA"
 """Environment variable with the folder of public data sets; see models/machines/README.md."""

@@ -9,9 +9,9 @@ from ves_twin.core.errors import InvalidInputError
 from ves_twin.core.recording.recording import Recording
 from ves_twin.data.import_map import ImportMap
 from ves_twin.machines.machine import Machine, Named
-from ves_twin.machines.mjcf.load_description import is_rig, shipped_rigs
-from ves_twin.machines.mjcf.machine import Rig
 from ves_twin.machines.mjcf.mjcf_machine import MjcfMachine
+from ves_twin.machines.mjcf.rig.load_description import is_rig, shipped_rigs
+from ves_twin.machines.mjcf.rig.machine import Rig
 from ves_twin.machines.ves2.ves2_machine import Ves2Machine
 from ves_twin.plant.plant import Plant
 

@@ -18,7 +18,7 @@ from ves_twin.diagnosis.settings import Settings
 from ves_twin.diagnosis.verdict.verdict import Verdict
 from ves_twin.machines.diagnose import Diagnosis
 from ves_twin.machines.load import machine_of
-from ves_twin.machines.mjcf.machine import Rig
+from ves_twin.machines.mjcf.rig.machine import Rig
 from ves_twin.plant.plant import Plant
 from ves_twin.procedures.procedure import Procedure, Result, RunContext
 from ves_twin.report.diagnosis.answer import headline

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from ves_twin.machines.mjcf.machine import Rig
+from ves_twin.machines.mjcf.rig.machine import Rig
 from ves_twin.suites.machine import BlindMachine
 from ves_twin.suites.mjcf import BlindMjcf
 from ves_twin.suites.suite import OF_VES2, check_machine

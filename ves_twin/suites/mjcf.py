@@ -22,13 +22,13 @@ from ves_twin.effects.effect import Effect
 from ves_twin.effects.element import Element
 from ves_twin.effects.joints import Backlash
 from ves_twin.effects.place import Place
-from ves_twin.machines.mjcf.description import Mode
-from ves_twin.machines.mjcf.forward import MjcfForward
-from ves_twin.machines.mjcf.machine import Rig
+from ves_twin.machines.mjcf.inputs.programmes import Multisine, driven, joint_of, multisine
 from ves_twin.machines.mjcf.mjcf_machine import MjcfMachine
-from ves_twin.machines.mjcf.programmes import Multisine, driven, joint_of, multisine
-from ves_twin.machines.mjcf.signals import rig_signals
-from ves_twin.machines.mjcf.started import start_of, start_signal
+from ves_twin.machines.mjcf.motion.forward import MjcfForward
+from ves_twin.machines.mjcf.motion.started import start_of, start_signal
+from ves_twin.machines.mjcf.recordings.signals import rig_signals
+from ves_twin.machines.mjcf.rig.description import Mode
+from ves_twin.machines.mjcf.rig.machine import Rig
 from ves_twin.suites.hidden_law import Acts, HiddenCommand, HiddenEffort
 from ves_twin.suites.machine import BlindMachine, BlindRig
 

@@ -9,10 +9,10 @@ import numpy as np
 
 from ves_twin.diagnosis.model.forward import Excitation
 from ves_twin.effects.law import LawKind, joints_of
-from ves_twin.machines.mjcf.description import Mode
-from ves_twin.machines.mjcf.forward import MjcfForward
-from ves_twin.machines.mjcf.places import driven_joint, typical_span
-from ves_twin.machines.mjcf.programmes import joint_of
+from ves_twin.machines.mjcf.inputs.programmes import joint_of
+from ves_twin.machines.mjcf.motion.forward import MjcfForward
+from ves_twin.machines.mjcf.rig.description import Mode
+from ves_twin.machines.mjcf.rig.places import driven_joint, typical_span
 
 SPEED, TRAVEL = 5.0, 1.5
 """Largest speed and position of the shipped pendulum under its multisine [rad/s, rad], about:

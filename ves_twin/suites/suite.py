@@ -10,7 +10,7 @@ from pathlib import Path
 
 from ves_twin.core.errors import FileAccessError, InvalidInputError, UnknownNameError
 from ves_twin.core.whole_file import write_whole
-from ves_twin.machines.mjcf.load_description import shipped_rigs
+from ves_twin.machines.mjcf.rig.load_description import shipped_rigs
 
 SCHEMA = 1
 """Version of suite.json."""

@@ -17,8 +17,8 @@ from ves_twin.diagnosis.model.forward_wrapper import ForwardWrapper
 from ves_twin.diagnosis.record.evidence import Evidence
 from ves_twin.diagnosis.record.runs import Runs
 from ves_twin.diagnosis.record.whitening import whitening_declared
-from ves_twin.machines.mjcf.forward import MjcfForward
-from ves_twin.machines.mjcf.machine import Rig
+from ves_twin.machines.mjcf.motion.forward import MjcfForward
+from ves_twin.machines.mjcf.rig.machine import Rig
 
 MODEL = """<mujoco><option timestep="0.01" gravity="0 0 0" integrator="RK4"/>
   <worldbody><body name="mass"><joint name="y" type="slide" stiffness="40" damping="0.4"/>

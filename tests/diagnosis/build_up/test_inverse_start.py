@@ -18,7 +18,7 @@ from ves_twin.diagnosis.record.evidence import Evidence
 from ves_twin.diagnosis.record.preprocess import Dataset, preprocess
 from ves_twin.diagnosis.record.runs import silent
 from ves_twin.diagnosis.record.whitening import whitening_declared
-from ves_twin.machines.mjcf.forward import MjcfForward
+from ves_twin.machines.mjcf.motion.forward import MjcfForward
 
 HIDDEN = {
     "coulomb_friction@a:level": 0.12,

@@ -28,8 +28,8 @@ from ves_twin.diagnosis.record.evidence import Evidence
 from ves_twin.diagnosis.record.preprocess import Dataset
 from ves_twin.diagnosis.record.runs import Runs, silent
 from ves_twin.diagnosis.record.whitening import whitening_declared
-from ves_twin.machines.mjcf.forward import MjcfForward
-from ves_twin.machines.mjcf.machine import Rig
+from ves_twin.machines.mjcf.motion.forward import MjcfForward
+from ves_twin.machines.mjcf.rig.machine import Rig
 
 MODEL = """<mujoco><option timestep="0.05" gravity="0 0 0" integrator="implicitfast"/>
   <worldbody><body name="rod"><joint name="boom" type="slide" damping="100"/>

@@ -13,7 +13,7 @@ from ves_twin.diagnosis.record.preprocess import preprocess
 from ves_twin.diagnosis.record.runs import silent
 from ves_twin.diagnosis.record.whitening import whitening_declared
 from ves_twin.diagnosis.settings import Settings
-from ves_twin.machines.mjcf.forward import MjcfForward
+from ves_twin.machines.mjcf.motion.forward import MjcfForward
 
 SETTINGS = Settings(nulls=4)
 HIDDEN = {

@@ -38,7 +38,7 @@ from ves_twin.diagnosis.record.preprocess import preprocess
 from ves_twin.diagnosis.record.whitening import whitening_declared
 from ves_twin.diagnosis.unseen.gain import held_out_gain
 from ves_twin.effects.law import Law, LawKind, LawShape
-from ves_twin.machines.mjcf.forward import MjcfForward
+from ves_twin.machines.mjcf.motion.forward import MjcfForward
 
 FORWARD = MjcfForward.of(MACHINE)
 JOINT, ANGLE, RATE = FORWARD.law_places()

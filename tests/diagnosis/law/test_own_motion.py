@@ -16,10 +16,10 @@ from ves_twin.diagnosis.settings import Settings
 from ves_twin.effects.law import LawKind
 from ves_twin.effects.law_table import LawTable
 from ves_twin.machines.diagnose import diagnose
-from ves_twin.machines.mjcf.description import Allowed
-from ves_twin.machines.mjcf.forward import MjcfForward
-from ves_twin.machines.mjcf.machine import Rig
-from ves_twin.machines.mjcf.programmes import multisine
+from ves_twin.machines.mjcf.inputs.programmes import multisine
+from ves_twin.machines.mjcf.motion.forward import MjcfForward
+from ves_twin.machines.mjcf.rig.description import Allowed
+from ves_twin.machines.mjcf.rig.machine import Rig
 
 KINDS = ("cubic_spring", "viscous_friction", "coulomb_friction")
 LIBRARY = tuple(Allowed(kind=kind, on=("joint",)) for kind in KINDS)

@@ -15,9 +15,9 @@ from ves_twin.diagnosis.model.forward import Excitation
 from ves_twin.diagnosis.settings import Settings
 from ves_twin.diagnosis.verdict.verdict import Kind
 from ves_twin.machines.diagnose import Diagnosis, diagnose
-from ves_twin.machines.mjcf.forward import MjcfForward
-from ves_twin.machines.mjcf.machine import Rig
 from ves_twin.machines.mjcf.mjcf_machine import MjcfMachine
+from ves_twin.machines.mjcf.motion.forward import MjcfForward
+from ves_twin.machines.mjcf.rig.machine import Rig
 
 HIDDEN = {"viscous_friction@a:damping": 0.8, "coulomb_friction@b:level": 0.5}
 ERROR, MEMORY = 0.03, 0.9

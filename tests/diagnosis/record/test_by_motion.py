@@ -12,7 +12,7 @@ from lively_arm import lively, measured
 from ves_twin.diagnosis.record.by_motion import by_motion, missing_at
 from ves_twin.diagnosis.record.preprocess import Dataset, preprocess
 from ves_twin.effects.law import Law, LawKind, LawShape
-from ves_twin.machines.mjcf.forward import MjcfForward
+from ves_twin.machines.mjcf.motion.forward import MjcfForward
 
 LEVEL = "coulomb_friction@a:level"
 MASSES = ("body_mass@one:mass", "body_mass@two:mass")

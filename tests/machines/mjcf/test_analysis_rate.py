@@ -11,9 +11,9 @@ import pytest
 from ves_twin.diagnosis.model.forward import Excitation
 from ves_twin.diagnosis.model.grid import RATE
 from ves_twin.diagnosis.record.runs import Runs
-from ves_twin.machines.mjcf.description import CORNER, RigDescription
-from ves_twin.machines.mjcf.forward import MjcfForward
-from ves_twin.machines.mjcf.machine import Rig
+from ves_twin.machines.mjcf.motion.forward import MjcfForward
+from ves_twin.machines.mjcf.rig.description import CORNER, RigDescription
+from ves_twin.machines.mjcf.rig.machine import Rig
 
 MODEL = """<mujoco><option timestep="0.005" gravity="0 0 0" integrator="implicitfast"/>
   <worldbody><body name="cart"><joint name="rail" type="slide" axis="1 0 0"/>

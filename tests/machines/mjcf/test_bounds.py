@@ -7,9 +7,9 @@ import pytest
 from two_link import programme, rig, write_files
 
 from ves_twin.core.errors import VesTwinError
-from ves_twin.machines.mjcf.description import Mode
-from ves_twin.machines.mjcf.forward import MjcfForward
-from ves_twin.machines.mjcf.machine import Rig
+from ves_twin.machines.mjcf.motion.forward import MjcfForward
+from ves_twin.machines.mjcf.rig.description import Mode
+from ves_twin.machines.mjcf.rig.machine import Rig
 
 FED = programme()
 

@@ -9,8 +9,8 @@ import pytest
 from ves_twin.diagnosis.bank.linearise import linearise
 from ves_twin.diagnosis.model.forward import Excitation
 from ves_twin.diagnosis.record.runs import Runs
-from ves_twin.machines.mjcf.forward import MjcfForward
-from ves_twin.machines.mjcf.machine import Rig
+from ves_twin.machines.mjcf.motion.forward import MjcfForward
+from ves_twin.machines.mjcf.rig.machine import Rig
 from ves_twin.machines.new_machine import new_machine
 
 SWING = """

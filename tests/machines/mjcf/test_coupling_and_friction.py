@@ -11,9 +11,9 @@ import pytest
 from ves_twin.core.errors import InvalidInputError
 from ves_twin.diagnosis.model.forward import Excitation
 from ves_twin.effects import ActuatorDeadband, FrictionBehindGap, StribeckFriction
-from ves_twin.machines.mjcf.description import Mode
-from ves_twin.machines.mjcf.forward import MjcfForward
-from ves_twin.machines.mjcf.machine import Rig
+from ves_twin.machines.mjcf.motion.forward import MjcfForward
+from ves_twin.machines.mjcf.rig.description import Mode
+from ves_twin.machines.mjcf.rig.machine import Rig
 
 MODEL = """
 <mujoco>
@@ -183,8 +183,8 @@ def test_stribeck_friction_is_full_when_slow_and_gone_when_fast():
 
 
 def test_an_extended_machine_with_a_coupling_loads_again_with_it(tmp_path):
-    from ves_twin.machines.mjcf.description import Setting
-    from ves_twin.machines.mjcf.extend import write_rig
+    from ves_twin.machines.mjcf.rig.description import Setting
+    from ves_twin.machines.mjcf.rig.extend import write_rig
 
     rig = coupled(tmp_path, ("coupling_viscous", "sum"))
     told = rig.description.model_copy(

@@ -8,8 +8,8 @@ import pytest
 
 from ves_twin.core.errors import InvalidInputError
 from ves_twin.diagnosis.model.forward import Excitation
-from ves_twin.machines.mjcf.forward import MjcfForward
-from ves_twin.machines.mjcf.machine import Rig
+from ves_twin.machines.mjcf.motion.forward import MjcfForward
+from ves_twin.machines.mjcf.rig.machine import Rig
 
 BOX = """
 <mujoco model="box">

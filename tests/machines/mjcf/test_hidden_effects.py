@@ -13,8 +13,8 @@ from ves_twin.diagnosis.model.forward import Excitation
 from ves_twin.diagnosis.settings import Settings
 from ves_twin.diagnosis.verdict.verdict import Kind
 from ves_twin.machines.diagnose import diagnose
-from ves_twin.machines.mjcf.forward import MjcfForward
-from ves_twin.machines.mjcf.machine import Rig
+from ves_twin.machines.mjcf.motion.forward import MjcfForward
+from ves_twin.machines.mjcf.rig.machine import Rig
 
 LIBRARY = {
     "coulomb_friction": "a b",

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 from two_link import TARGETS, programme, rig
 
-from ves_twin.machines.mjcf import inverse
-from ves_twin.machines.mjcf.forward import MjcfForward
+from ves_twin.machines.mjcf.motion import inverse
+from ves_twin.machines.mjcf.motion.forward import MjcfForward
 
 ROUND_OFF = 1e-9
 """Of what a cause moves: directions are computed by a departure of a tenth."""

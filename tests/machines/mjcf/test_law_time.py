@@ -9,7 +9,7 @@ from ves_twin.diagnosis.law import explained
 from ves_twin.diagnosis.law.result import LAW
 from ves_twin.diagnosis.record.runs import Runs
 from ves_twin.diagnosis.settings import Settings
-from ves_twin.machines.mjcf.forward import MjcfForward
+from ves_twin.machines.mjcf.motion.forward import MjcfForward
 
 
 @pytest.mark.parametrize(

@@ -19,12 +19,12 @@ from ves_twin.diagnosis.verdict.verdict import Kind
 from ves_twin.effects.law import Law, LawKind, LawShape
 from ves_twin.effects.law_table import LawTable
 from ves_twin.machines.diagnose import diagnose
-from ves_twin.machines.mjcf.description import Mode
-from ves_twin.machines.mjcf.extend import write_rig
-from ves_twin.machines.mjcf.forward import MjcfForward
-from ves_twin.machines.mjcf.machine import Rig
+from ves_twin.machines.mjcf.inputs.programmes import multisine
 from ves_twin.machines.mjcf.mjcf_machine import MjcfMachine
-from ves_twin.machines.mjcf.programmes import multisine
+from ves_twin.machines.mjcf.motion.forward import MjcfForward
+from ves_twin.machines.mjcf.rig.description import Mode
+from ves_twin.machines.mjcf.rig.extend import write_rig
+from ves_twin.machines.mjcf.rig.machine import Rig
 
 FORWARD = MjcfForward.of(MACHINE)
 SPAN = (-20.0, 20.0)

@@ -13,8 +13,8 @@ from ves_twin.core.errors import UnknownNameError, VesTwinError
 from ves_twin.diagnosis.model.forward import Excitation
 from ves_twin.effects import FrictionBehindGap
 from ves_twin.effects.law import Law, LawKind, LawShape, variable_along
-from ves_twin.machines.mjcf.description import Mode
-from ves_twin.machines.mjcf.forward import MjcfForward
+from ves_twin.machines.mjcf.motion.forward import MjcfForward
+from ves_twin.machines.mjcf.rig.description import Mode
 
 COUPLED = {"coupling_viscous": "sum difference", "joint_spring": "a", "friction_behind_gap": "a b"}
 LEVEL, TRAVEL, GAP = 1.5, 0.05, 0.1

@@ -13,10 +13,10 @@ from ves_twin.diagnosis.model.forward import Excitation
 from ves_twin.diagnosis.record.preprocess import preprocess
 from ves_twin.effects.law import Law, LawKind, LawShape
 from ves_twin.machines.compare import compare
-from ves_twin.machines.mjcf.forward import MjcfForward
-from ves_twin.machines.mjcf.machine import Rig
-from ves_twin.machines.mjcf.read import read_recording
-from ves_twin.machines.mjcf.started import started
+from ves_twin.machines.mjcf.motion.forward import MjcfForward
+from ves_twin.machines.mjcf.motion.started import started
+from ves_twin.machines.mjcf.recordings.read import read_recording
+from ves_twin.machines.mjcf.rig.machine import Rig
 
 MODEL = """<mujoco model="slide">
   <option timestep="0.005" gravity="0 0 0" integrator="implicitfast"/>

@@ -10,10 +10,10 @@ from ves_twin.diagnosis.verdict.verdict import Kind
 from ves_twin.machines.compare import compare
 from ves_twin.machines.data_folder import find_data
 from ves_twin.machines.diagnose import diagnose
-from ves_twin.machines.mjcf.columns import read_rig_recording
-from ves_twin.machines.mjcf.description import Mode
-from ves_twin.machines.mjcf.interleaved_split import alternate
-from ves_twin.machines.mjcf.machine import Rig
+from ves_twin.machines.mjcf.recordings.columns import read_rig_recording
+from ves_twin.machines.mjcf.recordings.interleaved_split import alternate
+from ves_twin.machines.mjcf.rig.description import Mode
+from ves_twin.machines.mjcf.rig.machine import Rig
 
 pytestmark = [pytest.mark.nightly, pytest.mark.timeout(900)]
 """A minute of processor time each diagnosis, several on a busy machine."""

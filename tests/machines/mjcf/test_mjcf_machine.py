@@ -19,10 +19,10 @@ from ves_twin.diagnosis.model.forward import Excitation
 from ves_twin.diagnosis.record.residuals.noise import NoiseSource
 from ves_twin.diagnosis.settings import Settings
 from ves_twin.machines.machine import SETPOINTS, Machine, Material, Named
-from ves_twin.machines.mjcf.description import Mode
-from ves_twin.machines.mjcf.excitations import BANDS, offered, write_inputs
-from ves_twin.machines.mjcf.forward import MjcfForward
-from ves_twin.machines.mjcf.inputs import BORNE
+from ves_twin.machines.mjcf.inputs.excitations import BANDS, offered, write_inputs
+from ves_twin.machines.mjcf.inputs.inputs import BORNE
+from ves_twin.machines.mjcf.motion.forward import MjcfForward
+from ves_twin.machines.mjcf.rig.description import Mode
 from ves_twin.machines.tolerance import Tolerance
 from ves_twin.report.comparison.page import comparison_page
 

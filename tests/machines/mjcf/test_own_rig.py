@@ -15,8 +15,8 @@ from sizes import nightly_but
 
 from ves_twin.cli.main import main
 from ves_twin.data.import_map import ImportMap
-from ves_twin.machines.mjcf.machine import Rig
-from ves_twin.machines.mjcf.read import read_recording
+from ves_twin.machines.mjcf.recordings.read import read_recording
+from ves_twin.machines.mjcf.rig.machine import Rig
 
 PAGE = Path(__file__).parents[3] / "docs" / "bring-your-own-rig.md"
 

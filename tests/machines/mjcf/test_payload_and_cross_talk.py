@@ -13,11 +13,11 @@ from numpy.testing import assert_allclose
 from ves_twin.core.errors import VesTwinError
 from ves_twin.diagnosis.model.forward import Excitation
 from ves_twin.effects import BodyMass, MassCentre, Payload
-from ves_twin.machines.mjcf.description import Mode
-from ves_twin.machines.mjcf.extend import write_rig
-from ves_twin.machines.mjcf.forward import MjcfForward
-from ves_twin.machines.mjcf.machine import Rig
-from ves_twin.machines.mjcf.places import place_of
+from ves_twin.machines.mjcf.motion.forward import MjcfForward
+from ves_twin.machines.mjcf.rig.description import Mode
+from ves_twin.machines.mjcf.rig.extend import write_rig
+from ves_twin.machines.mjcf.rig.machine import Rig
+from ves_twin.machines.mjcf.rig.places import place_of
 
 OFFERED = {"ripple": "a.12 a.24", "dahl_friction": "b", "payload": "two", "actuator_deadband": "ma"}
 TALK = '[[effects]]\nkind = "drive_cross_talk"\non = ["ma from mb", "mb from ma"]\n'

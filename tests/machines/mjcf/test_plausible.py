@@ -12,11 +12,11 @@ from ves_twin.core.errors import InvalidInputError
 from ves_twin.core.recording.recording import Recording, RecordingInfo
 from ves_twin.diagnosis.model.forward import Excitation
 from ves_twin.machines.diagnose import diagnose
-from ves_twin.machines.mjcf.description import Mode
-from ves_twin.machines.mjcf.forward import MjcfForward
-from ves_twin.machines.mjcf.machine import Rig
 from ves_twin.machines.mjcf.mjcf_machine import MjcfMachine
+from ves_twin.machines.mjcf.motion.forward import MjcfForward
 from ves_twin.machines.mjcf.plausible.implausible import implausible
+from ves_twin.machines.mjcf.rig.description import Mode
+from ves_twin.machines.mjcf.rig.machine import Rig
 
 
 @pytest.fixture(scope="module")

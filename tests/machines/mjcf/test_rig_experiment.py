@@ -15,13 +15,13 @@ from ves_twin.core.recording.recording import Recording, RecordingInfo
 from ves_twin.data.import_map import ImportMap
 from ves_twin.diagnosis.model.forward import Excitation
 from ves_twin.machines.machine import Material, Named
-from ves_twin.machines.mjcf.applied import applied, rig_of
-from ves_twin.machines.mjcf.description import Mode
-from ves_twin.machines.mjcf.experiment import MjcfExperiment
-from ves_twin.machines.mjcf.forward import MjcfForward
-from ves_twin.machines.mjcf.machine import Rig
 from ves_twin.machines.mjcf.mjcf_machine import MjcfMachine
-from ves_twin.machines.mjcf.read import read_recording
+from ves_twin.machines.mjcf.motion.forward import MjcfForward
+from ves_twin.machines.mjcf.recordings.applied import applied, rig_of
+from ves_twin.machines.mjcf.recordings.experiment import MjcfExperiment
+from ves_twin.machines.mjcf.recordings.read import read_recording
+from ves_twin.machines.mjcf.rig.description import Mode
+from ves_twin.machines.mjcf.rig.machine import Rig
 
 MAP = """
 schema = 1

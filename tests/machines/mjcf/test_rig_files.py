@@ -18,12 +18,12 @@ from ves_twin.core.resources import resource_folder
 from ves_twin.diagnosis.verdict.verdict import Basis, Cause, Estimate, Kind, Statistics, Verdict
 from ves_twin.machines.data_folder import find_data
 from ves_twin.machines.load import open_machine
-from ves_twin.machines.mjcf.columns import read_rig_recording
-from ves_twin.machines.mjcf.extend import extended, write_rig
-from ves_twin.machines.mjcf.forward import MjcfForward
-from ves_twin.machines.mjcf.interleaved_split import alternate
-from ves_twin.machines.mjcf.load_description import is_rig, shipped_rigs
-from ves_twin.machines.mjcf.machine import Rig
+from ves_twin.machines.mjcf.motion.forward import MjcfForward
+from ves_twin.machines.mjcf.recordings.columns import read_rig_recording
+from ves_twin.machines.mjcf.recordings.interleaved_split import alternate
+from ves_twin.machines.mjcf.rig.extend import extended, write_rig
+from ves_twin.machines.mjcf.rig.load_description import is_rig, shipped_rigs
+from ves_twin.machines.mjcf.rig.machine import Rig
 
 LOG = "t,f,m,set,x,a,fx,fy,fz\n" + "\n".join(
     f"{0.01 * k:.2f},{k},1,0,0.5,0,1,2,3" for k in range(300)

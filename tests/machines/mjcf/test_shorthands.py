@@ -10,10 +10,10 @@ import pytest
 from two_link import MODEL
 
 from ves_twin.core.errors import VesTwinError
-from ves_twin.machines.mjcf.columns import held, read_rig_recording
-from ves_twin.machines.mjcf.description import Mode
-from ves_twin.machines.mjcf.extend import write_rig
-from ves_twin.machines.mjcf.machine import Rig
+from ves_twin.machines.mjcf.recordings.columns import held, read_rig_recording
+from ves_twin.machines.mjcf.rig.description import Mode
+from ves_twin.machines.mjcf.rig.extend import write_rig
+from ves_twin.machines.mjcf.rig.machine import Rig
 
 SHORT = """
 schema = 1

@@ -15,15 +15,15 @@ from ves_twin.diagnosis.model.forward import Excitation
 from ves_twin.effects import ActuatorDelay, Backlash, Effect
 from ves_twin.effects.element import Element
 from ves_twin.effects.row import Anywhere
-from ves_twin.machines.mjcf import inverse
-from ves_twin.machines.mjcf.applied import applied
-from ves_twin.machines.mjcf.description import Mode
-from ves_twin.machines.mjcf.experiment import MjcfExperiment
-from ves_twin.machines.mjcf.forward import MjcfForward
-from ves_twin.machines.mjcf.inverse import efforts_of_motion
-from ves_twin.machines.mjcf.machine import Rig
-from ves_twin.machines.mjcf.stepping import motion_of_drive
-from ves_twin.machines.mjcf.work import Work
+from ves_twin.machines.mjcf.motion import inverse
+from ves_twin.machines.mjcf.motion.forward import MjcfForward
+from ves_twin.machines.mjcf.motion.inverse import efforts_of_motion
+from ves_twin.machines.mjcf.motion.stepping import motion_of_drive
+from ves_twin.machines.mjcf.motion.work import Work
+from ves_twin.machines.mjcf.recordings.applied import applied
+from ves_twin.machines.mjcf.recordings.experiment import MjcfExperiment
+from ves_twin.machines.mjcf.rig.description import Mode
+from ves_twin.machines.mjcf.rig.machine import Rig
 
 INNER = slice(200, -200)
 """Rows that the ends of a zero-phase filter do not reach."""

@@ -14,8 +14,8 @@ from ves_twin.diagnosis.model.forward import Excitation
 from ves_twin.effects import JointCompliance
 from ves_twin.effects.element import Element
 from ves_twin.effects.place import Place
-from ves_twin.machines.mjcf.description import Mode, Setting
-from ves_twin.machines.mjcf.forward import MjcfForward
+from ves_twin.machines.mjcf.motion.forward import MjcfForward
+from ves_twin.machines.mjcf.rig.description import Mode, Setting
 
 INNER = slice(200, -200)
 """Rows that the ends of a zero-phase filter do not reach."""

@@ -8,7 +8,7 @@ from typing import final
 from ves_twin.core.recording.recording import Recording
 from ves_twin.envs.baselines.retuning import Retuning
 from ves_twin.envs.policy import TrialSpec
-from ves_twin.machines.mjcf.machine import Rig
+from ves_twin.machines.mjcf.rig.machine import Rig
 
 
 @final

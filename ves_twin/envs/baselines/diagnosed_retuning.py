@@ -10,8 +10,8 @@ from ves_twin.core.recording.recording import Recording
 from ves_twin.envs.baselines.retuning import Retuning
 from ves_twin.envs.policy import TrialSpec
 from ves_twin.machines.diagnose import diagnose
-from ves_twin.machines.mjcf.machine import Rig
 from ves_twin.machines.mjcf.mjcf_machine import MjcfMachine
+from ves_twin.machines.mjcf.rig.machine import Rig
 
 
 @final

@@ -13,8 +13,8 @@ from ves_twin.core.types import FloatArray
 from ves_twin.diagnosis.model.forward import Excitation
 from ves_twin.envs.baselines.retuning import Retuning
 from ves_twin.envs.policy import TrialSpec
-from ves_twin.machines.mjcf.forward import MjcfForward
-from ves_twin.machines.mjcf.machine import Rig
+from ves_twin.machines.mjcf.motion.forward import MjcfForward
+from ves_twin.machines.mjcf.rig.machine import Rig
 
 ROUNDS = 40
 """Of the fit; gain, mass and inertia are told apart by little, so that twelve end far from it."""

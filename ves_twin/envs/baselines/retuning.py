@@ -12,7 +12,7 @@ from ves_twin.core.errors import InvalidInputError
 from ves_twin.core.recording.recording import Recording
 from ves_twin.core.types import FloatArray
 from ves_twin.envs.policy import Policy, TrialSpec
-from ves_twin.machines.mjcf.machine import Rig
+from ves_twin.machines.mjcf.rig.machine import Rig
 
 EFFORT = 0.8
 """Test effort of an experiment, as a share of its bound."""

@@ -24,23 +24,23 @@ from ves_twin.machines.case import Case
 from ves_twin.machines.data_folder import find_data
 from ves_twin.machines.drawing import Drawing
 from ves_twin.machines.machine import Machine, Material, Named, Prepared
-from ves_twin.machines.mjcf.applied import applied
-from ves_twin.machines.mjcf.case import mjcf_cases
-from ves_twin.machines.mjcf.design_space import MjcfDesignSpace
-from ves_twin.machines.mjcf.drawn import drawn
-from ves_twin.machines.mjcf.excitations import SECONDS, offered, write_inputs
-from ves_twin.machines.mjcf.experiment import MjcfExperiment
-from ves_twin.machines.mjcf.extend import extended, write_rig
-from ves_twin.machines.mjcf.forward import MjcfForward
-from ves_twin.machines.mjcf.further import with_further
-from ves_twin.machines.mjcf.interleaved_split import alternate
-from ves_twin.machines.mjcf.machine import Rig
-from ves_twin.machines.mjcf.pieces import pieces
+from ves_twin.machines.mjcf.inputs.design_space import MjcfDesignSpace
+from ves_twin.machines.mjcf.inputs.excitations import SECONDS, offered, write_inputs
+from ves_twin.machines.mjcf.inputs.further import with_further
+from ves_twin.machines.mjcf.inputs.programmes import releases
+from ves_twin.machines.mjcf.motion.forward import MjcfForward
+from ves_twin.machines.mjcf.motion.pieces import pieces
+from ves_twin.machines.mjcf.motion.started import started
 from ves_twin.machines.mjcf.plausible.implausible import check_plausible
-from ves_twin.machines.mjcf.programmes import releases
-from ves_twin.machines.mjcf.read import read_recording
-from ves_twin.machines.mjcf.signals import rig_ranges, rig_signals
-from ves_twin.machines.mjcf.started import started
+from ves_twin.machines.mjcf.recordings.applied import applied
+from ves_twin.machines.mjcf.recordings.case import mjcf_cases
+from ves_twin.machines.mjcf.recordings.experiment import MjcfExperiment
+from ves_twin.machines.mjcf.recordings.interleaved_split import alternate
+from ves_twin.machines.mjcf.recordings.read import read_recording
+from ves_twin.machines.mjcf.recordings.signals import rig_ranges, rig_signals
+from ves_twin.machines.mjcf.rig.drawn import drawn
+from ves_twin.machines.mjcf.rig.extend import extended, write_rig
+from ves_twin.machines.mjcf.rig.machine import Rig
 from ves_twin.scenario.experiment_file import BY_NUMBERS, ExperimentFile
 
 SORTS = ("measured", "held_out", "commissioning", "baseline")

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from ves_twin.machines.mjcf.draft.draft import draft
-from ves_twin.machines.mjcf.machine import Rig
+from ves_twin.machines.mjcf.rig.machine import Rig
 
 
 def drafted(arm, log, rate=None):

@@ -11,10 +11,10 @@ from drafted import changed, drafted, scales
 from three_joints import ARM
 
 from ves_twin.diagnosis.model.forward import Excitation
-from ves_twin.machines.mjcf.columns import read_rig_recording
-from ves_twin.machines.mjcf.forward import MjcfForward
+from ves_twin.machines.mjcf.motion.forward import MjcfForward
+from ves_twin.machines.mjcf.parts.predecessor import predecessor
 from ves_twin.machines.mjcf.plausible.implausible import implausible
-from ves_twin.machines.mjcf.predecessor import predecessor
+from ves_twin.machines.mjcf.recordings.columns import read_rig_recording
 
 CHAIN = """<mujoco><worldbody><body>
   <joint name="one" axis="0 1 0"/><geom size="0.1"/>

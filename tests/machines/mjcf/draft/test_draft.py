@@ -10,7 +10,7 @@ import pytest
 from drafted import changed, drafted, scales
 
 from ves_twin.machines.mjcf.draft.draft import draft
-from ves_twin.machines.mjcf.read import read_recording
+from ves_twin.machines.mjcf.recordings.read import read_recording
 
 
 def columns_of(rig):

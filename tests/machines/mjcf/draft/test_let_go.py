@@ -12,8 +12,8 @@ from ves_twin.core.errors import InvalidInputError
 from ves_twin.diagnosis.settings import Settings
 from ves_twin.machines.diagnose import verdict_on
 from ves_twin.machines.machine import Machine
-from ves_twin.machines.mjcf.columns import read_rig_recording
-from ves_twin.machines.mjcf.machine import Rig
+from ves_twin.machines.mjcf.recordings.columns import read_rig_recording
+from ves_twin.machines.mjcf.rig.machine import Rig
 
 DRY, PERIOD, STEPS = 0.004, 0.02, 20
 

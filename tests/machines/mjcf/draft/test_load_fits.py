@@ -9,12 +9,12 @@ import numpy as np
 import pytest
 from three_joints import ARM
 
-from ves_twin.machines.mjcf.columns import read_rig_recording
 from ves_twin.machines.mjcf.draft.draft import draft
-from ves_twin.machines.mjcf.inertials import inertials, point_mass
-from ves_twin.machines.mjcf.machine import Rig
+from ves_twin.machines.mjcf.parts.inertials import inertials, point_mass
 from ves_twin.machines.mjcf.plausible import implausible as module
 from ves_twin.machines.mjcf.plausible.implausible import implausible
+from ves_twin.machines.mjcf.recordings.columns import read_rig_recording
+from ves_twin.machines.mjcf.rig.machine import Rig
 
 WRISTED = ARM.replace(
     """mass="1"/>

@@ -13,7 +13,7 @@ from ves_twin.machines.mjcf.draft.changes import changes
 from ves_twin.machines.mjcf.draft.match import Match
 from ves_twin.machines.mjcf.draft.names import likeness
 from ves_twin.machines.mjcf.draft.spots import Quantity, Spot
-from ves_twin.machines.mjcf.machine import Rig
+from ves_twin.machines.mjcf.rig.machine import Rig
 from ves_twin.machines.new_machine import new_machine
 
 LEGS = """

@@ -10,7 +10,7 @@ from ves_twin.core.errors import InvalidInputError
 from ves_twin.machines.mjcf.draft.draft import draft
 from ves_twin.machines.mjcf.draft.match import _whole_sensors
 from ves_twin.machines.mjcf.draft.spots import Quantity, Spot
-from ves_twin.machines.mjcf.machine import Rig
+from ves_twin.machines.mjcf.rig.machine import Rig
 
 MASS, SPRING, DAMPER, PERIOD = 4.0, 2500.0, 20.0, 0.005
 

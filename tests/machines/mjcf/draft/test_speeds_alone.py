@@ -7,10 +7,10 @@ import numpy as np
 import pytest
 
 from ves_twin.core.errors import InvalidInputError
-from ves_twin.machines.mjcf.columns import read_rig_recording
 from ves_twin.machines.mjcf.draft.draft import draft
-from ves_twin.machines.mjcf.machine import Rig
 from ves_twin.machines.mjcf.plausible.implausible import implausible
+from ves_twin.machines.mjcf.recordings.columns import read_rig_recording
+from ves_twin.machines.mjcf.rig.machine import Rig
 
 PENDULUM = """
 <mujoco>

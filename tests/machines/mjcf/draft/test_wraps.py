@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from drafted import changed, drafted
 
-from ves_twin.machines.mjcf.columns import read_rig_recording
+from ves_twin.machines.mjcf.recordings.columns import read_rig_recording
 
 
 def test_a_joint_that_goes_round_is_read_as_it_turned_and_that_is_said(swing, write):

@@ -11,9 +11,9 @@ import numpy as np
 
 from ves_twin.machines.mjcf.draft.match import Match
 from ves_twin.machines.mjcf.draft.spots import Quantity
-from ves_twin.machines.mjcf.places import driven_joint
+from ves_twin.machines.mjcf.parts.predecessor import predecessor
 from ves_twin.machines.mjcf.plausible.readings import TURNS
-from ves_twin.machines.mjcf.predecessor import predecessor
+from ves_twin.machines.mjcf.rig.places import driven_joint
 
 DEGREE, TURN = np.pi / 180.0, 2.0 * np.pi
 

@@ -9,7 +9,6 @@ import mujoco
 import numpy as np
 
 from ves_twin.core.types import FloatArray
-from ves_twin.machines.mjcf.cyclic import is_cyclic, turned_by
 from ves_twin.machines.mjcf.draft.changes import DEGREE, changes, misnamed
 from ves_twin.machines.mjcf.draft.effort_fit import FAR, LOADED, STRONG, TELLS, EffortFit
 from ves_twin.machines.mjcf.draft.late import Pushed, words_of_lag
@@ -22,8 +21,9 @@ from ves_twin.machines.mjcf.draft.rates import differs, rated
 from ves_twin.machines.mjcf.draft.scaled import words_of_scale
 from ves_twin.machines.mjcf.draft.spots import Quantity, is_servo
 from ves_twin.machines.mjcf.draft.too_much_friction import too_much_friction
-from ves_twin.machines.mjcf.inverse import smoothed
-from ves_twin.machines.mjcf.places import driven_joint
+from ves_twin.machines.mjcf.motion.inverse import smoothed
+from ves_twin.machines.mjcf.parts.cyclic import is_cyclic, turned_by
+from ves_twin.machines.mjcf.rig.places import driven_joint
 
 GAINED = 0.15
 """Share of one joint's power that a change must explain more to be proposed: well above what

@@ -9,8 +9,6 @@ import mujoco
 import numpy as np
 
 from ves_twin.core.errors import InvalidInputError
-from ves_twin.machines.mjcf.chain import chain
-from ves_twin.machines.mjcf.description import CORNER, Mode
 from ves_twin.machines.mjcf.draft.check import Checked
 from ves_twin.machines.mjcf.draft.closed_chain import closed_chain
 from ves_twin.machines.mjcf.draft.estimates import noise_of, rest_of, travel
@@ -19,6 +17,8 @@ from ves_twin.machines.mjcf.draft.match import Match, Matches
 from ves_twin.machines.mjcf.draft.motion import band_of
 from ves_twin.machines.mjcf.draft.names import is_effort
 from ves_twin.machines.mjcf.draft.spots import ON_JOINT, Quantity, is_motor, single_joints
+from ves_twin.machines.mjcf.parts.chain import chain
+from ves_twin.machines.mjcf.rig.description import CORNER, Mode
 
 BAND = 2.0
 """Band that is analysed where motion is given, as a multiple of that which has 99 % of the power

@@ -7,7 +7,7 @@ from collections.abc import Collection
 import mujoco
 import numpy as np
 
-from ves_twin.machines.mjcf.loops import dense_copy, has_loops, loop_rows
+from ves_twin.machines.mjcf.parts.loops import dense_copy, has_loops, loop_rows
 
 
 def closed_chain(model: mujoco.MjModel, driven: Collection[str]) -> dict[str, float]:

@@ -16,8 +16,6 @@ from ves_twin.core.quantity import quantity
 from ves_twin.core.recording.recording import Recording
 from ves_twin.core.types import BoolArray, FloatArray
 from ves_twin.diagnosis.model.forward import Excitation
-from ves_twin.machines.mjcf.columns import read_rig_recording
-from ves_twin.machines.mjcf.description import KIND, Mode, RigDescription
 from ves_twin.machines.mjcf.draft.by_number import by_number
 from ves_twin.machines.mjcf.draft.check import Checked, checked
 from ves_twin.machines.mjcf.draft.chosen import Chosen, chosen
@@ -30,9 +28,11 @@ from ves_twin.machines.mjcf.draft.shape import by_shape
 from ves_twin.machines.mjcf.draft.spots import spots_of
 from ves_twin.machines.mjcf.draft.unmeasured import unmeasured
 from ves_twin.machines.mjcf.draft.untold import untold
-from ves_twin.machines.mjcf.forward import MjcfForward
-from ves_twin.machines.mjcf.machine import Rig
-from ves_twin.machines.mjcf.pieces import pieces
+from ves_twin.machines.mjcf.motion.forward import MjcfForward
+from ves_twin.machines.mjcf.motion.pieces import pieces
+from ves_twin.machines.mjcf.recordings.columns import read_rig_recording
+from ves_twin.machines.mjcf.rig.description import KIND, Mode, RigDescription
+from ves_twin.machines.mjcf.rig.machine import Rig
 
 HALF = 0.5
 """Share of a signal that a model must explain open loop for commands to be fed in: an arm that

@@ -11,15 +11,15 @@ import mujoco
 import numpy as np
 
 from ves_twin.core.units import SI_UNITS
-from ves_twin.machines.mjcf.column import LAB_UNITS
-from ves_twin.machines.mjcf.description import Mode
 from ves_twin.machines.mjcf.draft.check import Checked
 from ves_twin.machines.mjcf.draft.chosen import RATES, Chosen
 from ves_twin.machines.mjcf.draft.estimates import travel, two_digits, typical
 from ves_twin.machines.mjcf.draft.log_columns import LogColumns
 from ves_twin.machines.mjcf.draft.match import Match, Matches
 from ves_twin.machines.mjcf.draft.spots import Quantity, is_motor
-from ves_twin.machines.mjcf.inverse import smoothed
+from ves_twin.machines.mjcf.motion.inverse import smoothed
+from ves_twin.machines.mjcf.rig.column import LAB_UNITS
+from ves_twin.machines.mjcf.rig.description import Mode
 
 SHARES = {
     "mass": ("5 %", "body_mass"),

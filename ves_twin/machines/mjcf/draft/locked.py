@@ -6,11 +6,11 @@ from collections.abc import Sequence
 
 import mujoco
 
-from ves_twin.machines.mjcf.chain import chain
 from ves_twin.machines.mjcf.draft.match import Match
 from ves_twin.machines.mjcf.draft.spots import Quantity, single_joints
-from ves_twin.machines.mjcf.loops import has_loops
-from ves_twin.machines.mjcf.places import driven_joint, tendon_joints
+from ves_twin.machines.mjcf.parts.chain import chain
+from ves_twin.machines.mjcf.parts.loops import has_loops
+from ves_twin.machines.mjcf.rig.places import driven_joint, tendon_joints
 
 LIGHT = 0.1
 """Share of what a measured joint carries up to which a part may hang on a joint that nothing

@@ -12,7 +12,6 @@ from scipy.optimize import linear_sum_assignment
 from ves_twin.core.units import to_unit
 from ves_twin.data.column_expression import quoted
 from ves_twin.data.unit_names import bare_name, spelled
-from ves_twin.machines.mjcf.column import LAB_UNITS
 from ves_twin.machines.mjcf.draft.log_columns import LogColumns
 from ves_twin.machines.mjcf.draft.names import (
     ELECTRICAL,
@@ -24,6 +23,7 @@ from ves_twin.machines.mjcf.draft.names import (
     likeness,
 )
 from ves_twin.machines.mjcf.draft.spots import Quantity, Spot, words_of
+from ves_twin.machines.mjcf.rig.column import LAB_UNITS
 
 RIVAL = 2.0
 """A rival is worth telling where its likeness is less than this below: one piece of evidence."""

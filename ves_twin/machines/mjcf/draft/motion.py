@@ -10,7 +10,7 @@ import numpy as np
 from scipy.signal import welch
 
 from ves_twin.core.types import FloatArray
-from ves_twin.machines.mjcf.inverse import smoothed
+from ves_twin.machines.mjcf.motion.inverse import smoothed
 
 MOST = 1500
 """Rows at which the efforts are computed: enough to tell a sign, and a tenth of a second."""

@@ -7,8 +7,8 @@ from collections.abc import Collection
 from dataclasses import dataclass
 
 from ves_twin.data.unit_names import bare_name, spelled
-from ves_twin.machines.mjcf.column import LAB_UNITS
 from ves_twin.machines.mjcf.draft.spots import Quantity, Spot, own_number, words_of
+from ves_twin.machines.mjcf.rig.column import LAB_UNITS
 
 POSITION = (
     "q qm qg pos position angle angles ang theta th phi psi alpha x y z s stroke disp displacement"

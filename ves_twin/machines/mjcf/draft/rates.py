@@ -12,8 +12,8 @@ from ves_twin.machines.mjcf.draft.changes import DEGREE, TURN
 from ves_twin.machines.mjcf.draft.log_columns import LogColumns
 from ves_twin.machines.mjcf.draft.match import Match
 from ves_twin.machines.mjcf.draft.spots import Quantity
-from ves_twin.machines.mjcf.inverse import smoothed
-from ves_twin.machines.mjcf.predecessor import predecessor
+from ves_twin.machines.mjcf.motion.inverse import smoothed
+from ves_twin.machines.mjcf.parts.predecessor import predecessor
 
 FOLLOWS = 0.5
 """Correlation below which a speed is none of its position."""

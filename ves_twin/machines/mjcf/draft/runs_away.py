@@ -7,7 +7,7 @@ import numpy as np
 from ves_twin.core.recording.recording import Recording
 from ves_twin.core.types import FloatArray
 from ves_twin.diagnosis.model.forward import Excitation
-from ves_twin.machines.mjcf.forward import MjcfForward
+from ves_twin.machines.mjcf.motion.forward import MjcfForward
 
 NUDGE = 1e-3
 """Of the sd of a start: small enough that what comes of it is a straight line's worth."""

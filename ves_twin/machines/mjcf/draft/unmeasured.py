@@ -8,13 +8,13 @@ import numpy as np
 
 from ves_twin.core.recording.recording import Recording
 from ves_twin.diagnosis.model.forward import Excitation
-from ves_twin.machines.mjcf.column import Column
-from ves_twin.machines.mjcf.description import Compared
 from ves_twin.machines.mjcf.draft.estimates import travel, typical
 from ves_twin.machines.mjcf.draft.spots import single_joints
-from ves_twin.machines.mjcf.forward import MjcfForward
-from ves_twin.machines.mjcf.joint_units import joint_units
-from ves_twin.machines.mjcf.machine import Rig
+from ves_twin.machines.mjcf.motion.forward import MjcfForward
+from ves_twin.machines.mjcf.parts.joint_units import joint_units
+from ves_twin.machines.mjcf.rig.column import Column
+from ves_twin.machines.mjcf.rig.description import Compared
+from ves_twin.machines.mjcf.rig.machine import Rig
 
 
 def unmeasured(rig: Rig, recording: Recording) -> dict[str, dict[str, float]]:

@@ -8,7 +8,7 @@ import mujoco
 
 from ves_twin.machines.mjcf.draft.match import Match
 from ves_twin.machines.mjcf.draft.spots import Quantity
-from ves_twin.machines.mjcf.places import driven_joint, tendon_joints
+from ves_twin.machines.mjcf.rig.places import driven_joint, tendon_joints
 
 FEW = 6
 """Actuators that are told by name."""

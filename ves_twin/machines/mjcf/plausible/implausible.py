@@ -9,10 +9,10 @@ import numpy as np
 
 from ves_twin.core.errors import InvalidInputError
 from ves_twin.core.recording.recording import Recording
-from ves_twin.machines.mjcf.machine import Rig
 from ves_twin.machines.mjcf.plausible.load_fits import load_fits
 from ves_twin.machines.mjcf.plausible.reading import Reading
 from ves_twin.machines.mjcf.plausible.seen import Seen
+from ves_twin.machines.mjcf.rig.machine import Rig
 
 BAD = 0.5
 """Share of an effort's spread that the model, and friction that resists, may leave: a published

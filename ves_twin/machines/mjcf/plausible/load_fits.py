@@ -7,9 +7,9 @@ import numpy as np
 from scipy.optimize import least_squares
 
 from ves_twin.core.types import FloatArray
-from ves_twin.machines.mjcf.places import carries
 from ves_twin.machines.mjcf.plausible.reading import Reading
 from ves_twin.machines.mjcf.plausible.seen import Seen
+from ves_twin.machines.mjcf.rig.places import carries
 
 LOADED = 0.5
 """Share of a machine's mass that a load may have: the strongest arms carry as much as they weigh,

@@ -10,11 +10,11 @@ import numpy as np
 
 from ves_twin.data.column_expression import quoted
 from ves_twin.diagnosis.record.likeness import FACTORS
-from ves_twin.machines.mjcf.forward import MjcfForward
-from ves_twin.machines.mjcf.machine import Rig
-from ves_twin.machines.mjcf.places import driven_joint
+from ves_twin.machines.mjcf.motion.forward import MjcfForward
+from ves_twin.machines.mjcf.parts.predecessor import predecessor
 from ves_twin.machines.mjcf.plausible.reading import Reading
-from ves_twin.machines.mjcf.predecessor import predecessor
+from ves_twin.machines.mjcf.rig.machine import Rig
+from ves_twin.machines.mjcf.rig.places import driven_joint
 
 TURNS = {"a quarter turn": 0.5 * np.pi, "minus a quarter turn": -0.5 * np.pi, "half a turn": np.pi}
 """Between the zeros that laboratories have: hanging, upright, level."""

@@ -12,15 +12,15 @@ from scipy.optimize import nnls
 from ves_twin.core.recording.recording import POSES, Recording
 from ves_twin.core.types import FloatArray
 from ves_twin.diagnosis.model.forward import Excitation
-from ves_twin.machines.mjcf.cyclic import is_cyclic, turned_by
-from ves_twin.machines.mjcf.forward import MjcfForward
-from ves_twin.machines.mjcf.inertials import inertials, point_mass, set_inertials
-from ves_twin.machines.mjcf.inverse import efforts_along, smoothed
-from ves_twin.machines.mjcf.machine import Rig
-from ves_twin.machines.mjcf.places import SINGLE, driven_joint
+from ves_twin.machines.mjcf.motion.forward import MjcfForward
+from ves_twin.machines.mjcf.motion.inverse import efforts_along, smoothed
+from ves_twin.machines.mjcf.motion.work import Work
+from ves_twin.machines.mjcf.parts.cyclic import is_cyclic, turned_by
+from ves_twin.machines.mjcf.parts.inertials import inertials, point_mass, set_inertials
 from ves_twin.machines.mjcf.plausible.reading import Reading
 from ves_twin.machines.mjcf.plausible.readings import Readings
-from ves_twin.machines.mjcf.work import Work
+from ves_twin.machines.mjcf.rig.machine import Rig
+from ves_twin.machines.mjcf.rig.places import SINGLE, driven_joint
 
 ROWS = 10_000
 """Rows of a recording that are looked at, about its middle."""
