@@ -11,6 +11,7 @@ from scipy.stats import norm
 from ves_twin.core.types import FloatArray
 from ves_twin.diagnosis.build_up.averaged import averaged_half_widths
 from ves_twin.diagnosis.build_up.builder import Builder, Start
+from ves_twin.diagnosis.build_up.each_by_itself import each_by_itself
 from ves_twin.diagnosis.build_up.halves import Halves, carried_point
 from ves_twin.diagnosis.build_up.idle import idle
 from ves_twin.diagnosis.build_up.in_full import in_full
@@ -84,7 +85,9 @@ def build_up(
         return None
     desk.progress(0.0, "fitting what is proved, and its intervals")
     evidence = builder.evidence(proof.bench.fit.residual, memory=False, apart=proof.judges.apart)
-    proof, final = _at_work(halves, simpler(proof), point, evidence, held, found.fit)
+    proof, final = _at_work(
+        halves, each_by_itself(simpler(proof)), point, evidence, held, found.fit
+    )
     proof, final = within_range(proof, final, point, evidence)
     before = in_full(halves.regression, (), point, evidence)
     if budget.over:

@@ -28,7 +28,7 @@ def simpler(proof: Proof) -> Proof:
     told = proof
     for n in proof.proved:
         for other in _fewer(told, n):
-            told = exchanged(told, n, other)
+            told = exchanged(told, {n: other})
             if other in told.proved:
                 break
     return told

@@ -43,7 +43,7 @@ def within_range(
     others = stand_ins(proof)
     for n in ends:
         for other in others[n][:MOST]:
-            tried = exchanged(proof, n, other)
+            tried = exchanged(proof, {n: other})
             proof = replace(proof, tested=tried.tested)
             if other not in tried.proved:
                 continue
