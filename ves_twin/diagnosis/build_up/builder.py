@@ -170,7 +170,7 @@ class Builder:
             residual = np.asarray(bare_residual(evidence, fit), float)
             rms = np.maximum(regression.half.rms(residual), regression.quietest)
             left = float(np.mean(np.log(rms)))
-            if left > least + MOVED:  # columns that hide each other: what was before stays
+            if not left <= least + MOVED:  # columns that hide each other, or the plant breaks off
                 break
             if budget.skips(ANEW):  # columns of a whole library about that fit
                 break

@@ -84,7 +84,10 @@ def standing_words(one: Proved) -> str:
     if one.firm:
         return "firm"
     if one.ended:
-        return "at the end of its range, so not proved: it stands for something else"
+        return (
+            "at the end of its range, so not proved: it stands for something else, or the range is"
+            " too narrow (`largest` of the effect, or `typical`)"
+        )
     if one.below_row:
         return "less than a row of the log: its clock explains that as well"
     if one.sublinear:

@@ -19,6 +19,7 @@ from ves_twin.machines.mjcf.draft.milli import in_milli
 from ves_twin.machines.mjcf.draft.motion import Motion, band_of, motion_of
 from ves_twin.machines.mjcf.draft.rates import differs, rated
 from ves_twin.machines.mjcf.draft.scaled import words_of_scale
+from ves_twin.machines.mjcf.draft.servos import followed
 from ves_twin.machines.mjcf.draft.spots import Quantity, is_servo
 from ves_twin.machines.mjcf.draft.too_much_friction import too_much_friction
 from ves_twin.machines.mjcf.motion.inverse import smoothed
@@ -93,7 +94,7 @@ def checked(log: LogColumns, matches: Matches, model: mujoco.MjModel) -> Checked
     moving = positions or [m for m in matches.found if m.spot.name in cyclic]
     band = max((band_of(log.column(m.column), log.period, 0.99) for m in moving), default=1.0)
     corner = min(4.0 * max(band, 1.0 / (log.period * log.rows)), 0.2 / log.period)
-    found, findings = list(matches.found), []
+    found, findings = followed(log, list(matches.found), model)
     motion, explained = None, {}
     findings += words_of_locked(locked)
     before = len(findings)
@@ -208,8 +209,8 @@ class _Judge:
         return [m for m in efforts if not is_servo(self.model, self.model.actuator(m.spot.name).id)]
 
     def pushed(self, found: list[Match]) -> set[int]:
-        """Degrees of freedom of joints whose motors no column tells."""
-        told = {m.spot.name for m in found}
+        """Degrees of freedom of joints that are driven by efforts which no column tells."""
+        told = {m.spot.name for m in self.driving(found)}
         motors = (i for i in range(self.model.nu) if self.model.actuator(i).name not in told)
         joints = {driven_joint(self.model, i) for i in motors}
         return {int(self.model.joint(name).dofadr[0]) for name in joints if name}

@@ -16,7 +16,7 @@ from ves_twin.machines.mjcf.draft.chosen import RATES, Chosen
 from ves_twin.machines.mjcf.draft.estimates import travel, two_digits, typical
 from ves_twin.machines.mjcf.draft.log_columns import LogColumns
 from ves_twin.machines.mjcf.draft.match import Match, Matches
-from ves_twin.machines.mjcf.draft.spots import Quantity, is_motor
+from ves_twin.machines.mjcf.draft.spots import Quantity, is_motor, servo_limit
 from ves_twin.machines.mjcf.motion.inverse import smoothed
 from ves_twin.machines.mjcf.rig.column import LAB_UNITS
 from ves_twin.machines.mjcf.rig.description import Mode
@@ -153,7 +153,8 @@ def _signal(group: list[Match], mode: Chosen) -> str:
     keys["unit"] = _quoted(first.unit if known and not first.electrical else first.spot.unit)
     if first.scale != 1.0:
         keys["scale"] = f"{first.scale:g}"
-    zero = mode.homes[first.column][0] if first.column in mode.homes else first.zero
+    own = first.zero * first.scale / first.factor  # in the column's unit, as homes are
+    zero = mode.homes[first.column][0] if first.column in mode.homes else own
     if zero:
         keys["offset"] = f"{zero:.7g}"
     if first.spot.quantity in (Quantity.POSITION, Quantity.SPEED):
@@ -201,6 +202,8 @@ def _joints(log: LogColumns, check: Checked, mode: Chosen, model: mujoco.MjModel
             drive = model.actuator(own.spot.name)
             gain = abs(float(drive.gear[0] * drive.gainprm[0])) or 1.0
             sizes = {"effort": typical(gain * own.factor * log.column(own.column)), **sizes}
+        elif own is not None and (most := servo_limit(model, own.spot.name)):
+            sizes = {"effort": most, **sizes}  # what it gives is not logged, and may be all it has
         elif check.motion is not None:
             steady = check.motion.steady[:, check.dofs[match.spot.name]]
             sizes = {"effort": typical(steady), **sizes}

@@ -146,6 +146,14 @@ def is_servo(model: mujoco.MjModel, actuator: int) -> bool:
     return affine and pulled and on_joint and float(model.actuator_gear[actuator, 0]) == 1.0
 
 
+def servo_limit(model: mujoco.MjModel, name: str) -> float:
+    """Largest effort of a servo [N or N m]; 0 where the model has no limit, or no such servo."""
+    number = model.actuator(name).id
+    if not is_servo(model, number) or not model.actuator_forcelimited[number]:
+        return 0.0
+    return float(np.max(np.abs(model.actuator_forcerange[number])))
+
+
 def _moving(model: mujoco.MjModel) -> BoolArray:
     """Which numbers of all sensors change where every joint moves (n,)."""
     data, rng, rows = mujoco.MjData(model), np.random.default_rng(0), []
