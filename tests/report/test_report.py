@@ -516,6 +516,13 @@ def test_a_number_that_its_limit_holds_is_told_first_and_without_an_interval(pro
     page = diagnosis_page(verdict)
     assert "held at its limit" in page
     assert interval_words(stuck) not in page
+    close = replace(
+        verdict,
+        tuned={
+            "actuator_gain@drive:gain": Estimate(500.4, 500.0, 501.0, "1", 500.0, at_limit=True)
+        },
+    )
+    assert "actuator gain at drive 500 (model 500, 0.4 more)" in headline(close)
     assert "limit of its tolerance" in headline(replace(proven, tuned=tuned, verdict=Kind.UNKNOWN))
     assert "limit of its tolerance" not in headline(replace(verdict, tuned={"inertia@hub:x": sure}))
 
@@ -527,6 +534,7 @@ def test_what_ends_its_range_is_not_counted_as_proved(proven):
     assert said in headline(ended)
     assert "No causes improve the prediction" in headline(ended)
     assert "0 of them improve" in diagnosis_page(ended)
+    assert ", accepted)" not in diagnosis_page(replace(ended, p_limit=0.05))
     assert next_step(ended).startswith("Look for what else is wrong")
     assert next_step(verdict).startswith("Simulate with the extended model")
     assert "0 extensions proved" in ended.words

@@ -58,7 +58,8 @@ def near_sentence(verdict: Verdict) -> str:
     limit = verdict.p_limit
     if limit is None:
         return ""
-    accepted = {one.label: one.p for one in verdict.proved if NEAR * one.p > limit}
+    proved = (one for one in verdict.proved if not one.ended)
+    accepted = {one.label: one.p for one in proved if NEAR * one.p > limit}
     missed = {name: p for name, p in verdict.unproved.items() if limit < p <= NEAR * limit}
     small = [spoken(name) for name, p in verdict.unproved.items() if p <= limit]
     worth = (

@@ -72,4 +72,6 @@ def moved_words(one: Estimate) -> str:
 
 def _told(name: str, one: Estimate) -> str:
     value, model = quantity(one.value, one.unit), quantity(one.nominal, one.unit)
-    return f"{spoken(name.rpartition(':')[0])} {value} (model {model})"
+    far, way = one.value - one.nominal, "more" if one.value > one.nominal else "less"
+    off = f", {quantity(abs(far), one.unit)} {way}" if value == model else ""
+    return f"{spoken(name.rpartition(':')[0])} {value} (model {model}{off})"
