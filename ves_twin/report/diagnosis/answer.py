@@ -78,10 +78,11 @@ def confidence_sentence(verdict: Verdict) -> str:
             if firm and any(what.startswith(LAW) for what in verdict.basis.left_out):
                 hurried += UNSOUGHT
             hurried += _otherwise(verdict)
+            named = "Only firm names are the mechanism." if firm else "No name is firm."
             return (
                 f"{verdict.put_to_proof} {'was' if verdict.put_to_proof == 1 else 'were'} tested on"
-                f" held-out data; of those accepted, at most {rate} are expected to be false. Only"
-                f" firm names are the mechanism.{hurried}"
+                f" held-out data; of those accepted, at most {rate} are expected to be false."
+                f" {named}{hurried}"
             )
         case _:
             return _doubt(verdict)

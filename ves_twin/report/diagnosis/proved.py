@@ -47,10 +47,9 @@ def proof_sentence(verdict: Verdict) -> str:
     )
     if not verdict.proved:
         return said
-    return (
-        f"{said} A better prediction does not prove a name: only firm ones are the mechanism,"
-        " the others act like it."
-    )
+    firm = any(one.firm for one in verdict.proved)
+    names = "only firm ones are the mechanism, the others act like it" if firm else "none is firm"
+    return f"{said} A better prediction does not prove a name: {names}."
 
 
 def near_sentence(verdict: Verdict) -> str:

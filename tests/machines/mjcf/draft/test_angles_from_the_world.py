@@ -33,7 +33,8 @@ CHAIN = """<mujoco><worldbody><body>
         ("one", {"one", "two"}, None),
         ("two", {"one", "two", "lift"}, ("one", -1.0)),  # its body stands turned by half a turn
         ("three", {"one", "two", "three"}, None),
-        ("four", {"one", "two", "three", "four"}, ("two", 1.0)),
+        ("four", {"one", "two", "four"}, ("two", 1.0)),
+        ("four", {"one", "two", "three", "four"}, None),  # three turns about another axis between
         ("four", {"one", "four"}, ("one", -1.0)),
         ("lift", {"one", "lift"}, None),
         ("apart", {"one", "two", "apart"}, None),

@@ -51,6 +51,13 @@ def test_rows_that_no_machine_is_logged_at_ask_for_the_unit_of_the_clock(
     assert ("apart: is that its unit?" in " ".join(found.look)) is asked
 
 
+def test_milliseconds_under_a_bare_name_are_asked_for_though_few_rows_are_left(arm, columns, write):
+    """A minute of such a log has seven rows, which no filter takes: a traceback."""
+    time = {"t": 2000.0 * columns["t"] + 0.25}
+    found, _ = drafted(arm, write({n: v for n, v in columns.items() if n[0] != "d"} | time))
+    assert "rows are 10 s apart: is that its unit?" in " ".join(found.look)
+
+
 def test_a_motor_of_a_tendon_that_no_column_tells_is_no_joints(tmp_path, swing, write):
     """Its tendon's number was taken for a joint's: there are more tendons than joints."""
     one = '<fixed name="t{}"><joint joint="joint" coef="1"/></fixed>'

@@ -21,6 +21,7 @@ from ves_twin.machines.mjcf.draft.rates import differs, rated
 from ves_twin.machines.mjcf.draft.scaled import words_of_scale
 from ves_twin.machines.mjcf.draft.servos import followed
 from ves_twin.machines.mjcf.draft.spots import Quantity, is_servo
+from ves_twin.machines.mjcf.draft.stops import beyond, in_degrees_by_stops
 from ves_twin.machines.mjcf.draft.too_much_friction import too_much_friction
 from ves_twin.machines.mjcf.motion.inverse import smoothed
 from ves_twin.machines.mjcf.parts.cyclic import is_cyclic, turned_by
@@ -95,6 +96,8 @@ def checked(log: LogColumns, matches: Matches, model: mujoco.MjModel) -> Checked
     band = max((band_of(log.column(m.column), log.period, 0.99) for m in moving), default=1.0)
     corner = min(4.0 * max(band, 1.0 / (log.period * log.rows)), 0.2 / log.period)
     found, findings = followed(log, list(matches.found), model)
+    found, said = in_degrees_by_stops(log, found, model)
+    findings += said
     motion, explained = None, {}
     findings += words_of_locked(locked)
     before = len(findings)
@@ -114,7 +117,7 @@ def checked(log: LogColumns, matches: Matches, model: mujoco.MjModel) -> Checked
         findings += judge.late(found, motion)
         findings += judge.rough(found, motion)
         explained = judge.explained(found, motion)
-    findings[before:before] = [*_counted(log, found), *_beyond(log, found, model)]
+    findings[before:before] = [*_counted(log, found), *beyond(log, found, model)]
     found, said = rated(log, found, corner, model)
     dofs = {name: int(model.joint(name).dofadr[0]) for name in every if name}
     return Checked(tuple(found), (*findings, *said), explained, motion, corner, dofs, locked)
@@ -363,21 +366,3 @@ def _counted(log: LogColumns, found: list[Match]) -> Iterator[str]:
                     f"{match.column} has whole numbers alone, {np.min(values):g} to"
                     f" {np.max(values):g}: counts of an encoder? scale = 2 pi / counts of a turn"
                 )
-
-
-def _beyond(log: LogColumns, found: list[Match], model: mujoco.MjModel) -> Iterator[str]:
-    """Positions that leave the range of their joint by more than that range is wide."""
-    for match in found:
-        if match.spot.quantity is not Quantity.POSITION:
-            continue
-        low, high = model.joint(match.spot.name).range
-        if low == high:  # it has none
-            continue
-        values = match.factor * log.column(match.column) + match.zero
-        lowest, highest = float(np.min(values)), float(np.max(values))
-        if max(low - lowest, highest - high) > high - low:
-            yield (
-                f"{match.column} goes from {lowest:.3g} to {highest:.3g} {match.spot.unit}, joint"
-                f" {match.spot.name} from {low:.3g} to {high:.3g}: another unit, or a motor before"
-                " its gear?"
-            )

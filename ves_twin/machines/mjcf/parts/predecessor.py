@@ -20,7 +20,8 @@ def predecessor(
 
     With theta an angle from the world, as an inclinometer or a camera tells it, the joint's own is
     q = theta - s theta', theta' being that of the nearest joint before it with a parallel axis and
-    s = +-1 the direction of that axis. Of slides the same in lengths.
+    s = +-1 the direction of that axis. Of slides the same in lengths. None where a measured joint
+    between the two turns about another axis: angles of a spatial arm do not add up.
 
     Args:
         model: at its home, where axes are compared.
@@ -38,7 +39,11 @@ def predecessor(
     for other in range(own - 1, -1, -1):  # joints are numbered from the world on
         along = float(np.dot(data.xaxis[own], data.xaxis[other]))
         name = model.joint(other).name
-        near = int(bodies[other]) in before and kinds[other] == kinds[own] and name in among
-        if near and abs(along) > PARALLEL:
+        if int(bodies[other]) not in before or name not in among:
+            continue
+        parallel = abs(along) > PARALLEL
+        if parallel and kinds[other] == kinds[own]:
             return name, float(np.sign(along))
+        if not parallel and kinds[other] == int(mujoco.mjtJoint.mjJNT_HINGE):
+            return None
     return None

@@ -1,0 +1,72 @@
+"""beyond, in_degrees_by_stops: positions held against the stops of their joints."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import replace
+
+import mujoco
+import numpy as np
+
+from ves_twin.machines.mjcf.draft.changes import DEGREE
+from ves_twin.machines.mjcf.draft.log_columns import LogColumns
+from ves_twin.machines.mjcf.draft.match import Match
+from ves_twin.machines.mjcf.draft.spots import Quantity
+
+FEWEST = 3
+"""Joints whose angles must leave their stops as radians for all to be taken as degrees: one or two
+may be told before a gear."""
+
+NEAR = 0.1
+"""Share of its range by which an angle may pass a stop: files round them."""
+
+
+def beyond(log: LogColumns, found: list[Match], model: mujoco.MjModel) -> Iterator[str]:
+    """Positions that leave the range of their joint by more than that range is wide."""
+    for match, low, high in _stopped(found, model):
+        lowest, highest = _ends(log, match)
+        if max(low - lowest, highest - high) > high - low:
+            yield (
+                f"{match.column} goes from {lowest:.3g} to {highest:.3g} {match.spot.unit}, joint"
+                f" {match.spot.name} from {low:.3g} to {high:.3g}: another unit, or a motor before"
+                " its gear?"
+            )
+
+
+def in_degrees_by_stops(
+    log: LogColumns, found: list[Match], model: mujoco.MjModel
+) -> tuple[list[Match], list[str]]:
+    """Angles of an arm in degrees where most of them leave the stops as radians, and none so.
+
+    Whatever their names say: numbers beyond stops are no angles of these joints.
+    """
+    turning = [one for one in _stopped(found, model) if one[0].spot.unit == one[0].unit == "rad"]
+    ends = [_ends(log, match) for match, _, _ in turning]
+    left = within = 0
+    for (_, low, high), (lowest, highest) in zip(turning, ends, strict=True):
+        width = high - low
+        left += max(low - lowest, highest - high) > width
+        most = max(low - DEGREE * lowest, DEGREE * highest - high)
+        within += most < NEAR * width
+    if left < FEWEST or within < len(turning):
+        return found, []
+    every = [m for m in found if m.spot.quantity is Quantity.POSITION and m.unit == "rad"]
+    named = "named in rad, " * any(m.told for m in every)
+    words = f"{named}the numbers fit the stops of the joints as deg"
+    changed = [replace(m, unit="deg") if m in every else m for m in found]
+    return changed, [f"{', '.join(m.column for m in every)}: {words}"]
+
+
+def _stopped(found: list[Match], model: mujoco.MjModel) -> Iterator[tuple[Match, float, float]]:
+    """Positions of joints that have stops, with these."""
+    for match in found:
+        if match.spot.quantity is Quantity.POSITION:
+            low, high = map(float, model.joint(match.spot.name).range)
+            if low < high:
+                yield match, low, high
+
+
+def _ends(log: LogColumns, match: Match) -> tuple[float, float]:
+    """The smallest and the largest position."""
+    values = match.factor * log.column(match.column) + match.zero
+    return float(np.min(values)), float(np.max(values))
