@@ -87,3 +87,15 @@ def test_a_column_of_which_the_model_explains_nothing_is_to_be_looked_at_first(
     text = new_text(replace(made, draft=replace(made.draft, explained=explained)), arm, [log])
     (told,) = (line for line in text.splitlines() if line.startswith("  next"))
     assert told.removeprefix("  next      ").startswith(words or "ves-twin diagnose")
+
+
+def test_no_constant_is_read_off_a_current_of_a_few_steps(arm, columns, write):
+    """Currents of a wrist, 0.001 A fine and 0.002 A large, made 2470 N m per A."""
+    kept = {n: v for n, v in columns.items() if n[0] != "d" and not n.startswith("tau")}
+    fine = {f"i{k}_A": 0.1 * columns[f"tau{k}"] for k in (1, 2)}
+    rough = np.round(1.5 * columns["tau3"] / np.std(columns["tau3"])) / 1000.0
+    found, rig = drafted(arm, write({**kept, **fine, "i3_A": rough}))
+    assert "i3_A moves by a few steps of its resolution" in " ".join(found.look)
+    scales = {s.actuator: s.scale for s in rig.description.signals.values() if s.actuator}
+    assert scales["m3"] == 1.0
+    assert scales["m1"] == pytest.approx(10.0, rel=0.1)

@@ -281,6 +281,12 @@ class _Judge:
             if match not in self.driving(found):
                 continue
             fit = self.fit(match, motion)
+            if match.electrical and self.log.is_coarse(match.column):
+                said.append(
+                    f"{match.column} moves by a few steps of its resolution: no constant is read"
+                    " off it"
+                )
+                continue
             if match.electrical and fit.gain > TELLS:
                 scale = 1.0 / fit.slope
                 if match.spot.unit == "1" and 1.0 / FAR < abs(scale) / match.prefix < FAR:
