@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from ves_twin.core.held_folder import HeldFolder
+    from ves_twin.diagnosis.verdict.verdict import Verdict
     from ves_twin.machines.diagnose import Diagnosis
 
 from ves_twin.cli.given import Given, add_machine_options, bank_settings
@@ -229,14 +230,26 @@ def _text(found: Diagnosis, folder: Path) -> str:
         tuned = error.after_si if error.tolerances_si is None else error.tolerances_si
         numbers = "".join(f"{e:10.3g}" for e in (error.before_si, tuned, error.after_si))
         lines.append(f"  {name:<18}{numbers}   {error.unit}")
-    if verdict.gain is not None and verdict.gain.errors:
-        lines += ["", "  held out            before     tuned     after   (all fitted elsewhere;"]
-        lines += [f"{'':51}the gain allows for what is new in each)"]
-        for name, (tuned, after) in verdict.gain.errors.items():
-            ends = (verdict.gain.given.get(name, math.nan), tuned, after)
-            numbers = "".join(f"{e:10.3g}" for e in ends)
-            lines.append(f"  {name:<18}{numbers}   {verdict.residuals[name].unit}")
+    lines += held_out_table(verdict)
     if found.extended is not None and found.refused:
         lines += ["", f"  plant.candidate.toml, no plant.toml: {found.refused}"]
     files = ", ".join(sorted(p.name for p in folder.iterdir()))
     return "\n".join([*lines, "", f"  files     {folder}/: {files}"])
+
+
+def held_out_table(verdict: Verdict) -> list[str]:
+    """A table of held-out errors; with a law of what causes leave, if one is claimed."""
+    gain, law = verdict.gain, verdict.law
+    if gain is None or not gain.errors:
+        return []
+    beside = law.gain if law is not None and law.claimed and law.part else None
+    head = "  held out            before     tuned     after"
+    lines = ["", f"{head}{'  with law' * (beside is not None)}   (all fitted elsewhere;"]
+    lines += [f"{'':51}the gain allows for what is new in each)"]
+    for name, (tuned, after) in gain.errors.items():
+        ends = [gain.given.get(name, math.nan), tuned, after]
+        if beside is not None:
+            ends.append(beside.errors.get(name, (math.nan, math.nan))[1])
+        numbers = "".join(f"{e:10.3g}" for e in ends)
+        lines.append(f"  {name:<18}{numbers}   {verdict.residuals[name].unit}")
+    return lines
