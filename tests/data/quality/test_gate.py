@@ -158,3 +158,11 @@ def test_what_cannot_be_told_is_unknown_not_passed(healthy):
     still = damaged(healthy, "leg.command", lambda v: v.__setitem__(slice(None), v[0]))
     names = [c.name for c in quality_gate(still, WEIGHT).doubts]
     assert "wiring" in names
+
+
+def test_rows_of_a_machine_that_has_not_begun_to_move_are_no_repeats(healthy):
+    """The first two rows of a servo's log, before its first step, failed the gate."""
+    signals = {name: values.copy() for name, values in healthy.signals.items()}
+    for values in signals.values():
+        values[1], values[-1] = values[0], values[-2]
+    assert "repeats" not in found(vt.Recording(healthy.time, signals, healthy.info))

@@ -65,12 +65,13 @@ def _repeats(recording: Recording) -> Check:
         changes |= np.any(steps != 0.0, axis=1)
         smallest = np.min(np.where(steps > 0.0, steps, np.inf), axis=0)
         moves |= np.any(steps > STILL * smallest, axis=1)
-    about = np.concatenate([[False], moves, [False]])
-    held = np.flatnonzero(~changes & (about[:-2] | about[2:]))
     if not changes.any():
         return unknown("repeats", "no signal changes at all")
-    if len(held):
-        first, repeat = recording.time[held[0] + 1], "repeats" if len(held) == 1 else "repeat"
+    about = np.concatenate([[False], moves, [False]])
+    held = np.flatnonzero(~changes & (about[:-2] | about[2:]))
+    first, last = np.flatnonzero(changes)[[0, -1]]
+    if np.any((held > first) & (held < last)):  # a machine rests before and after its motion
+        begin, repeat = recording.time[held[0] + 1], "repeats" if len(held) == 1 else "repeat"
         said = f"{len(held)} of {len(recording)} rows {repeat} the one before"
-        return failed("repeats", f"{said}, first at {first:.3f} s")
+        return failed("repeats", f"{said}, first at {begin:.3f} s")
     return passed("repeats", "none")

@@ -31,6 +31,12 @@ FORGET = 1.0
 """Time [s] at the begin that is not compared in forward simulation: a start is read from noisy
 rows, and a controller's memory is empty."""
 
+FORGOTTEN = 0.1
+"""Share of a recording that this may take: of servos' logs of 2 and 3 s it took half."""
+
+SHORT = 1.5
+"""Length [s] below which it takes all of FORGET: so short is a log whose clock has another unit."""
+
 FORGETS = "while a start that is read from noisy rows settles"
 """Why."""
 
@@ -144,9 +150,11 @@ def mjcf_cases(
         if not outputs:
             wanted = forward.channels[0].signal
             raise UnknownNameError("signal in the recording", wanted, ready.signals)
-        forget = 0.0 if mode is Mode.MOTION or ready.info.log == POSES else FORGET
-        forget += own.description.drive.lead if mode is Mode.CONTROL else 0.0
         time = ready.time - ready.time[0]
+        fed = mode is Mode.MOTION or ready.info.log == POSES
+        settles = min(FORGET, FORGOTTEN * time[-1]) if time[-1] > SHORT else FORGET
+        forget = 0.0 if fed else float(settles)
+        forget += own.description.drive.lead if mode is Mode.CONTROL else 0.0
         first = int(np.searchsorted(time, max(start, forget) - 1e-9))
         if ready.info.log != POSES and len(time) - first < FEWEST:
             begin = f"the first {max(start, forget):g} s, {FORGETS}, are not compared"
