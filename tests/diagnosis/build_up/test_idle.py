@@ -9,8 +9,9 @@ import pytest
 from linear import Linear, recorded, seen
 
 from ves_twin.diagnosis.bank.linearise import linearise
+from ves_twin.diagnosis.build_up import build_up as build_up_module
 from ves_twin.diagnosis.build_up.halves import halves_at
-from ves_twin.diagnosis.build_up.idle import idle
+from ves_twin.diagnosis.build_up.idle import idle, missed
 from ves_twin.diagnosis.build_up.proof import prove
 from ves_twin.diagnosis.fit.refine import refine
 from ves_twin.diagnosis.record.evidence import Evidence
@@ -95,3 +96,23 @@ def test_a_cause_whose_work_others_do_when_refitted_is_told(proved, monkeypatch)
     whole = proof.bench.bare(proof.proved)
     monkeypatch.setattr("ves_twin.diagnosis.build_up.proof.Bench.bare", lambda *_: whole)
     assert idle(proof, runs, held, fit) in proof.proved
+
+
+def test_a_cause_without_which_the_full_fit_predicts_worse_is_missed(proved):
+    """Sizes of the columns are those of one-step errors: others did a friction's work there alone."""
+    proof, fit, runs, held = proved
+    without = moved(proof, fit, runs, 0.0)
+    assert missed(proof, proof.proved[1], runs, held, (fit, without))
+    assert not missed(proof, proof.proved[1], runs, held, (fit, fit))
+    assert not missed(proof, proof.proved[1], runs, held, (without, fit))
+
+
+def test_what_the_full_fit_needs_stays_though_it_seems_idle(proved, monkeypatch):
+    proof, _, runs, held = proved
+    plant = runs.forward
+    one = seen(plant, recorded(plant, HIDDEN, 5))
+    halves = halves_at(one, held, one.runs.origin, plant.hypotheses)
+    evidence = Evidence(one.runs, one.measured, whitening_declared(one.runs))
+    monkeypatch.setattr(build_up_module, "idle", lambda proof, *_: proof.proved[1])
+    kept, _ = build_up_module._at_work(halves, proof, one.runs.origin, evidence, held)
+    assert kept.proved == proof.proved

@@ -13,7 +13,7 @@ from ves_twin.diagnosis.build_up.averaged import averaged_half_widths
 from ves_twin.diagnosis.build_up.builder import Builder, Start
 from ves_twin.diagnosis.build_up.each_by_itself import each_by_itself
 from ves_twin.diagnosis.build_up.halves import Halves, carried_point
-from ves_twin.diagnosis.build_up.idle import idle
+from ves_twin.diagnosis.build_up.idle import idle, missed
 from ves_twin.diagnosis.build_up.in_full import in_full
 from ves_twin.diagnosis.build_up.nearest import nearest
 from ves_twin.diagnosis.build_up.offer import Offer
@@ -115,16 +115,19 @@ def _at_work(
     known: Fit | None = None,
 ) -> tuple[Proof, Fit]:
     """What is proved and still takes something away where all of it is fitted in full."""
-    while True:
-        fit = in_full(halves.regression, proof.proved, point, evidence, probed=True, known=known)
-        gone = idle(proof, evidence.runs, held, fit)
-        if gone is None:
-            return proof, fit
-        proof = replace(
-            proof,
-            proved=tuple(n for n in proof.proved if n != gone),
-            dropped={**proof.dropped, gone: _p_of(proof, gone)},
-        )
+
+    def fitted(trials: Sequence[int]) -> Fit:
+        return in_full(halves.regression, trials, point, evidence, probed=True, known=known)
+
+    fit = fitted(proof.proved)
+    while (gone := idle(proof, evidence.runs, held, fit)) is not None:
+        rest = tuple(n for n in proof.proved if n != gone)
+        other = fitted(rest)
+        if missed(proof, gone, evidence.runs, held, (fit, other)):
+            break
+        dropped = {**proof.dropped, gone: _p_of(proof, gone)}
+        proof, fit = replace(proof, proved=rest, dropped=dropped), other
+    return proof, fit
 
 
 def _p_of(proof: Proof, trial: int) -> float:
