@@ -69,7 +69,7 @@ def test_what_commissioning_errors_may_leave_counts_in_the_threshold_and_in_ever
     def bent(*given):
         return replace(cached_thresholds(*given), bends=0.1)
 
-    for module in ("looked", "plan"):
+    for module in ("fit.looked", "experiment.plan"):
         monkeypatch.setattr(f"ves_twin.diagnosis.{module}.cached_thresholds", bent)
     other_plan, other = told()
     assert other.statistics.effect_threshold > 1.5 * verdict.statistics.effect_threshold

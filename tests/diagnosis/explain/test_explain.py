@@ -9,8 +9,8 @@ import pytest
 from toy import QUICK, SD, Toy, programme
 
 from ves_twin.diagnosis.bank.signature_library import build_bank
+from ves_twin.diagnosis.explain import explain as explain_module
 from ves_twin.diagnosis.explain.explain import FAR, _far, explain
-from ves_twin.diagnosis.explain.explain import explain as explain_module
 from ves_twin.diagnosis.explain.judge import (
     CLEAR,
     SLACK,
@@ -304,7 +304,7 @@ def test_what_no_cause_comes_near_is_given_up_before_pairs_and_second_causes(loo
     time = FED.time[:, None]
     strange = 3.0 * np.sin(2.0 * np.pi * 9.0 * time) * np.where(time > 4.0, [1.0, -2.0], 0.0)
     for where in ("judge", "pairs"):
-        name = f"ves_twin.diagnosis.{where}.suspects_at"
+        name = f"ves_twin.diagnosis.explain.{where}.suspects_at"
         monkeypatch.setattr(name, lambda *_: pytest.fail("looked"))
     many = replace(QUICK, sparse=True)
     found = explain(looked({}, added=strange), LEVELS, many)
