@@ -527,6 +527,13 @@ def test_a_number_that_its_limit_holds_is_told_first_and_without_an_interval(pro
     assert "limit of its tolerance" not in headline(replace(verdict, tuned={"inertia@hub:x": sure}))
 
 
+def test_what_is_accepted_since_every_error_falls_is_not_called_no_clear_gain(proven):
+    verdict = proof_of(proven, firm=False)
+    gain = Gain(-0.16, -0.19, -0.13, 4.0, 4.6, {"out.0": (2.9, 2.0)})
+    assert "The error of every channel falls" in diagnosis_page(replace(verdict, gain=gain))
+    assert "no clear gain" in diagnosis_page(replace(verdict, gain=gain, proved=()))
+
+
 def test_what_ends_its_range_is_not_counted_as_proved(proven):
     verdict = proof_of(proven, firm=False)
     ended = replace(verdict, proved=(replace(verdict.proved[0], ended=True),))

@@ -156,6 +156,8 @@ def gain_sentence(verdict: Verdict) -> str:
         return f"Gain: {said}. But the same rig without the cause predicts them better."
     if gain.grown:
         return f"Gain: {said}. That is none, since the rms errors grow."
+    if verdict.proved and gain.fallen:
+        return f"Gain of the extended plant: {said}. The error of every channel falls."
     return f"Gain: {said}. That is no clear gain."
 
 
