@@ -531,6 +531,9 @@ def test_what_is_accepted_since_every_error_falls_is_not_called_no_clear_gain(pr
     verdict = proof_of(proven, firm=False)
     gain = Gain(-0.16, -0.19, -0.13, 4.0, 4.6, {"out.0": (2.9, 2.0)})
     assert "The error of every channel falls" in diagnosis_page(replace(verdict, gain=gain))
+    assert "fast ones, which noise weighs most, grow" in gain_words(replace(verdict, gain=gain))
+    grown = replace(gain, errors={"out.0": (2.0, 2.2)})
+    assert "slow errors fall" not in gain_words(replace(verdict, gain=grown))
     assert "no clear gain" in diagnosis_page(replace(verdict, gain=gain, proved=()))
 
 

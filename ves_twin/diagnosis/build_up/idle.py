@@ -44,9 +44,9 @@ def idle(proof: Proof, fitted: Runs, held: Dataset, fit: Fit) -> int | None:
     for n in proof.proved:
         without, acts = fit.shift.copy(), bench.acts(n)
         without[fitted.indices(trials[n].cause)] = 0.0
-        rest, squares = bench.bare([k for k in proof.proved if k != n]), linear[acts]
-        there = _left(proof, fitted, held, without)[acts]
-        shares = _share(there, beside[acts]), _share(rest[acts], squares)
+        there = _left(proof, fitted, held, without)
+        rest = bench.bare([k for k in proof.proved if k != n])
+        shares = _share(there[acts], beside[acts]), _share(rest[acts], linear[acts])
         worth[n] = min(shares)
     least = min(worth, key=lambda n: worth[n], default=None)
     return least if least is not None and worth[least] <= EARNS else None

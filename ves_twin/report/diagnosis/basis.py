@@ -84,7 +84,7 @@ def gain_words(verdict: Verdict) -> str:
     share, low, high = _taken(gain)
     span = f" ({low} to {high})" if low else ""
     square = f"of its square in units of noise, {share}{span} goes"
-    if gain.high is not None and gain.high < 0.0:
+    if gain.fallen and gain.high is not None and gain.high < 0.0:
         square = f"{square}: slow errors fall, and fast ones, which noise weighs most, grow"
     if _open(gain):
         square = "counted in units of noise it may be a loss as well"

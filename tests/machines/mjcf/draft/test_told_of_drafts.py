@@ -9,6 +9,7 @@ import pytest
 from drafted import drafted
 
 from ves_twin.cli.new_text import new_text
+from ves_twin.machines.mjcf.draft.log_columns import LogColumns
 from ves_twin.machines.new_machine import new_machine
 
 CART = """
@@ -93,9 +94,24 @@ def test_no_constant_is_read_off_a_current_of_a_few_steps(arm, columns, write):
     """Currents of a wrist, 0.001 A fine and 0.002 A large, made 2470 N m per A."""
     kept = {n: v for n, v in columns.items() if n[0] != "d" and not n.startswith("tau")}
     fine = {f"i{k}_A": 0.1 * columns[f"tau{k}"] for k in (1, 2)}
-    rough = np.round(1.5 * columns["tau3"] / np.std(columns["tau3"])) / 1000.0
+    dithered = 1.5 * columns["tau3"] / np.std(columns["tau3"])
+    dithered = dithered + np.random.default_rng(1).standard_normal(len(dithered))
+    rough = np.round(dithered) / 1000.0
     found, rig = drafted(arm, write({**kept, **fine, "i3_A": rough}))
     assert "i3_A moves by a few steps of its resolution" in " ".join(found.look)
     scales = {s.actuator: s.scale for s in rig.description.signals.values() if s.actuator}
     assert scales["m3"] == 1.0
     assert scales["m1"] == pytest.approx(10.0, rel=0.1)
+
+
+def test_volts_in_steps_are_not_coarse(swing, write):
+    """Six voltages held for seconds, as in a motor's step test, tell its constant."""
+    columns = swing[1]
+    volts = np.repeat([-12.0, -6.0, 0.0, 6.0, 12.0, 3.0], 250)
+    relay = np.where(np.sin(2.0 * np.arange(1500.0)) > 0.0, 24.0, -24.0)
+    log = LogColumns.read(write({"t": columns["t"], "u_V": volts, "relay_V": relay}))
+    rough = np.round(3.0 * np.sin(0.05 * np.arange(1500)) + np.tile([0.0, 0.6], 750))
+    other = LogColumns.read(write({"t": columns["t"], "i_A": 0.001 * rough}, "other.csv"))
+    assert not log.is_coarse("u_V")
+    assert not log.is_coarse("relay_V")
+    assert other.is_coarse("i_A")

@@ -34,6 +34,10 @@ STEPS = 5.0
 """Steps of its resolution that a column's sd must have for a constant to be read off it: currents
 of a wrist with 2 to 4 made 896 and 2470 N m per A, where other motors of it have 9 to 16."""
 
+LEVELS, DITHERS = 5, 0.1
+"""Levels, and share of rows that change, from which few steps are a resolution: a switched command
+has two or three, and volts in steps hold theirs."""
+
 USUAL = (1e-5, 0.5)
 """Time between rows of a machine's log [s], beyond which its clock may be in another unit."""
 
@@ -83,10 +87,19 @@ class LogColumns:
         return replace(self, values=self.logged or self.values).column(text)
 
     def is_coarse(self, text: str) -> bool:
-        """Whether a column's sd is less than STEPS of its resolution: it hardly tells anything."""
+        """Whether a column's sd is less than STEPS of its resolution: it hardly tells anything.
+
+        It must go from one level to the next: volts in steps have few levels, too, and hold them.
+        """
         values = self.as_logged(text)
-        levels = np.unique(values[np.isfinite(values)])
-        return len(levels) > 1 and float(np.nanstd(values)) < STEPS * float(np.min(np.diff(levels)))
+        values = values[np.isfinite(values)]
+        changes = np.abs(np.diff(values))
+        changes = changes[changes > 0.0]
+        levels = np.unique(values)
+        if len(levels) < LEVELS or len(changes) < DITHERS * len(values):
+            return False
+        step = float(np.min(np.diff(levels)))
+        return float(np.std(values)) < STEPS * step and float(np.median(changes)) < 1.5 * step
 
     @staticmethod
     def read(path: Path, rate: float | None = None) -> LogColumns:

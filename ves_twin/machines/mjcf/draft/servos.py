@@ -137,7 +137,8 @@ def _in_units(
         if len(named) < 2:
             return {}, []
         names = ", ".join(m.column for m in named)
-        words = f"{names}: named in rad, the numbers fit the model as deg"
+        told = "named in rad, " * any(m.told for m in named)
+        words = f"{names}: {told}the numbers fit the model as deg"
         return {m: replace(m, unit="deg") for m in named}, [words]
     for match, factor in ((shown, 1.0 / DEGREE), (fed, DEGREE)):
         near = 1.0 / NEAR < times / factor < NEAR
