@@ -94,8 +94,8 @@ def test_no_constant_is_read_off_a_current_of_a_few_steps(arm, columns, write):
     """Currents of a wrist, 0.001 A fine and 0.002 A large, made 2470 N m per A."""
     kept = {n: v for n, v in columns.items() if n[0] != "d" and not n.startswith("tau")}
     fine = {f"i{k}_A": 0.1 * columns[f"tau{k}"] for k in (1, 2)}
-    dithered = 1.5 * columns["tau3"] / np.std(columns["tau3"])
-    dithered = dithered + np.random.default_rng(1).standard_normal(len(dithered))
+    dithered = 0.1 * columns["tau3"] / np.std(columns["tau3"])
+    dithered = dithered + 1.5 * np.random.default_rng(1).standard_normal(len(dithered))
     rough = np.round(dithered) / 1000.0
     found, rig = drafted(arm, write({**kept, **fine, "i3_A": rough}))
     assert "i3_A moves by a few steps of its resolution" in " ".join(found.look)

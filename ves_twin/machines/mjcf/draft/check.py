@@ -281,7 +281,7 @@ class _Judge:
             if match not in self.driving(found):
                 continue
             fit = self.fit(match, motion)
-            if match.electrical and self.log.is_coarse(match.column):
+            if match.electrical and fit.gain <= STRONG and self.log.is_coarse(match.column):
                 said.append(
                     f"{match.column} moves by a few steps of its resolution: no constant is read"
                     " off it"

@@ -89,17 +89,14 @@ class LogColumns:
     def is_coarse(self, text: str) -> bool:
         """Whether a column's sd is less than STEPS of its resolution: it hardly tells anything.
 
-        It must go from one level to the next: volts in steps have few levels, too, and hold them.
+        Its levels must change from row to row: volts in steps have few levels, too, and hold them.
         """
         values = self.as_logged(text)
         values = values[np.isfinite(values)]
-        changes = np.abs(np.diff(values))
-        changes = changes[changes > 0.0]
-        levels = np.unique(values)
-        if len(levels) < LEVELS or len(changes) < DITHERS * len(values):
+        levels, changes = np.unique(values), np.count_nonzero(np.diff(values))
+        if len(levels) < LEVELS or changes < DITHERS * len(values):
             return False
-        step = float(np.min(np.diff(levels)))
-        return float(np.std(values)) < STEPS * step and float(np.median(changes)) < 1.5 * step
+        return float(np.std(values)) < STEPS * float(np.median(np.diff(levels)))
 
     @staticmethod
     def read(path: Path, rate: float | None = None) -> LogColumns:
