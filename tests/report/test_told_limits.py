@@ -27,7 +27,7 @@ from ves_twin.report.diagnosis.answer import (
 from ves_twin.report.diagnosis.basis import rests_on
 from ves_twin.report.diagnosis.limits import blind_causes
 from ves_twin.report.diagnosis.out_of_step import out_of_step_sentence
-from ves_twin.report.diagnosis.strained import tuned_words
+from ves_twin.report.diagnosis.strained import check_sentence, tuned_words
 
 FIGURES = Statistics(1.0, 2.0, 9.0, 5.0)
 SIZE = Estimate(92e3, 88e3, 96e3, "N/m", 1e5)
@@ -98,6 +98,19 @@ def test_numbers_of_the_model_that_left_their_tolerance_are_told(pull, high, tol
     words = tuned_words(replace(plain, tuned=tuned))
     assert ("3.8 declared tolerances from the model's 100 kN/m" in words) is told
     assert told or not words
+
+
+@pytest.mark.parametrize(("pull", "high", "told"), [(-3.8, 96e3, True), (-2.9, 96e3, False)])
+def test_what_data_put_far_off_its_tolerance_is_to_be_measured_next(pull, high, told):
+    """A link's mass, doubled by its owner, was tuned by 4 declared tolerances and not advised."""
+    plain = verdict()
+    gain = Gain(0.6, 0.5, 0.7, 9.0, 4.0, errors={"force": (2.5, 1.0)})
+    tuned = {"joint_spring@slide:stiffness": replace(SIZE, pull=pull, high=high)}
+    off = replace(plain, tuned=tuned, gain=gain)
+    words = "joint spring at slide 92 kN/m (model 100 kN/m)"
+    assert (words in check_sentence(off)) is told
+    assert (words in next_step(off)) is told
+    assert "viscous friction at slide" in next_step(off)
 
 
 def test_a_simulation_that_falls_out_of_step_is_told_and_what_was_done_instead():

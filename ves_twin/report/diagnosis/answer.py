@@ -12,7 +12,7 @@ from ves_twin.report.diagnosis.coarse_step import finer
 from ves_twin.report.diagnosis.law import worth_sentence
 from ves_twin.report.diagnosis.limits import next_sentences
 from ves_twin.report.diagnosis.out_of_step import shorter
-from ves_twin.report.diagnosis.strained import strained_sentence
+from ves_twin.report.diagnosis.strained import check_sentence, strained_sentence
 from ves_twin.report.diagnosis.words import (
     TOLD,
     capital,
@@ -121,18 +121,21 @@ def next_step(verdict: Verdict) -> str:
         names = listed([name_of(cause) for cause in verdict.causes[:TOLD]])
         return f"Look at {names} on the machine, and simulate with the extended model."
     if verdict.proved and verdict.gain is not None and verdict.gain.passed:
-        firm = [spoken(one.label) for one in verdict.proved if one.firm]
-        if firm:
-            return f"Simulate with the extended model, and look at {listed(firm[:TOLD])}."
-        if all(one.ended for one in verdict.proved):
-            return (
-                "Look for what else is wrong: what was fitted ends its range and stands for that."
-            )
-        return "Simulate with the extended model. A motion in which they differ settles the names."
+        return " ".join(filter(None, (check_sentence(verdict), _with_proved(verdict))))
     if verdict.law is not None and verdict.law.claimed:
         place = verdict.law.place
         return f"Look at {place} on the machine, and simulate with the law in the model."
     return next((text for text in next_sentences(verdict)), "Record another programme.")
+
+
+def _with_proved(verdict: Verdict) -> str:
+    """What to do with causes that are proved to predict better."""
+    firm = [spoken(one.label) for one in verdict.proved if one.firm]
+    if firm:
+        return f"Simulate with the extended model, and look at {listed(firm[:TOLD])}."
+    if all(one.ended for one in verdict.proved):
+        return "Look for what else is wrong: what was fitted ends its range and stands for that."
+    return "Simulate with the extended model. A motion in which they differ settles the names."
 
 
 def tone(verdict: Verdict) -> str:

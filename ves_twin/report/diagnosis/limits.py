@@ -8,10 +8,8 @@ from ves_twin.core.quantity import digits, percent, quantity
 from ves_twin.diagnosis.explain.rivals import Rival, Standing
 from ves_twin.diagnosis.fit.tolerances import FEWEST
 from ves_twin.diagnosis.verdict.verdict import Kind, Verdict
+from ves_twin.report.diagnosis.strained import STRAINED, check_sentence
 from ves_twin.report.diagnosis.words import TOLD, capital, ends_words, name_of, spoken
-
-STRAINED = 3.0
-"""Declared sd beyond which a commissioning error is called strained."""
 
 LITTLE = 0.1
 """Share of its spread that is left of each channel, up to which a model may be good enough: an arm
@@ -181,6 +179,9 @@ def next_sentences(verdict: Verdict) -> tuple[str, ...]:
             "Record the same programme on a machine in order, or before and after a change, and"
             " compare the two recordings (ves-twin compare --against)."
         )
+    strained = check_sentence(verdict)
+    if strained:
+        said.append(strained)
     if verdict.causes and verdict.basis.held_out == "none":
         said.append("Record another programme on the same machine and give it as --held-out.")
     if verdict.basis.tolerances == "declared":

@@ -1,4 +1,4 @@
-"""strained_sentence, tuned_words: which of the model's own numbers left their tolerances."""
+"""Which of the model's own numbers left their tolerances, in sentences."""
 
 from __future__ import annotations
 
@@ -14,6 +14,9 @@ STRANGEST = 2
 SHOWN_FROM = 2.0
 """Declared sd from which a tuned number is told: one of twenty in order is as far off."""
 
+STRAINED = 3.0
+"""Declared sd beyond which a commissioning error is called strained."""
+
 
 def moved(verdict: Verdict) -> list[tuple[str, Estimate]]:
     """The model's own numbers that the fit moved: those held at a limit first, then the surest."""
@@ -27,19 +30,36 @@ def moved(verdict: Verdict) -> list[tuple[str, Estimate]]:
 
 def tuned_words(verdict: Verdict) -> str:
     """Beside causes: the model's own numbers that moved by SHOWN_FROM declared sd, by that."""
-    far = [
-        (abs(one.pull), name, one)
-        for name, one in verdict.tuned.items()
-        if verdict.causes and one.pull is not None and abs(one.pull) > SHOWN_FROM
-        if not (one.at_limit or one.low <= one.nominal <= one.high)
-    ]
     told = [
         f"{spoken(name.rpartition(':')[0])} {interval_words(one)}, {pull:.1f} declared tolerances"
         f" from the model's {quantity(one.nominal, one.unit)}"
-        for pull, name, one in sorted(far, key=lambda item: -item[0])
+        for pull, name, one in (_far(verdict, SHOWN_FROM) if verdict.causes else [])
     ]
     more = f"; and {len(told) - TOLD} more (verdict.json)" if len(told) > TOLD else ""
     return "; ".join(told[:TOLD]) + more
+
+
+def check_sentence(verdict: Verdict) -> str:
+    """What to measure: numbers that data put beyond STRAINED declared sd; empty where none is."""
+    far = _far(verdict, STRAINED)
+    if not far:
+        return ""
+    more = f" and {len(far) - STRANGEST} more" if len(far) > STRANGEST else ""
+    each = "; ".join(f"{_told(name, one)}" for _, name, one in far[:STRANGEST])
+    return (
+        f"Measure what the data put more than {STRAINED:.0f} declared tolerances off: {each}{more}."
+    )
+
+
+def _far(verdict: Verdict, sd: float) -> list[tuple[float, str, Estimate]]:
+    """Numbers whose interval is away from the model's by more than so many declared sd."""
+    far = [
+        (abs(one.pull), name, one)
+        for name, one in verdict.tuned.items()
+        if one.pull is not None and abs(one.pull) > sd
+        if not (one.at_limit or one.low <= one.nominal <= one.high)
+    ]
+    return sorted(far, key=lambda item: -item[0])
 
 
 def held(verdict: Verdict) -> list[str]:

@@ -19,6 +19,10 @@ SURE = 0.3
 ALIKE = 0.5
 """Correlation below which the two signals have nothing to be timed by."""
 
+STRETCHES = 10
+"""Equal parts of the record by whose disagreement a lag is as unsure: what a model gets wrong is no
+noise, and may look later in one part and earlier in another."""
+
 
 @dataclass(frozen=True)
 class Lag:
@@ -33,7 +37,8 @@ def find_lag(measured: FloatArray, simulated: FloatArray, period: float) -> Lag 
 
     The maximum of the cross-correlation gives whole rows. Around it m(t) = a + g s(t - tau) is
     linear in (a, g, g dtau) with the slope of s, which is the maximum of the correlation between
-    rows; its sd comes from what is left over, with the correlation of that counted.
+    rows. Its sd comes from what is left over: by its correlation from row to row, or by what
+    STRETCHES of the record pull apart, whichever is more.
 
     Args:
         measured: rows (n,), finite.
@@ -74,6 +79,8 @@ def _refined(m: FloatArray, s: FloatArray, slope: FloatArray) -> tuple[float, fl
     if power == 0.0 or found[1] == 0.0:
         return (-found[0] / found[1] if found[1] else 0.0), 0.0
     first = float(np.clip(rest[:-1] @ rest[1:] / power, 0.0, 0.99))
-    variance = power / len(m) * (1.0 + first) / (1.0 - first)
-    sd = np.sqrt(variance * (inverse[0] @ inverse[0])) / scale[0]
+    variance = power / len(m) * (1.0 + first) / (1.0 - first) * (inverse[0] @ inverse[0])
+    pulls = np.array([np.sum(part) for part in np.array_split(inverse[0] * rest, STRETCHES)])
+    apart = STRETCHES / (STRETCHES - 1.0) * float(pulls @ pulls)
+    sd = np.sqrt(max(float(variance), apart)) / scale[0]
     return float(-found[0] / found[1]), float(sd / abs(found[1]))
