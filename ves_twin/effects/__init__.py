@@ -81,6 +81,7 @@ from ves_twin.effects.sensors import (
     SensorOffset,
     SensorWander,
 )
+from ves_twin.effects.servos import ActuatorLag, ServoDamping, ServoStiffness
 from ves_twin.effects.structure import AnchorPosition, BaseTilt, HoseStiffness, LegBending
 from ves_twin.effects.transducers import LengthOffset, LengthScale, TransducerDelay
 
@@ -99,6 +100,7 @@ __all__ = [
     "ActuatorDeadband",
     "ActuatorDelay",
     "ActuatorGain",
+    "ActuatorLag",
     "ActuatorOffset",
     "ActuatorSaturation",
     "AnchorPosition",
@@ -155,7 +157,9 @@ __all__ = [
     "SensorMounting",
     "SensorOffset",
     "SensorWander",
+    "ServoDamping",
     "ServoGain",
+    "ServoStiffness",
     "StaleGravity",
     "StribeckFriction",
     "SupplyDroop",

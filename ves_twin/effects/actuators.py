@@ -47,8 +47,8 @@ class ActuatorGain(Effect):
     )
     anywhere = Anywhere(
         Element.ACTUATOR,
-        0.5,
-        0.002,
+        lambda p: 0.5 * max(abs(p.gain), 1.0),
+        lambda p: 0.002 * max(abs(p.gain), 1.0),
         attribute=change.GAIN,
         source="assumed; magnets and amplifiers, per cents",
     )
@@ -144,6 +144,17 @@ class ActuatorDeadband(Curve):
     kind = "actuator_deadband"
     sizes = (Size("band", "", Sign.POSITIVE),)
     anywhere = Anywhere(Element.ACTUATOR, lambda p: 0.5 * p.effort)
+
+    @classmethod
+    def magnitudes_at(cls, place: Place) -> tuple[Magnitude, ...]:
+        """The band with its range; raises InvalidInputError of a servo, told a place and no effort.
+
+        A servo's own dead band lies about where it is told to be.
+        """
+        if place.stiffness:
+            expected = "a drive whose command is an effort, or a rate"
+            raise InvalidInputError(f"target of {cls.kind}", place.name, expected)
+        return super().magnitudes_at(place)
 
     def edit_command(self, command: FloatArray, time: FloatArray) -> FloatArray:
         """What of it lies outside the band."""

@@ -74,19 +74,32 @@ class Attribute:
         element: what has it.
         name: in MJCF and in [[parameters]] of a machine's file: "frictionloss".
         array: of the compiled model; one by degree of freedom has the joint's first one.
+        column: of a row of that array; None where it has one number for each.
+        sign: -1 where the array has minus the number.
+        against: column of `actuator_biasprm` that has minus the number as well; without it there
+            the model does not have the attribute.
     """
 
     element: Element
     name: str
     array: str
+    column: int | None = None
+    sign: float = 1.0
+    against: int | None = None
 
     def read(self, model: mujoco.MjModel, target: str) -> float:
         """The number, in the model."""
-        return float(getattr(model, self.array)[self.entry(model, target)])
+        value = self.sign * float(getattr(model, self.array)[self.entry(model, target)])
+        if self.against is None:
+            return value
+        bias = float(model.actuator_biasprm[model.actuator(target).id, self.against])
+        return value if bias == -value else 0.0
 
     def add(self, model: mujoco.MjModel, target: str, size: float) -> None:
         """Add to the number of a compiled model."""
-        getattr(model, self.array)[self.entry(model, target)] += size
+        getattr(model, self.array)[self.entry(model, target)] += self.sign * size
+        if self.against is not None:
+            model.actuator_biasprm[model.actuator(target).id, self.against] -= size
 
     def add_to_spec(self, spec: mujoco.MjSpec, target: str, size: float) -> None:
         """Add to the number of a joint's description; of a polynomial, to its first order."""
@@ -103,8 +116,7 @@ class Attribute:
         if self.array.startswith("dof_"):
             return int(model.joint(target).dofadr[0])
         number = int(getattr(model, str(self.element))(target).id)
-        column = {"gain": 0, "cubic_stiffness": 1}.get(self.name)
-        return number if column is None else (number, column)
+        return number if self.column is None else (number, self.column)
 
 
 @dataclass(frozen=True)
@@ -120,8 +132,11 @@ DAMPING = Attribute(Element.JOINT, "damping", "dof_damping")
 FRICTION_LOSS = Attribute(Element.JOINT, "frictionloss", "dof_frictionloss")
 ARMATURE = Attribute(Element.JOINT, "armature", "dof_armature")
 STIFFNESS = Attribute(Element.JOINT, "stiffness", "jnt_stiffness")
-CUBIC_STIFFNESS = Attribute(Element.JOINT, "cubic_stiffness", "jnt_stiffnesspoly")
+CUBIC_STIFFNESS = Attribute(Element.JOINT, "cubic_stiffness", "jnt_stiffnesspoly", 1)
 PLACE = Attribute(Element.BODY, "place", "body_pos")
-GAIN = Attribute(Element.ACTUATOR, "gain", "actuator_gainprm")
+GAIN = Attribute(Element.ACTUATOR, "gain", "actuator_gainprm", 0)
+SERVO_STIFFNESS = Attribute(Element.ACTUATOR, "kp", "actuator_gainprm", 0, against=1)
+SERVO_DAMPING = Attribute(Element.ACTUATOR, "kv", "actuator_biasprm", 2, sign=-1.0)
+LAG = Attribute(Element.ACTUATOR, "timeconst", "actuator_dynprm", 0)
 MASS = Attribute(Element.BODY, "mass", "body_mass")
 CENTRE = Attribute(Element.BODY, "centre", "body_ipos")

@@ -16,8 +16,11 @@ class Place:
         name: as the file has it: "axis", "motor", "tool.x", "wrist.force.3".
         hinge: whether a joint turns rather than slides.
         effort, speed, travel: typical at a joint [N or N m, m/s or rad/s, m or rad]; of an
-            actuator the command that this effort takes.
-        stiffness: of the spring of a joint or tendon in the model [N/m or N m/rad].
+            actuator the command that this effort takes, of a servo the travel.
+        stiffness: of the spring of a joint or tendon in the model, or of a position servo
+            [N/m or N m/rad].
+        gain: of an actuator in the model.
+        lag: time constant of the filter that an actuator's command passes in the model [s].
         unit: of a signal, or of an actuator's command.
         span: typical range of a signal [its unit].
         mass: of a body [kg].
@@ -32,6 +35,8 @@ class Place:
     speed: float = 0.0
     travel: float = 0.0
     stiffness: float = 0.0
+    gain: float = 1.0
+    lag: float = 0.0
     unit: str = "1"
     span: float = 0.0
     mass: float = 0.0

@@ -20,6 +20,7 @@ from ves_twin.effects import (
     recorder,
     ripple,
     sensors,
+    servos,
     structure,
     transducers,
 )
@@ -31,7 +32,7 @@ from ves_twin.effects.sensors import CrossTalk
 
 _CATALOGUE = (
     *(transducers, joints, friction, presliding, ripple, couplings, hydraulics, structure),
-    *(actuators, bodies, sensors, programs, recorder),
+    *(actuators, servos, bodies, sensors, programs, recorder),
 )
 
 RENAMED = {

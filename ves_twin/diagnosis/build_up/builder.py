@@ -176,9 +176,11 @@ class Builder:
                 break
             linear = regression.solve(chosen, evidence.whitening).residual
             off = regression.half.rms(residual - linear)
-            least, point = left, fit.shift
             present = present_in([regression.trials[n] for n in chosen], fit)
-            halves = self.halves(point, present)
+            moved = self.halves(fit.shift, present)
+            if not moved.sound:  # held-out recordings break off where the fitted ones do not
+                break
+            least, point, halves = left, fit.shift, moved
             kept = _places(halves, present)
             if np.all(off <= MOVED * regression.half.rms(linear)) or last == ROUNDS - 1:
                 break
@@ -212,6 +214,8 @@ class Builder:
         trials = offer.halves.regression.trials
         present = present_in([trials[n] for n in offer.proof.proved], offer.fit)
         halves = barred.halves(offer.fit.shift, present)
+        if not halves.sound:
+            return []
         return barred.offers(halves, offer.fit.shift, present, offer.known)
 
     def few(self, halves: Halves, point: FloatArray, known: frozenset[str]) -> list[Offer]:

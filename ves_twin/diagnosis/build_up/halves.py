@@ -35,6 +35,15 @@ class Halves:
     held: Half
     measured: SingleArray
 
+    @property
+    def sound(self) -> bool:
+        """Whether the simulation breaks off nowhere: neither there nor where a nuisance moves."""
+        return all(
+            bool(np.all(np.isfinite(rows), where=half.kept))
+            for half in (self.regression.half, self.held)
+            for rows in (half.target, half.shared, half.own)
+        )
+
 
 def halves_at(
     fitted: Dataset,

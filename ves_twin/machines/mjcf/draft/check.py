@@ -20,11 +20,12 @@ from ves_twin.machines.mjcf.draft.motion import Motion, band_of, motion_of
 from ves_twin.machines.mjcf.draft.rates import differs, rated
 from ves_twin.machines.mjcf.draft.scaled import words_of_scale
 from ves_twin.machines.mjcf.draft.servos import followed
-from ves_twin.machines.mjcf.draft.spots import Quantity, is_servo
+from ves_twin.machines.mjcf.draft.spots import Quantity
 from ves_twin.machines.mjcf.draft.stops import beyond, in_degrees_by_stops
 from ves_twin.machines.mjcf.draft.too_much_friction import too_much_friction
 from ves_twin.machines.mjcf.motion.inverse import smoothed
 from ves_twin.machines.mjcf.parts.cyclic import is_cyclic, turned_by
+from ves_twin.machines.mjcf.parts.servo import is_servo
 from ves_twin.machines.mjcf.rig.places import driven_joint
 
 GAINED = 0.15

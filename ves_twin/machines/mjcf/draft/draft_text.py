@@ -18,6 +18,7 @@ from ves_twin.machines.mjcf.draft.log_columns import LogColumns
 from ves_twin.machines.mjcf.draft.match import Match, Matches
 from ves_twin.machines.mjcf.draft.spots import Quantity, is_motor, servo_limit
 from ves_twin.machines.mjcf.motion.inverse import smoothed
+from ves_twin.machines.mjcf.parts.servo import FILTERS, is_servo
 from ves_twin.machines.mjcf.rig.column import LAB_UNITS
 from ves_twin.machines.mjcf.rig.description import Mode
 
@@ -36,6 +37,9 @@ scales and density tell masses to some per cent, motors their constant; friction
 BENT = 0.05
 """Share of a joint's typical speed that its first rows are off by where a force jumps in them: dry
 friction of a balanced table (a test) made 0.03 rad/s of 0.3. The fit finds the speed itself."""
+
+NOBODY_TELLS = "20 %"
+"""Share to which loops inside a servo are known: no datasheet has them. Assumed."""
 
 FITTED = "20 %"
 """Share to which a constant is known that was fitted beside friction: put the datasheet's there."""
@@ -271,6 +275,14 @@ def _tolerances(model: mujoco.MjModel, check: Checked) -> str:
         for attribute, (share, field) in SHARES.items()
         if np.any(np.asarray(getattr(model, field)) != 0.0)
     }
+    drives = range(model.nu)
+    servos = [i for i in drives if is_servo(model, i)]
+    if servos:
+        there["kp"] = NOBODY_TELLS
+    if any(model.actuator_biasprm[i, 2] for i in servos):
+        there["kv"] = NOBODY_TELLS
+    if any(int(model.actuator_dyntype[i]) in FILTERS for i in drives):
+        there["timeconst"] = NOBODY_TELLS
     if any(match.fitted for match in check.found):
         there["gain"] = FITTED
     return "{ " + ", ".join(f'{name} = "{share}"' for name, share in there.items()) + " }"

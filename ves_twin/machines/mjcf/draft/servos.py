@@ -12,7 +12,8 @@ from ves_twin.core.types import FloatArray
 from ves_twin.machines.mjcf.draft.changes import DEGREE, FAR_ROUND
 from ves_twin.machines.mjcf.draft.log_columns import LogColumns
 from ves_twin.machines.mjcf.draft.match import Match
-from ves_twin.machines.mjcf.draft.spots import Quantity, is_servo
+from ves_twin.machines.mjcf.draft.spots import Quantity
+from ves_twin.machines.mjcf.parts.servo import is_servo
 
 LONGEST = 0.5
 """Lag of a position behind its set-point that is looked for [s]; hobby servos take 0.05 to 0.2."""

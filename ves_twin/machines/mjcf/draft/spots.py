@@ -11,6 +11,7 @@ import mujoco
 import numpy as np
 
 from ves_twin.core.types import BoolArray
+from ves_twin.machines.mjcf.parts.servo import is_servo
 
 HINGE, SLIDE = int(mujoco.mjtJoint.mjJNT_HINGE), int(mujoco.mjtJoint.mjJNT_SLIDE)
 ON_JOINT = int(mujoco.mjtTrn.mjTRN_JOINT)
@@ -134,16 +135,6 @@ def is_motor(model: mujoco.MjModel, actuator: int) -> bool:
     plain = int(mujoco.mjtBias.mjBIAS_NONE), int(mujoco.mjtDyn.mjDYN_NONE)
     kinds = int(model.actuator_biastype[actuator]), int(model.actuator_dyntype[actuator])
     return kinds == plain and int(model.actuator_trntype[actuator]) == ON_JOINT
-
-
-def is_servo(model: mujoco.MjModel, actuator: int) -> bool:
-    """Whether a command is the position that one joint is pulled to."""
-    affine = int(model.actuator_biastype[actuator]) == int(mujoco.mjtBias.mjBIAS_AFFINE)
-    pulled = float(model.actuator_gainprm[actuator, 0]) == -float(
-        model.actuator_biasprm[actuator, 1]
-    )
-    on_joint = int(model.actuator_trntype[actuator]) == ON_JOINT
-    return affine and pulled and on_joint and float(model.actuator_gear[actuator, 0]) == 1.0
 
 
 def servo_limit(model: mujoco.MjModel, name: str) -> float:

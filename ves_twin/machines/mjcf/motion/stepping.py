@@ -16,6 +16,7 @@ from ves_twin.core.types import FloatArray
 from ves_twin.core.units import to_si
 from ves_twin.effects.effect import Effect
 from ves_twin.effects.element import Element
+from ves_twin.machines.mjcf.motion.filtered import fill_filters
 from ves_twin.machines.mjcf.motion.imposed import Imposed
 from ves_twin.machines.mjcf.motion.law_loop import compiled_laws, lawful_rows, push
 from ves_twin.machines.mjcf.motion.started import first_state, lead_rows, read_from, start_signal
@@ -106,6 +107,8 @@ def motion_of_drive(
     closed = mode is Mode.REFERENCE or bool(programs)
     first = 0 if closed else lead_rows(work.rig, work.programme.time)
     state = _start(work, first)
+    if not closed and model.na:
+        fill_filters(model, state, _commands(work)[: first + 1], period)
     if not (closed or drive.imposed or drive.locked or _resisted(work)):
         path, sensed, commands = _open(work, state, steps, first)
     else:

@@ -14,6 +14,7 @@ from ves_twin.effects.place import Place
 from ves_twin.effects.row import Anywhere
 from ves_twin.machines.mjcf.parts.chain import chain
 from ves_twin.machines.mjcf.parts.joint_units import joint_units
+from ves_twin.machines.mjcf.parts.servo import FILTERS, is_servo
 from ves_twin.machines.mjcf.rig.description import Mode, RigDescription, Span
 
 SINGLE = (int(mujoco.mjtJoint.mjJNT_HINGE), int(mujoco.mjtJoint.mjJNT_SLIDE))
@@ -140,14 +141,20 @@ def _actuator(effect: Effect, told: RigDescription, model: mujoco.MjModel) -> Pl
             expected = "a drive whose command is known: of a joint that is not imposed"
             raise InvalidInputError(f"target of {effect.kind}", effect.target, expected)
     actuator, joint = model.actuator(target), driven_joint(model, target)
-    span, gain = told.typical.joint.get(joint, Span()), abs(actuator.gear[0] * actuator.gainprm[0])
-    if not span.effort or not gain:
-        return Place(Element.ACTUATOR, target)
-    unit = "N*m" if joint_units(model, joint)[0] == "rad" else "N"
+    span, gain = told.typical.joint.get(joint, Span()), float(actuator.gainprm[0])
+    units = joint_units(model, joint) if joint else ("", "")
+    filtered = int(actuator.dyntype[0]) in FILTERS
+    lag = float(actuator.dynprm[0]) if filtered else 0.0
+    place = Place(Element.ACTUATOR, target, hinge=units[0] == "rad", gain=gain, lag=lag)
+    if is_servo(model, int(actuator.id)):
+        travel = to_si(span.travel, units[0], f"typical.joint.{joint}.travel")
+        return replace(place, stiffness=gain, effort=travel, unit=units[0])
+    exerted = abs(float(actuator.gear[0]) * gain)
+    if not span.effort or not exerted:
+        return place
+    unit = "N*m" if place.hinge else "N"
     effort = _positive(span.effort, unit, f"typical.joint.{joint}.effort")
-    return Place(
-        Element.ACTUATOR, target, effort=effort / float(gain), unit=unit if gain == 1.0 else "1"
-    )
+    return replace(place, effort=effort / exerted, unit=unit if exerted == 1.0 else "1")
 
 
 def _tendon(target: str, told: RigDescription, model: mujoco.MjModel) -> Place:

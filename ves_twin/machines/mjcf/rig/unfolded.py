@@ -24,6 +24,7 @@ from ves_twin.effects.joints import JointCompliance
 from ves_twin.effects.presliding import DahlFriction, OneWayLoad
 from ves_twin.effects.registry import EFFECTS, attributes, build_anywhere, kind_anywhere
 from ves_twin.effects.ripple import Ripple
+from ves_twin.effects.servos import ServoDamping
 from ves_twin.machines.mjcf.parts.chain import chain
 from ves_twin.machines.mjcf.rig.description import Allowed, Mode, RigDescription, Setting
 from ves_twin.machines.mjcf.rig.places import anywhere, driven_joint, place_of
@@ -39,11 +40,11 @@ FEW = 2
 BY_NAME = (
     *(ActuatorAsymmetry.kind, ActuatorOffset.kind, ActuatorSaturation.kind),
     *(OneWayLoad.kind, RegularizedFriction.kind, DahlFriction.kind),
-    *(Ripple.kind, DriveCrossTalk.kind, JointCompliance.kind),
+    *(Ripple.kind, DriveCrossTalk.kind, JointCompliance.kind, ServoDamping.kind),
 )
 """Kinds that a "*" does not mean: on most machines a force offset and dry or viscous friction do
-much the same, as a spring and its compliance do, each of them costs runs, and nobody knows how many
-waves a ripple has. A file asks for these by their names."""
+much the same, as a spring and its compliance do, or a servo's damping and its joint's, each of them
+costs runs, and nobody knows how many waves a ripple has. A file asks for these by their names."""
 
 SLIDE = int(mujoco.mjtJoint.mjJNT_SLIDE)
 

@@ -1,0 +1,119 @@
+"""Effects of a position servo of MuJoCo: stiffness kp, damping kv, and the lag of its command."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import final
+
+from ves_twin.core.errors import InvalidInputError
+from ves_twin.effects import change
+from ves_twin.effects.effect import Effect
+from ves_twin.effects.element import Element
+from ves_twin.effects.magnitude import Magnitude, Sign
+from ves_twin.effects.place import Place
+from ves_twin.effects.row import Anywhere
+from ves_twin.effects.size import DAMPING, STIFFNESS, Size
+
+SLOWEST = 0.3
+"""Time constant kv / kp of a slow servo [s]: assumed, hobby servos take 0.1 to 0.2 s for 60 deg."""
+
+QUICKEST = 0.005
+"""Time constant that a lag does not fall below [s]: MuJoCo's `filter` needs steps that are shorter,
+and a lag of that length no log of set-points shows."""
+
+
+def _of_servo(kind: str, place: Place) -> Place:
+    if not place.stiffness:
+        expected = "a position servo, whose command is where its joint is pulled to"
+        raise InvalidInputError(f"target of {kind}", place.name, expected)
+    return place
+
+
+@final
+@dataclass(frozen=True)
+class ServoStiffness(Effect):
+    """A position servo pulls harder or weaker than the model says: kp -> kp + stiffness.
+
+    The effort of a servo is kp (u - q) - kv v, u its set-point. Datasheets of hobby servos and of
+    drives with loops of their own have no kp.
+    """
+
+    stiffness: float = 0.0
+
+    kind = "servo_stiffness"
+    sizes = (Size("stiffness", STIFFNESS),)
+    proportional = False
+    anywhere = Anywhere(
+        Element.ACTUATOR,
+        lambda p: 3.0 * p.stiffness,
+        attribute=change.SERVO_STIFFNESS,
+        source="assumed; no datasheet has it: up to four times as stiff",
+    )
+
+    @classmethod
+    def magnitudes_at(cls, place: Place) -> tuple[Magnitude, ...]:
+        """Stiffness with its range; raises InvalidInputError of another drive."""
+        return super().magnitudes_at(_of_servo(cls.kind, place))
+
+    def least(self, nominal: float) -> float:
+        """None pushes away from where it is told to be."""
+        return 0.0
+
+
+@final
+@dataclass(frozen=True)
+class ServoDamping(Effect):
+    """A position servo brakes harder, or less, than the model says: kv -> kv + damping.
+
+    Of a joint whose speed alone is known it is viscous friction by another name.
+    """
+
+    damping: float = 0.0
+
+    kind = "servo_damping"
+    sizes = (Size("damping", DAMPING, Sign.POSITIVE),)
+    proportional = False
+    anywhere = Anywhere(
+        Element.ACTUATOR,
+        lambda p: SLOWEST * p.stiffness,
+        attribute=change.SERVO_DAMPING,
+        source="assumed; no datasheet has it",
+    )
+
+    @classmethod
+    def magnitudes_at(cls, place: Place) -> tuple[Magnitude, ...]:
+        """Damping with its range; raises InvalidInputError of another drive."""
+        return super().magnitudes_at(_of_servo(cls.kind, place))
+
+
+@final
+@dataclass(frozen=True)
+class ActuatorLag(Effect):
+    """A command passes a slower, or quicker, filter than the model says: tau -> tau + time.
+
+    MuJoCo's `filter` and `filterexact`: tau da/dt = u - a, and the actuator acts by a.
+    """
+
+    time: float = 0.0
+
+    kind = "actuator_lag"
+    sizes = (Size("time", "s"),)
+    proportional = False
+    anywhere = Anywhere(
+        Element.ACTUATOR,
+        lambda p: max(3.0 * p.lag, 0.1),
+        attribute=change.LAG,
+        source="assumed; no datasheet has it: up to four times as slow",
+    )
+
+    @classmethod
+    def magnitudes_at(cls, place: Place) -> tuple[Magnitude, ...]:
+        """The lag with its range; raises InvalidInputError where the model has none."""
+        if not place.lag:
+            expected = "an actuator whose dyntype is filter or filterexact"
+            raise InvalidInputError(f"target of {cls.kind}", place.name, expected)
+        return super().magnitudes_at(place)
+
+    def least(self, nominal: float) -> float:
+        """None is quicker than the step."""
+        return QUICKEST

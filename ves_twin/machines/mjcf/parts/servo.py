@@ -1,0 +1,18 @@
+"""is_servo, FILTERS: what an actuator of a model makes of its command."""
+
+from __future__ import annotations
+
+import mujoco
+
+FILTERS = (int(mujoco.mjtDyn.mjDYN_FILTER), int(mujoco.mjtDyn.mjDYN_FILTEREXACT))
+"""Activations that follow their command behind a time constant."""
+
+
+def is_servo(model: mujoco.MjModel, actuator: int) -> bool:
+    """Whether a command is the position that one joint is pulled to."""
+    affine = int(model.actuator_biastype[actuator]) == int(mujoco.mjtBias.mjBIAS_AFFINE)
+    pulled = float(model.actuator_gainprm[actuator, 0]) == -float(
+        model.actuator_biasprm[actuator, 1]
+    )
+    on_joint = int(model.actuator_trntype[actuator]) == int(mujoco.mjtTrn.mjTRN_JOINT)
+    return affine and pulled and on_joint and float(model.actuator_gear[actuator, 0]) == 1.0
