@@ -64,3 +64,13 @@ def test_a_servo_that_is_told_where_it_hangs_does_not_move(tmp_path):
     fed = {"target": np.full((50, 1), held), "angle": np.full((50, 1), 0.5)}
     angle = forward.simulate(Excitation("held", PERIOD * np.arange(50), fed), {})[:, 0]
     assert np.max(np.abs(angle - 0.5)) < 1e-9
+
+
+def test_a_servo_without_stiffness_begins_where_its_joint_is():
+    """The end of a range that a search tries."""
+    model = filtered()
+    model.actuator_gainprm[0, 0] = model.actuator_biasprm[0, 1] = 0.0
+    data = mujoco.MjData(model)
+    data.qpos[0] = 0.3
+    fill_filters(model, data, np.array([[0.7]]), PERIOD)
+    assert data.act[0] == 0.3

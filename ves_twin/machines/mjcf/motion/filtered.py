@@ -20,7 +20,7 @@ def fill_filters(
         a[k] = a[k-1] + (u[k-1] - a[k-1]) (1 - exp(-T / tau)),   a[0] = u[0]
 
     Else of a servo by its joint, which it holds against gravity and the model's own friction and
-    springs: kp (a - q) - kv v = what these take. Else as if the first command had been there long.
+    springs: kp (a - q) - kv v = what these take; one without a kp holds nothing. Else as if the first command had been there long.
     MuJoCo begins with zero, from where a servo would fall, or jump.
 
     Args:
@@ -54,4 +54,4 @@ def _held(model: mujoco.MjModel, data: mujoco.MjData, number: int) -> float:
     load = float(data.qfrc_bias[dof] - data.qfrc_passive[dof])
     moving = damping * float(data.qvel[dof])
     place = float(data.qpos[int(model.jnt_qposadr[joint])])
-    return place + (load + moving) / float(stiffness)
+    return place + (load + moving) / stiffness if stiffness > 0.0 else place
