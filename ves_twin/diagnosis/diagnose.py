@@ -12,7 +12,7 @@ from ves_twin.diagnosis.fit.tolerances import cached_scale, check_commissioned
 from ves_twin.diagnosis.judge_view import judge_view
 from ves_twin.diagnosis.model.forward import Excitation, Forward
 from ves_twin.diagnosis.model.widened import Widened, widening
-from ves_twin.diagnosis.record.preprocess import preprocess
+from ves_twin.diagnosis.record.preprocess import check_lengths, preprocess
 from ves_twin.diagnosis.record.runs import Progress, silent
 from ves_twin.diagnosis.settings import Settings
 from ves_twin.diagnosis.verdict.both_views import both_views, is_firm
@@ -63,6 +63,7 @@ def diagnose(
     chosen = settings or Settings()
     _check_causes(forward, exclude)
     check_commissioned(len(commissioning))
+    check_lengths(forward, held_out, chosen.rate)
     with Workers(chosen.workers, budget or chosen.budget) as workers:
         scale = _scale(forward, commissioning, workers, chosen)
         material = Material(

@@ -25,7 +25,8 @@ SWITCHED = 3
 
 def check_values(recording: Recording) -> list[Check]:
     """Numbers that are missing, stuck or saturated, for each measured signal."""
-    measured = [n for n in recording.signals if _is_measured(n)]
+    commands = {own.name for own in recording.info.own_signals if own.role is Role.COMMAND}
+    measured = [n for n in recording.signals if _is_measured(n) and n not in commands]
     return [check for name in measured for check in _signal(recording, name)]
 
 
@@ -84,15 +85,15 @@ def _saturated(values: FloatArray) -> bool:
     A joint that comes to rest arrives slowly; a range that is too small stops it in motion. What
     is switched (a valve: off, on, the other way) is always at an end value.
     """
-    steps = np.abs(np.diff(values))
-    if len(np.unique(values)) <= SWITCHED:
+    if len(np.unique(values)) <= SWITCHED or len(values) <= RUN:
         return False
-    usual = float(np.median(steps[steps > 0.0]))
+    travels = np.abs(values[RUN:] - values[:-RUN])  # over some rows: one of coarse steps is a step
+    fast = float(np.percentile(travels[travels > 0.0], 90.0))
     for end in (values.max(), values.min()):
         at = values == end
         edges = np.flatnonzero(np.diff(np.concatenate([[0], at.astype(int), [0]])))
         starts, lengths = edges[::2], edges[1::2] - edges[::2]
-        entered = starts[(lengths >= RUN) & (starts > 0)]
-        if len(entered) and at.mean() > PILE and np.median(steps[entered - 1]) > 0.3 * usual:
+        entered = starts[(lengths >= RUN) & (starts >= RUN)]
+        if len(entered) and at.mean() > PILE and np.median(travels[entered - RUN]) > 0.25 * fast:
             return True
     return False

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from time import perf_counter
 
@@ -110,9 +111,12 @@ def lawful_rest(
     rest = search_rest(built.fitted, causes, limits, progress)
     if rest is None:
         return None
+    whitening = whitening_of(held.runs, standstill)
+    gain = HeldOut(held, whitening, settings).gain(built.before, causes)
+    alone = {name: after for name, (_, after) in gain.errors.items()} if gain else None
     there = replace(held, runs=replace(held.runs, forward=rest.evidence.runs.forward))
-    tried = HeldOut(there, whitening_of(there.runs, standstill), settings)
-    search, finding = _borne_out(rest, tried, progress)
+    tried = HeldOut(there, replace(whitening, runs=there.runs), settings)
+    search, finding = _borne_out(rest, tried, progress, alone)
     finding = replace(finding, part=True)
     if not finding.claimed:
         return Lawful(finding, None)
@@ -120,17 +124,20 @@ def lawful_rest(
 
 
 def _borne_out(
-    search: Search, held: HeldOut | None, progress: Progress
+    search: Search,
+    held: HeldOut | None,
+    progress: Progress,
+    causes: Mapping[str, float] | None = None,
 ) -> tuple[Search, LawFinding]:
     """The chosen law; one near it, where held-out recordings bear that one out and not this one.
 
     A motion that goes on beyond the range that was fitted tells a sine from a polynomial.
     """
-    first = law_finding(search, held, progress)
+    first = law_finding(search, held, progress, causes)
     if first.claimed or search.reason:
         return search, first
     for other in search.rivals[:RETRIED]:
-        finding = law_finding(other, held, progress)
+        finding = law_finding(other, held, progress, causes)
         if finding.claimed:
             return other, finding
     return search, first

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -48,13 +49,20 @@ INFORMED = 0.5
 """Share of its prior sd below which a point of the recordings says something."""
 
 
-def law_finding(search: Search, held: HeldOut | None, progress: Progress = silent) -> LawFinding:
+def law_finding(
+    search: Search,
+    held: HeldOut | None,
+    progress: Progress = silent,
+    causes: Mapping[str, float] | None = None,
+) -> LawFinding:
     """What a search came to.
 
     Args:
         search: laws and their evidence.
         held: held-out recordings.
         progress: told what is being done.
+        causes: rms error of each held-out channel [its unit] by causes beside which the law is,
+            as they were proved without it.
     """
     best = search.best
     if best.candidate is None:
@@ -65,7 +73,7 @@ def law_finding(search: Search, held: HeldOut | None, progress: Progress = silen
     gain = _gain(search, held) if held else None
     progress(0.5, "the band of the law")
     asked = asked_of_motion(law, best, held.seen) if held else None
-    reason = search.reason or (_gated(gain) if held else "") or refuted(asked)
+    reason = search.reason or (_gated(gain, causes or {}) if held else "") or refuted(asked)
     along = _along(search, law)
     return LawFinding(
         claimed=not reason,
@@ -92,7 +100,7 @@ def law_finding(search: Search, held: HeldOut | None, progress: Progress = silen
     )
 
 
-def _gated(gain: Gain | None) -> str:
+def _gated(gain: Gain | None, causes: Mapping[str, float]) -> str:
     """Why held-out recordings do not bear a law out; empty where they do."""
     if gain is None:
         return "the machine with it diverges on held-out recordings"
@@ -100,6 +108,9 @@ def _gated(gain: Gain | None) -> str:
         return "the held-out recordings show nothing that it could improve"
     if gain.grown:
         return "the rms errors on held-out recordings grow with it"
+    after = {name: (causes[name], gain.errors[name][1]) for name in causes}
+    if replace(gain, errors=after).grown:
+        return "the proved causes alone leave smaller rms errors on held-out recordings"
     if gain.share < GATE or gain.low is None or gain.low <= 0.0:
         return f"it takes only {100.0 * gain.share:.0f} % of the held-out excess away"
     return ""

@@ -99,6 +99,28 @@ def preprocess(
     return Dataset(runs, np.concatenate(stacks), tuple(unseen), holes)
 
 
+def check_lengths(
+    forward: Forward, recordings: Sequence[Recording], rate: float | None = None
+) -> None:
+    """Refuse recordings that `preprocess` would find too short, before anything is simulated.
+
+    Args:
+        forward: the plant.
+        recordings: of it; none is fine.
+        rate: of the analysis grid [Hz].
+
+    Raises:
+        UnknownNameError: a drive signal that is not recorded.
+        InvalidInputError: rows that are missing, or too short a recording.
+    """
+    programmes = []
+    for k, recording in enumerate(recordings):
+        name = recording.info.scenario or f"recording {k + 1}"
+        _check_drive(recording, forward.drive, name)
+        programmes.append(Excitation.of(recording, forward.drive, name, rate))
+    _check_length(Runs(forward, tuple(programmes), (), Workers()))
+
+
 def _rows(recording: Recording, channels: Sequence[Channel]) -> FloatArray:
     return np.stack([recording[c.signal][:, c.column] for c in channels], axis=1)
 

@@ -86,6 +86,8 @@ def gain_words(verdict: Verdict) -> str:
     square = f"of its square in units of noise, {share}{span} goes"
     if gain.fallen and gain.high is not None and gain.high < 0.0:
         square = f"{square}: slow errors fall, and fast ones, which noise weighs most, grow"
+    elif gain.share <= 0.0:
+        square = "its square in units of noise, where fast errors count most, does not fall"
     if _open(gain):
         square = "counted in units of noise it may be a loss as well"
     return f"{rms_words(gain)}; {square}{_lost_words(verdict)}"

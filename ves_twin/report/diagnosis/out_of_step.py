@@ -30,6 +30,7 @@ def shorter(verdict: Verdict) -> str:
     if verdict.basis.pieces:
         return "Take shorter pieces (drive.horizon in the machine's file), and diagnose again."
     return (
-        "Simulate pieces of it that begin from what was measured (drive.horizon in the machine's"
-        " file, of 100 rows or more), or record a slower motion, and diagnose again."
+        "Where the log tells every joint's start, simulate pieces of it that begin from what was"
+        " measured (drive.horizon in the machine's file, of 100 rows or more); else record a slower"
+        " motion, and diagnose again."
     )

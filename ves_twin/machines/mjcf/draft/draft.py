@@ -129,9 +129,9 @@ def draft(model: Path, logs: Sequence[Path], out: Path, rate: float | None = Non
         return _Version(mode, text, rig, *_predicted(rig, logs[0]))
 
     now = version(chosen(log, matches, check, given.model))
-    if not given.model.nu:
-        recording = read_rig_recording(logs[0], now.rig)
-        now = version(replace(now.mode, typical=unmeasured(now.rig, recording)))
+    if now.mode.mode is not Mode.MOTION:
+        sizes = unmeasured(now.rig, read_rig_recording(logs[0], now.rig))
+        now = version(replace(now.mode, typical=sizes)) if sizes else now
     if now.mode.either and now.explained[now.least] < HALF:
         why = f"open loop the model explains {_percent(now)} of {now.least}"
         now = version(chosen(log, matches, check, given.model, why))

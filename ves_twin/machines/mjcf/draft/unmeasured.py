@@ -34,6 +34,8 @@ def unmeasured(rig: Rig, recording: Recording) -> dict[str, dict[str, float]]:
     known = {*told.typical.joint, *told.drive.imposed, *told.drive.locked}
     names = [model.joint(i).name for i in single_joints(model)]
     names = [name for name in names if name not in known]
+    if not names:
+        return {}
     signals, compared = dict(told.signals), dict(told.compare)
     for name in names:
         for of, unit in zip(("position", "speed"), joint_units(model, name), strict=True):

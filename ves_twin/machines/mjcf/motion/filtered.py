@@ -20,8 +20,8 @@ def fill_filters(
         a[k] = a[k-1] + (u[k-1] - a[k-1]) (1 - exp(-T / tau)),   a[0] = u[0]
 
     Else of a servo by its joint, which it holds against gravity and the model's own friction and
-    springs: kp (a - q) - kv v = what these take; one without a kp holds nothing. Else as if the first command had been there long.
-    MuJoCo begins with zero, from where a servo would fall, or jump.
+    springs: kp (a - q) - kv v = what these take; one without a kp holds nothing. Else as if the
+    first command had been there long. MuJoCo begins with zero, from where a servo would fall.
 
     Args:
         model: with its actuators.

@@ -34,7 +34,7 @@ rows, and a controller's memory is empty."""
 FORGOTTEN = 0.1
 """Share of a recording that this may take: of servos' logs of 2 and 3 s it took half."""
 
-SHORT = 1.5
+SHORT = 0.2
 """Length [s] below which it takes all of FORGET: so short is a log whose clock has another unit."""
 
 FORGETS = "while a start that is read from noisy rows settles"
