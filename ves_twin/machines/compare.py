@@ -197,7 +197,8 @@ def _channels(
         for name in one.inputs
         for i, column in enumerate(one.signals[name].columns)
     }
-    companions = Companions(tuple(inputs), np.column_stack(list(inputs.values())))
+    drive = np.array(list(inputs.values()), float).reshape(len(inputs), len(time)).T
+    companions = Companions(tuple(inputs), drive)
     load, rate = one.load(measured), None if one.poses else one.rate
     found, short = [], []
     for name in one.outputs:

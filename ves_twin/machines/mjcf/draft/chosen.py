@@ -375,14 +375,20 @@ def _with_position(own: tuple[float, str], induced: float) -> tuple[float, str]:
 
 def _refuse(log: LogColumns, matches: Matches, check: Checked, model: mujoco.MjModel) -> None:
     """Say what is missing."""
-    there = ", ".join(m.column for m in check.found) or "none"
+    there = ", ".join(f"{m.column} as {m.spot.quantity} of {m.spot.name}" for m in check.found)
     left = ", ".join([*matches.left, *matches.setpoints]) or "none"
     motors = ", ".join(model.actuator(i).name for i in range(model.nu))
     joints = ", ".join(model.joint(i).name for i in single_joints(model))
     lacks_effort = all(m.spot.quantity is not Quantity.EFFORT for m in check.found)
     expected = f"an effort of {motors}" if lacks_effort else f"a position or speed of {joints}"
-    came = f"columns matched: {there}; not matched: {left}"
+    placed = any(m.spot.quantity in (Quantity.POSITION, Quantity.SPEED) for m in check.found)
+    if lacks_effort and not placed and model.nu:
+        expected = f"{expected}, and a position or speed of {joints}"
+    came = f"columns matched: {there or 'none'}; not matched: {left}"
     if not model.nu:
         came = f"a model without actuators; {came}"
         expected = f"actuators, or a position of {joints} and what follows from it"
+    if model.nsensor and not placed:
+        name = model.sensor(0).name
+        expected += f"; of {name} alone the file is written by hand, with a [start] of {joints}"
     raise InvalidInputError(f"{log.file} does not fit the model", came, expected)
