@@ -23,6 +23,7 @@ from ves_twin.machines.mjcf.draft.draft_text import compared, draft_text, signal
 from ves_twin.machines.mjcf.draft.given_model import GivenModel
 from ves_twin.machines.mjcf.draft.log_columns import LogColumns
 from ves_twin.machines.mjcf.draft.match import matched
+from ves_twin.machines.mjcf.draft.other_way import other_way
 from ves_twin.machines.mjcf.draft.runs_away import runs_away
 from ves_twin.machines.mjcf.draft.shape import by_shape
 from ves_twin.machines.mjcf.draft.spots import spots_of
@@ -146,7 +147,11 @@ def draft(model: Path, logs: Sequence[Path], out: Path, rate: float | None = Non
     left |= {c: "says what was asked for" for c in matches.setpoints}
     left |= {m.column: "is a speed" for m in check.found if not used(m, now.mode)}
     silent = untold(given.model, check.found, check.locked)
-    look = (*given.notes, *log.notes, *check.findings, *silent, *now.coarse)
+    turned: list[str] = []
+    if now.mode.mode is Mode.CONTROL and now.explained[now.least] < HALF:
+        turned = other_way(now.rig, _first_part(now.rig, logs[0]))
+    coarse = [] if turned else now.coarse
+    look = (*given.notes, *log.notes, *check.findings, *silent, *turned, *coarse)
     words, stretch = f"{now.mode.mode}: {now.mode.why}", _stretch(now.mode, log)
     guesses = _guesses(check, now.mode)
     told = {name: max(share, 0.0) for name, share in now.explained.items()}
@@ -217,6 +222,14 @@ def _rig(text: str, given: GivenModel, out: Path) -> Rig:
     return rig
 
 
+def _first_part(rig: Rig, log: Path) -> Recording:
+    """The stretch of a log that is predicted."""
+    recording = read_rig_recording(log, rig)
+    rows = recording.time - recording.time[0] <= LONGEST
+    signals = {name: values[rows] for name, values in recording.signals.items()}
+    return Recording(recording.time[rows], signals, recording.info)
+
+
 def _predicted(rig: Rig, log: Path) -> tuple[dict[str, float], list[str]]:
     """Of the model, fed with the log's commands: what it explains, and what its step spoils.
 
@@ -227,13 +240,9 @@ def _predicted(rig: Rig, log: Path) -> tuple[dict[str, float], list[str]]:
         Signal -> share of its power, below zero where it runs away; a sentence for channels that
         do, or that the step puts far off.
     """
-    recording = read_rig_recording(log, rig)
-    rows = recording.time - recording.time[0] <= LONGEST
-    forward = MjcfForward.of(rig)
-    if np.count_nonzero(rows) < FEWEST:  # a clock in another unit, which is told
+    short, forward = _first_part(rig, log), MjcfForward.of(rig)
+    if len(short.time) < FEWEST:  # a clock in another unit, which is told
         return dict.fromkeys((channel.signal for channel in forward.channels), 0.0), []
-    signals = {name: values[rows] for name, values in recording.signals.items()}
-    short = Recording(recording.time[rows], signals, recording.info)
     fed = [Excitation.of(piece, forward.drive) for piece in pieces(rig, short)]
     parts = [forward.simulate(one, {}) for one in fed]
     found = np.concatenate(parts)
@@ -259,8 +268,20 @@ def _predicted(rig: Rig, log: Path) -> tuple[dict[str, float], list[str]]:
         elif off > COARSE * channel.sd > 0.0:
             coarse[channel.name] = off / channel.sd, quantity(off, channel.unit, 2)
     step = float(rig.model.opt.timestep)
-    words = [f"{'; '.join(lost)}: has a joint no damping or friction in the model?"] if lost else []
+    why = "signs, units, zeros?"
+    if any(_undamped(rig, name) for name, found in shares.items() if min(found) < AWAY):
+        why = "has a joint no damping or friction in the model?"
+    words = [f"{'; '.join(lost)}: {why}"] if lost else []
     return {name: min(found) for name, found in shares.items()}, [*words, *_coarse(coarse, step)]
+
+
+def _undamped(rig: Rig, signal: str) -> bool:
+    """Whether the joint that a signal tells of has neither damping nor friction in the model."""
+    joint = rig.description.compare[signal].joint if signal in rig.description.compare else ""
+    if not joint:
+        return False
+    at = rig.model.joint(joint).dofadr[0]
+    return not (rig.model.dof_damping[at] or rig.model.dof_frictionloss[at])
 
 
 def _coasting(rows: FloatArray, speeds: BoolArray) -> FloatArray:

@@ -1,0 +1,78 @@
+"""Signs and units of a motion that is integrated are told by simulating it otherwise."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import mujoco
+import numpy as np
+import pytest
+
+from ves_twin.machines.mjcf.draft.draft import draft
+
+MODEL = """
+<mujoco>
+  <option timestep="0.002" integrator="implicitfast"/>
+  <worldbody>
+    <body><joint name="swing" axis="0 1 0" damping="0.02" stiffness="0.3" springref="60"/>
+      <geom type="capsule" fromto="0 0 0 0 0 -0.3" size="0.01" mass="0.3"/>{tip}</body>
+  </worldbody>
+  {drive}
+</mujoco>
+"""
+TIP = """<body pos="0 0 -0.3"><joint name="flex" axis="0 1 0" stiffness="2" damping="0.01"/>
+  <geom type="sphere" size="0.01" mass="0.3" pos="0 0 -0.15"/></body>"""
+DRIVE = '<actuator><motor name="drive" joint="swing" gear="0.5"/></actuator>'
+TIME = 0.01 * np.arange(600)
+
+
+@pytest.fixture(scope="module", params=["", DRIVE], ids=["let go", "driven"])
+def machine(request, tmp_path_factory):
+    folder = tmp_path_factory.mktemp("machine")
+    path = folder / "machine.xml"
+    path.write_text(MODEL.format(drive=request.param, tip=TIP if request.param else ""))
+    model = mujoco.MjModel.from_xml_path(str(path))
+    data = mujoco.MjData(model)
+    data.qpos[0] = 0.9
+    command = np.sin(2.0 * TIME) if request.param else np.zeros_like(TIME)
+    angle = []
+    for u in command:
+        angle.append(float(data.qpos[0]))
+        data.ctrl[:] = u
+        mujoco.mj_step(model, data, 5)
+    angle += 1e-3 * np.random.default_rng(0).standard_normal(len(TIME))
+    return path, np.array(angle), command if request.param else None
+
+
+def looked(machine, folder: Path, angle: float = 1.0, command: float = 1.0, unit: str = "") -> str:
+    path, angles, commands = machine
+    columns, names = [TIME, angle * angles], ["t", f"swing{unit}"]
+    if commands is not None:
+        columns, names = [*columns, command * commands], [*names, "drive_cmd"]
+    log = folder / "log.csv"
+    np.savetxt(log, np.column_stack(columns), "%.6g", ",", header=",".join(names), comments="")
+    return "\n".join(draft(path, [log], folder / "machine.toml").look)
+
+
+def test_nothing_is_asked_of_a_right_log(machine, tmp_path):
+    asked = looked(machine, tmp_path, unit="_rad")
+    assert "?" not in asked.replace("s is a guess", "")
+
+
+def test_a_reading_that_counts_the_other_way_is_asked_after(machine, tmp_path):
+    """Said to be a missing damping before, and named as a mass centre 75 mm aside, firmly."""
+    asked = looked(machine, tmp_path, angle=-1.0, unit="_rad")
+    assert "swing.position turned, the model explains" in asked
+    assert "count the other way" in asked
+    assert "damping" not in asked
+
+
+def test_degrees_under_the_name_of_radians_are_asked_after(machine, tmp_path):
+    asked = looked(machine, tmp_path, angle=180.0 / np.pi, unit="_rad")
+    assert "is it in degrees?" in asked or "the numbers fit the model as deg" in asked
+
+
+@pytest.mark.parametrize("machine", [DRIVE], indirect=True, ids=["driven"])
+def test_a_command_in_per_cent_is_asked_after(machine, tmp_path):
+    asked = looked(machine, tmp_path, command=10.0, unit="_rad")
+    assert "drive.effort times 0.1" in asked

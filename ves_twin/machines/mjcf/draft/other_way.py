@@ -1,0 +1,88 @@
+"""other_way: columns that fit a model better turned, or in another unit: simulated."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from ves_twin.core.recording.recording import Recording
+from ves_twin.diagnosis.model.forward import Excitation
+from ves_twin.machines.mjcf.draft.spots import HINGE
+from ves_twin.machines.mjcf.motion.forward import MjcfForward
+from ves_twin.machines.mjcf.motion.pieces import pieces
+from ves_twin.machines.mjcf.rig.machine import Rig
+
+BETTER = 0.3
+"""Share of a signal's power by which the other sign must explain more. Assumed: of a swing about
+its rest both explain the same, and a sign that is wrong explains nothing."""
+
+MOST = 6
+"""Columns that are tried: each costs a simulation."""
+
+
+DEGREE = np.pi / 180.0
+
+QUESTIONS = {
+    -1.0: "turned, {}: does it count the other way?",
+    DEGREE: "times pi/180, {}: is it in degrees?",
+    1.0 / DEGREE: "times 180/pi, {}: is it in radians?",
+}
+"""What a reading is multiplied with, and what is asked where that fits better."""
+
+UNITS = (0.01, 0.1, 10.0, 100.0)
+"""What a command is multiplied with besides: a gear that the model has, too, per cent, mN m."""
+
+
+def other_way(rig: Rig, recording: Recording) -> list[str]:
+    """A question about the column that, turned or scaled, lets the model explain most more.
+
+    Of a motion that is integrated signs and units are not told by efforts: the model is simulated
+    with each joint's readings, and with each command, otherwise.
+
+    Args:
+        rig: a drafted machine whose commands are fed in.
+        recording: of its log.
+
+    Returns:
+        One sentence; none where no column is worth a question.
+    """
+    told = rig.description
+    joints: dict[str, list[str]] = {}
+    for name, compared in told.compare.items():
+        if compared.joint and compared.of in ("position", "speed"):
+            joints.setdefault(compared.joint, []).append(name)
+    commands = [[name] for name in told.drive.actuators.values()]
+    if not 0 < len(joints) + len(commands) <= MOST:
+        return []
+    tried = [(names, -1.0) for names in (*joints.values(), *commands)]
+    hinges = [j for j in joints if int(rig.model.joint(j).type[0]) == HINGE]
+    tried += [(joints[j], factor) for j in hinges for factor in (DEGREE, 1.0 / DEGREE)]
+    tried += [(names, factor) for names in commands for factor in UNITS]
+    one = len(MjcfForward.of(rig).channels) == 1
+    of = "of it" if one else "of what it explains least of"
+    before, found = max(_share(rig, recording), 0.0), list[tuple[float, str]]()
+    for names, factor in tried:
+        signals = {n: factor * v if n in names else v for n, v in recording.signals.items()}
+        share = _share(rig, replace(recording, signals=signals))
+        explains = f"the model explains {share:.0%} {of}, {before:.0%}"
+        other = f"times {factor:g}, {{}}: another unit, or a gear?"
+        question = QUESTIONS.get(factor, other).format(f"{explains} as it is")
+        found.append((share, f"{names[0]} {question}"))
+    share, sentence = max(found)
+    return [sentence] if share > before + BETTER else []
+
+
+def _share(rig: Rig, recording: Recording) -> float:
+    """Share of its power that the model explains of the signal that it explains least of."""
+    forward = MjcfForward.of(rig)
+    parts = pieces(rig, recording)
+    told = np.concatenate([forward.simulate(Excitation.of(p, forward.drive), {}) for p in parts])
+    if not np.all(np.isfinite(told)):
+        return -np.inf
+    shares = []
+    for column, channel in zip(told.T, forward.channels, strict=True):
+        y = np.concatenate([part[channel.signal][:, channel.column] for part in parts])
+        left, power = np.nansum((y - column) ** 2), np.nansum((y - np.nanmean(y)) ** 2)
+        shares.append(1.0 - float(left / power) if power > 0.0 else 0.0)
+    return min(shares)
