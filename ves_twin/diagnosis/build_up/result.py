@@ -15,7 +15,7 @@ UNFINISHED = "a full fit of what is proved"
 
 @dataclass(frozen=True)
 class Size:
-    """A parameter's value and interval, counted from nominal; the interval counts model error."""
+    """A parameter's value and interval, and what the model has; the interval counts model error."""
 
     value: float
     low: float

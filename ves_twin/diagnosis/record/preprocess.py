@@ -99,9 +99,7 @@ def preprocess(
     return Dataset(runs, np.concatenate(stacks), tuple(unseen), holes)
 
 
-def check_lengths(
-    forward: Forward, recordings: Sequence[Recording], rate: float | None = None
-) -> None:
+def check_lengths(forward: Forward, recordings: Sequence[Recording], rate: float = RATE) -> None:
     """Refuse recordings that `preprocess` would find too short, before anything is simulated.
 
     Args:

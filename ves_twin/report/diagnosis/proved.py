@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 
 from ves_twin.core.quantity import UNSURE, percent, quantity
-from ves_twin.diagnosis.build_up.result import TOGETHER, Left, Proved
+from ves_twin.diagnosis.build_up.result import TOGETHER, Left, Proved, Size
 from ves_twin.diagnosis.verdict.verdict import Verdict
 from ves_twin.report.diagnosis.words import spoken
 from ves_twin.report.html import Html, bullets, paragraph, section, table
@@ -107,10 +107,16 @@ def standing_words(one: Proved) -> str:
 def proved_line(one: Proved) -> str:
     """An extension in one line of a terminal."""
     sizes = ", ".join(
-        f"{quantity(s.value, s.unit)} ({quantity(s.low, s.unit)} to {quantity(s.high, s.unit)})"
-        for s in one.parameters.values()
+        f"{quantity(s.value, s.unit)} ({_interval(s)})" for s in one.parameters.values()
     )
     return f"  {one.label:<36}{sizes}; {standing_words(one)}"
+
+
+def _interval(size: Size) -> str:
+    """Its ends, and what the model has where that is not zero: a place is no shift."""
+    ends = f"{quantity(size.low, size.unit)} to {quantity(size.high, size.unit)}"
+    model = f"; the model has {quantity(size.nominal, size.unit)}" if size.nominal else ""
+    return ends + model
 
 
 def inseparable_sentences(verdict: Verdict) -> list[str]:
@@ -153,7 +159,7 @@ def _rows(one: Proved, verdict: Verdict) -> list[tuple[str, ...]]:
             (
                 label if len(one.parameters) == 1 else f"{label}: {name}",
                 quantity(size.value, size.unit),
-                f"{quantity(size.low, size.unit)} to {quantity(size.high, size.unit)}",
+                _interval(size),
                 takes if n == 0 else "",
                 f"{one.p:.1g}" if n == 0 else "",
                 standing_words(one) if n == 0 else "",
