@@ -1,5 +1,7 @@
 """The tolerance envelope of a comparison: where a machine in order may lie."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from pendulum import BLIND, DAMPING, MACHINE
@@ -38,6 +40,16 @@ def test_a_fault_leaves_the_envelope_and_the_page_says_so(damped):
     assert damped.outside["joint.angle"] > 0.5
     told = envelope_sentence(damped)
     assert told.startswith("Tolerances: 2 of 2 columns leave the band of a machine in order")
+
+
+def test_a_band_that_is_wider_than_a_signal_moves_is_said_to_tell_nothing(in_order):
+    """A card that swung by 67 mrad, 1.74 rad off, was "in order" without a word."""
+    one = next(one for one in in_order if max(one.outside.values()) < 0.05)
+    assert "wider than it moves" not in envelope_sentence(one)
+    wide = {name: 100.0 * sd for name, sd in one.traces.reach.items()}
+    told = envelope_sentence(replace(one, traces=replace(one.traces, reach=wide)))
+    assert "joint.angle" in told
+    assert "tells next to nothing" in told
 
 
 def test_an_envelope_that_takes_too_long_is_a_note_that_says_how_to_get_it(in_order):

@@ -113,6 +113,17 @@ class RecordingComparison:
         return found
 
     @property
+    def wide(self) -> tuple[str, ...]:
+        """Columns whose envelope is wider than they move: it tells next to nothing of them."""
+        found = []
+        for c in self.channels:
+            sd = self.traces.reach.get(c.name)
+            rows = self.traces.measured[c.signal][:, c.column]
+            if sd is not None and ENVELOPE_SD * float(np.median(sd)) > float(np.nanstd(rows)):
+                found.append(c.name)
+        return tuple(found)
+
+    @property
     def beyond_noise(self) -> tuple[ChannelComparison, ...]:
         """Channels with more than noise, the loudest first."""
         loud = [channel for channel in self.channels if channel.beyond_noise]

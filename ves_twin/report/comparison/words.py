@@ -82,7 +82,11 @@ def envelope_sentence(recording: RecordingComparison) -> str:
     far = sorted((n for n, s in outside.items() if s > EXPECTED_OUTSIDE), key=lambda n: -outside[n])
     count = len(outside)
     if not far:
-        return f"Tolerances: all {count} columns lie in the band of a machine in order."
+        wide, more = recording.wide, ""
+        if wide:
+            some = f"{', '.join(wide[:NAMED])}{' and more' if len(wide) > NAMED else ''}"
+            more = f" That of {some} is wider than it moves, and tells next to nothing."
+        return f"Tolerances: all {count} columns lie in the band of a machine in order.{more}"
     named = ", ".join(f"{n} in {percent(outside[n])} of its rows" for n in far[:NAMED])
     return (
         f"Tolerances: {len(far)} of {count} columns leave the band of a machine in order: {named}."
