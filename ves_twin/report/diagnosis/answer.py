@@ -112,7 +112,7 @@ def _otherwise(verdict: Verdict) -> str:
 def next_step(verdict: Verdict) -> str:
     """What to do next: the first thing that would make it surer, else what to do about it."""
     if verdict.lacks and shorter(verdict):
-        return shorter(verdict)
+        return " ".join(filter(None, (check_sentence(verdict), shorter(verdict))))
     if verdict.verdict is not Kind.NOTHING and finer(verdict):
         return finer(verdict)
     if tone(verdict) == "good":
