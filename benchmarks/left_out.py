@@ -12,9 +12,9 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 
 from ves_twin.plant.plant import Plant
-from ves_twin.procedures.calibrate_plant import CalibratePlant
 from ves_twin.procedures.procedure import RunContext
 from ves_twin.procedures.registry import load_procedure
+from ves_twin.procedures.stability.calibrate_plant import CalibratePlant
 
 STRUCTURE = {
     "C072": {"mode_lowest", "mode_highest"},

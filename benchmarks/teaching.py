@@ -60,19 +60,19 @@ ROWS = (
     Row(
         "Table 3-1",
         "gravity model, verified",
-        "procedures.verify_gravity:VerifyGravity",
+        "procedures.gravity.verify_gravity:VerifyGravity",
         "run verify_gravity_model",
     ),
     Row(
         "3.2.2, Fig. 3-2",
         "what a wrong gravity does",
-        "procedures.gravity_sensitivity:GravitySensitivity",
+        "procedures.gravity.gravity_sensitivity:GravitySensitivity",
         "run gravity_sensitivity",
     ),
     Row(
         "3.3",
         "Learning Method",
-        "procedures.learning_method:LearningMethod",
+        "procedures.emulation.learning_method:LearningMethod",
         "run beam_learning_method --set iterations=3 --set duration=6 --set alpha=5"
         " --set compare=false",
         3,
@@ -141,7 +141,7 @@ ROWS = (
     Row(
         "Table 5-2, Fig. 5-11",
         "positioning error",
-        "procedures.positioning_error:PositioningErrorTest",
+        "procedures.response.positioning_error:PositioningErrorTest",
         "reproduce fig-5-11 --quick --no-cache",
     ),
     Row(

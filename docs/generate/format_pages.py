@@ -12,7 +12,7 @@ from schema_tables import schema_tables
 
 from ves_twin.core.recording.recording import RecordingInfo
 from ves_twin.core.signals import SIGNALS
-from ves_twin.data.import_map import ImportMap
+from ves_twin.data.mapping.import_map import ImportMap
 from ves_twin.diagnosis.verdict.verdict import Verdict
 from ves_twin.machines.mjcf.recordings.experiment import MjcfExperiment
 from ves_twin.machines.mjcf.rig.description import KIND, SCHEMA, RigDescription

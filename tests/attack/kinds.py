@@ -19,11 +19,11 @@ from targets import TARGETS, Target
 
 from ves_twin.core.resources import resource_folder
 from ves_twin.data.draft_map import draft_map
+from ves_twin.data.formats.open_log import open_log
 from ves_twin.data.import_log import import_log
-from ves_twin.data.import_map import ImportMap
 from ves_twin.data.inspect_log import TableReport, inspect_log
 from ves_twin.data.inspection_text import inspection_text
-from ves_twin.data.open_log import open_log
+from ves_twin.data.mapping.import_map import ImportMap
 from ves_twin.envs.rig_set import RigSet
 from ves_twin.machines.mjcf.recordings.experiment import MjcfExperiment
 from ves_twin.machines.mjcf.rig.machine import Rig

@@ -8,7 +8,7 @@ import pytest
 import ves_twin as vt
 from ves_twin.cli.main import main
 from ves_twin.core.recording.files import load_recording, save_recording
-from ves_twin.data.import_map import ImportMap
+from ves_twin.data.mapping.import_map import ImportMap
 from ves_twin.machines.load import open_machine
 
 SCENARIO = {

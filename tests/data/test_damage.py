@@ -10,9 +10,9 @@ import scipy.io
 from ves_twin.core.errors import VesTwinError
 from ves_twin.core.recording.recording import RecordingInfo
 from ves_twin.core.recording.stream import RecordingStream
+from ves_twin.data.formats.open_log import open_log
 from ves_twin.data.inspect_log import inspect_log
 from ves_twin.data.inspection_text import inspection_text
-from ves_twin.data.open_log import open_log
 
 T = np.arange(300) * 0.01
 CASES = 60

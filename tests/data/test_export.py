@@ -16,10 +16,10 @@ from ves_twin.core.recording.recording import Recording, RecordingInfo
 from ves_twin.core.signals import Role, Signal
 from ves_twin.data.draft_map import draft_map
 from ves_twin.data.export import export_recording
+from ves_twin.data.formats.open_log import open_log
 from ves_twin.data.import_log import import_log
-from ves_twin.data.import_map import ImportMap
 from ves_twin.data.inspect_log import inspect_log
-from ves_twin.data.open_log import open_log
+from ves_twin.data.mapping.import_map import ImportMap
 
 OWN = Signal("motor.current", ("a", "b"), ("A", "A"), Role.MEASUREMENT, "motor", "")
 NUMBERS = st.floats(allow_nan=True, allow_infinity=False, width=64, allow_subnormal=False)

@@ -10,9 +10,9 @@ from mcap.writer import Writer
 from ves_twin.core.errors import VesTwinError
 from ves_twin.core.recording.files import load_recording, save_recording
 from ves_twin.core.signals import SIGNALS, Role
+from ves_twin.data.formats.open_log import open_log
 from ves_twin.data.import_log import import_log
-from ves_twin.data.import_map import ImportMap, Window
-from ves_twin.data.open_log import open_log
+from ves_twin.data.mapping.import_map import ImportMap, Window
 from ves_twin.plant.plant import Plant
 from ves_twin.plant.signal_ranges import signal_ranges
 

@@ -7,13 +7,13 @@ import pyarrow as pa
 import pyarrow.feather as feather
 import pytest
 
-from ves_twin.data.clock_report import usual_step
+from ves_twin.data.clock.clock_report import usual_step
 from ves_twin.data.draft_map import draft_map
+from ves_twin.data.formats.open_log import open_log
 from ves_twin.data.import_log import import_log
-from ves_twin.data.import_map import ImportMap
 from ves_twin.data.inspect_log import inspect_log
 from ves_twin.data.inspection_text import inspection_text
-from ves_twin.data.open_log import open_log
+from ves_twin.data.mapping.import_map import ImportMap
 
 
 def lab(path, time, columns, head="t [s]"):
@@ -57,7 +57,7 @@ def test_holes_of_a_clock_are_counted_without_a_warning(tmp_path):
 
 
 def test_pieces_do_not_change_what_is_told(tmp_path, monkeypatch):
-    from ves_twin.data import csv_log
+    from ves_twin.data.formats import csv_log
 
     time = np.arange(3000) * 0.01
     columns = {"x [mm]": np.round(np.sin(time), 3), "still": np.ones(3000)}

@@ -17,9 +17,9 @@ import ves_twin as vt
 from ves_twin.core.recording.files import load_recording, save_recording
 from ves_twin.core.recording.stream import RecordingStream
 from ves_twin.core.resources import resource_folder
+from ves_twin.data.formats.open_log import open_log
 from ves_twin.data.import_log import import_log
-from ves_twin.data.import_map import ImportMap
-from ves_twin.data.open_log import open_log
+from ves_twin.data.mapping.import_map import ImportMap
 from ves_twin.machines.machine import Machine
 from ves_twin.machines.tolerance import Tolerance
 from ves_twin.mechanics.emulated import EmulatedSystem

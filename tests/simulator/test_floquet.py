@@ -9,7 +9,7 @@ import ves_twin as vt
 from ves_twin.core.errors import VesTwinError
 from ves_twin.mechanics.emulated import EmulatedSystem
 from ves_twin.plant.modes import structural_modes
-from ves_twin.procedures.growth import oscillation_growth
+from ves_twin.procedures.stability.growth import oscillation_growth
 from ves_twin.simulator.floquet import SampledLoop, smooth_readings
 
 STILL = {"run.noise": False, "run.duration": 6.0, "arm.moves": []}

@@ -36,7 +36,7 @@ class Given:
         Raises:
             VesTwinError: a machine, map or experiment that is missing or wrong.
         """
-        from ves_twin.data.import_map import ImportMap
+        from ves_twin.data.mapping.import_map import ImportMap
         from ves_twin.machines.load import open_machine
 
         mapping = ImportMap.load(arguments.map) if arguments.map else None

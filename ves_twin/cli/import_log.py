@@ -10,7 +10,7 @@ from ves_twin.cli.limit import add_limit
 from ves_twin.core.json_text import json_text
 
 if TYPE_CHECKING:
-    from ves_twin.data.import_map import Window
+    from ves_twin.data.mapping.import_map import Window
 
 SUMMARY = "make a recording of a lab file as a map says"
 
@@ -36,10 +36,10 @@ def execute(arguments: argparse.Namespace) -> int:
     """Import, write the recording, print the account."""
     from ves_twin.core.held_folder import hold_file
     from ves_twin.core.recording.files import save_recording
+    from ves_twin.data.formats.limits import Limits
+    from ves_twin.data.formats.open_log import open_log
     from ves_twin.data.import_log import import_log
-    from ves_twin.data.import_map import ImportMap
-    from ves_twin.data.limits import Limits
-    from ves_twin.data.open_log import open_log
+    from ves_twin.data.mapping.import_map import ImportMap
     from ves_twin.machines.load import open_machine
 
     path = _target(arguments.out)
@@ -73,7 +73,7 @@ def _window(arguments: argparse.Namespace, told: Window) -> Window:
     """The map's window with what the command says instead."""
     from ves_twin.core.errors import InvalidInputError
     from ves_twin.core.units import to_si
-    from ves_twin.data.import_map import Window
+    from ves_twin.data.mapping.import_map import Window
 
     start = told.start if arguments.start is None else to_si(arguments.start, "s", "--start")
     stop = told.stop if arguments.end is None else to_si(arguments.end, "s", "--end")

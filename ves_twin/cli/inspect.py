@@ -26,10 +26,10 @@ def execute(arguments: argparse.Namespace) -> int:
     """Read the file once, print what is in it, write the map if one is asked for."""
     from ves_twin.core.held_folder import hold_file
     from ves_twin.data.draft_map import draft_map
+    from ves_twin.data.formats.limits import Limits
+    from ves_twin.data.formats.open_log import open_log
     from ves_twin.data.inspect_log import inspect_log
     from ves_twin.data.inspection_text import inspection_text
-    from ves_twin.data.limits import Limits
-    from ves_twin.data.open_log import open_log
     from ves_twin.report.page import write_page
 
     inspection = inspect_log(open_log(arguments.file, Limits.of(arguments.limit)))

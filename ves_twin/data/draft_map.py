@@ -7,10 +7,10 @@ import json
 import re
 
 from ves_twin.core.signals import SIGNALS, Role
-from ves_twin.data.clock_report import ClockReport
+from ves_twin.data.clock.clock_report import ClockReport
+from ves_twin.data.formats.log import Kind
+from ves_twin.data.formats.unit_names import bare_name
 from ves_twin.data.inspect_log import ChannelReport, Inspection
-from ves_twin.data.log import Kind
-from ves_twin.data.unit_names import bare_name
 
 HEAD = """\
 # Map of {file} for `ves-twin import FILE --map THIS --out REC.parquet`.

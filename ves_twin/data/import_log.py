@@ -16,14 +16,14 @@ from ves_twin.core.signals import SIGNALS, Signal
 from ves_twin.core.types import FloatArray
 from ves_twin.core.units import to_unit
 from ves_twin.data.account import Account, ChannelAccount
-from ves_twin.data.aligned import Aligned, align
-from ves_twin.data.frames import turn_signal
-from ves_twin.data.import_map import ImportMap, Window
-from ves_twin.data.log import Log
+from ves_twin.data.clock.aligned import Aligned, align
+from ves_twin.data.clock.resample import resample
+from ves_twin.data.formats.log import Log
+from ves_twin.data.mapping.frames import turn_signal
+from ves_twin.data.mapping.import_map import ImportMap, Window
+from ves_twin.data.mapping.targets import Target, resolve
 from ves_twin.data.quality.gate import quality_gate
-from ves_twin.data.resample import resample
 from ves_twin.data.suspicions import Range, suspicions
-from ves_twin.data.targets import Target, resolve
 
 JITTER = 0.02
 """Jitter of the steps [periods] from which on an import says what can be done about it."""

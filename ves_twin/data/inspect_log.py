@@ -9,9 +9,9 @@ from itertools import chain
 import numpy as np
 
 from ves_twin.core.types import FloatArray
-from ves_twin.data.clock_fields import ClockField, clock_fields
-from ves_twin.data.clock_report import ClockCounter, ClockReport
-from ves_twin.data.log import Block, Kind, KnownRanges, Log, Table
+from ves_twin.data.clock.clock_fields import ClockField, clock_fields
+from ves_twin.data.clock.clock_report import ClockCounter, ClockReport
+from ves_twin.data.formats.log import Block, Kind, KnownRanges, Log, Table
 
 EVERY_ROW = "every row"
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from ves_twin.data.clock_report import ClockReport
+from ves_twin.data.clock.clock_report import ClockReport
 from ves_twin.data.inspect_log import ChannelReport, Inspection, TableReport
 
 HELD = 0.7

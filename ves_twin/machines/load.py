@@ -7,7 +7,7 @@ from pathlib import Path
 
 from ves_twin.core.errors import InvalidInputError
 from ves_twin.core.recording.recording import Recording
-from ves_twin.data.import_map import ImportMap
+from ves_twin.data.mapping.import_map import ImportMap
 from ves_twin.machines.machine import Machine, Named
 from ves_twin.machines.mjcf.mjcf_machine import MjcfMachine
 from ves_twin.machines.mjcf.rig.load_description import is_rig, shipped_rigs

@@ -14,32 +14,33 @@ from ves_twin.procedures.procedure import Procedure
 from ves_twin.scenario.load import scenario_content
 
 PROCEDURES = {
-    "coupling_map_paths": "CouplingMapPaths",
-    "pped_release": "PpedRelease",
-    "pped_release_emulated": "PpedReleaseEmulated",
-    "frequency_response": "FrequencyResponseTest",
-    "positioning_error": "PositioningErrorTest",
-    "calibrate_poses": "CalibratePoses",
-    "frozen_droop": "FrozenDroop",
-    "gravity_sensitivity": "GravitySensitivity",
-    "emulation_error_budget": "EmulationErrorBudget",
-    "learning_method": "LearningMethod",
-    "methods_agreement": "MethodsAgreement",
-    "sensor_drift": "SensorDrift",
-    "showcase": "Showcase",
-    "showcase_droop": "DroopShowcase",
-    "verify_gravity": "VerifyGravity",
-    "calibrate_plant": "CalibratePlant",
-    "stability_map": "StabilityMap",
+    "coupling_map_paths": "planning.coupling_map_paths.CouplingMapPaths",
+    "pped_release": "planning.pped_release.PpedRelease",
+    "pped_release_emulated": "planning.pped_release_emulated.PpedReleaseEmulated",
+    "frequency_response": "response.frequency_response.FrequencyResponseTest",
+    "positioning_error": "response.positioning_error.PositioningErrorTest",
+    "calibrate_poses": "gravity.calibrate_poses.CalibratePoses",
+    "frozen_droop": "gravity.frozen_droop.FrozenDroop",
+    "gravity_sensitivity": "gravity.gravity_sensitivity.GravitySensitivity",
+    "emulation_error_budget": "emulation.emulation_error_budget.EmulationErrorBudget",
+    "learning_method": "emulation.learning_method.LearningMethod",
+    "methods_agreement": "emulation.methods_agreement.MethodsAgreement",
+    "sensor_drift": "gravity.sensor_drift.SensorDrift",
+    "showcase": "showcase.Showcase",
+    "showcase_droop": "gravity.showcase_droop.DroopShowcase",
+    "verify_gravity": "gravity.verify_gravity.VerifyGravity",
+    "calibrate_plant": "stability.calibrate_plant.CalibratePlant",
+    "stability_map": "stability.stability_map.StabilityMap",
 }
-"""Value of `procedure` in a file, its module too -> class; imported where one is asked for, since
-together they import half of the twin."""
+"""Value of `procedure` in a file -> its class; imported where one is asked for, since together they
+import half of the twin."""
 
 
 def procedure_class(kind: str) -> type[Procedure]:
     """The class behind a value of `procedure`."""
-    module = importlib.import_module(f"ves_twin.procedures.{kind}")
-    return cast("type[Procedure]", getattr(module, PROCEDURES[kind]))
+    module, _, name = PROCEDURES[kind].rpartition(".")
+    found = importlib.import_module(f"ves_twin.procedures.{module}")
+    return cast("type[Procedure]", getattr(found, name))
 
 
 def load_procedure(

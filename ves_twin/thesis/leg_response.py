@@ -10,7 +10,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ves_twin.procedures.sine_fit import fit_sine
+from ves_twin.procedures.response.sine_fit import fit_sine
 from ves_twin.simulator.linear.leg_settings import LegSettings
 from ves_twin.thesis.context import Context
 

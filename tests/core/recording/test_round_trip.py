@@ -12,7 +12,7 @@ from ves_twin.core.recording.recording import Event, Recording, RecordingInfo
 from ves_twin.core.recording.stream import STREAM_NAME, RecordingStream
 from ves_twin.core.signals import SIGNALS, TIME, Role, Signal
 from ves_twin.data.export import FORMATS, export_recording
-from ves_twin.data.open_log import open_log
+from ves_twin.data.formats.open_log import open_log
 
 MANY = settings(
     max_examples=60, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture]

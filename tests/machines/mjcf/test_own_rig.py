@@ -14,7 +14,7 @@ import pytest
 from sizes import nightly_but
 
 from ves_twin.cli.main import main
-from ves_twin.data.import_map import ImportMap
+from ves_twin.data.mapping.import_map import ImportMap
 from ves_twin.machines.mjcf.recordings.read import read_recording
 from ves_twin.machines.mjcf.rig.machine import Rig
 

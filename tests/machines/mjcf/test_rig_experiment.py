@@ -12,7 +12,7 @@ from two_link import MODEL, TIME, programme, write_files
 from ves_twin.cli.main import main
 from ves_twin.core.errors import VesTwinError
 from ves_twin.core.recording.recording import Recording, RecordingInfo
-from ves_twin.data.import_map import ImportMap
+from ves_twin.data.mapping.import_map import ImportMap
 from ves_twin.diagnosis.model.forward import Excitation
 from ves_twin.machines.machine import Material, Named
 from ves_twin.machines.mjcf.mjcf_machine import MjcfMachine

@@ -9,7 +9,7 @@ from scipy.spatial.transform import Rotation
 
 from ves_twin.core.errors import UnreachableError
 from ves_twin.core.signals import SIGNALS
-from ves_twin.data.frames import handedness, rotation_of, turn_signal
+from ves_twin.data.mapping.frames import handedness, rotation_of, turn_signal
 from ves_twin.mechanics.kinematics.puma560 import Puma560
 from ves_twin.mechanics.kinematics.rotations import matrix_from_angles, rate_matrix
 from ves_twin.mechanics.kinematics.wrenches import rotate_wrench, sensor_to_top, top_to_sensor

@@ -8,7 +8,7 @@ from ves_twin.control import leg_loop as kernel
 from ves_twin.control.leg_loop import FilterPlace
 from ves_twin.core.errors import InvalidInputError
 from ves_twin.plant.plant import Plant
-from ves_twin.procedures.claims import RATE_GAIN
+from ves_twin.procedures.stability.claims import RATE_GAIN
 from ves_twin.simulator.linear.hydraulic_stage import LENGTH, hydraulic_stage, load_per_leg
 from ves_twin.simulator.linear.leg_loop import leg_actuator, leg_loop, section
 from ves_twin.simulator.linear.leg_settings import LegSettings

@@ -11,7 +11,7 @@ from time import perf_counter
 from ves_twin.core.errors import InvalidInputError, UnknownNameError
 from ves_twin.core.recording.recording import POSES, Recording
 from ves_twin.core.signals import Signal
-from ves_twin.data.import_map import ImportMap
+from ves_twin.data.mapping.import_map import ImportMap
 from ves_twin.data.quality.check import Check
 from ves_twin.data.quality.gate import quality_gate
 from ves_twin.data.suspicions import Range

@@ -11,9 +11,9 @@ from ves_twin.core.errors import InvalidInputError
 from ves_twin.core.recording.files import is_recording, load_recording
 from ves_twin.core.recording.recording import Recording
 from ves_twin.core.signals import SIGNALS, Signal
+from ves_twin.data.formats.open_log import open_log
 from ves_twin.data.import_log import import_log
-from ves_twin.data.import_map import ImportMap
-from ves_twin.data.open_log import open_log
+from ves_twin.data.mapping.import_map import ImportMap
 from ves_twin.data.quality.check import Check
 from ves_twin.data.suspicions import Range
 from ves_twin.diagnosis.model.forward import Excitation

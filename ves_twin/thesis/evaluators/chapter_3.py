@@ -7,7 +7,7 @@ from collections.abc import Mapping
 import numpy as np
 
 from ves_twin.mechanics.kinematics.wrenches import sensor_to_top
-from ves_twin.procedures.gravity_shift import gravity_shift
+from ves_twin.procedures.gravity.gravity_shift import gravity_shift
 from ves_twin.scenario.schema import Scenario
 from ves_twin.simulator.arm_commands import arm_motion
 from ves_twin.simulator.outcome import Outcome

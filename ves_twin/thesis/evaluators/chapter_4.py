@@ -19,8 +19,8 @@ from ves_twin.mechanics.planning.flexible_base import (
 from ves_twin.mechanics.planning.pped import damping_estimator, strain_energy_integral
 from ves_twin.plant.assembly import JOINTS, assemble_free_arm, compile_model
 from ves_twin.plant.puma_chain import puma_chain
-from ves_twin.procedures.coupling_map_paths import CouplingMapPaths
-from ves_twin.procedures.paths_on_rig import PathsOnRig
+from ves_twin.procedures.planning.coupling_map_paths import CouplingMapPaths
+from ves_twin.procedures.planning.paths_on_rig import PathsOnRig
 from ves_twin.procedures.registry import load_procedure
 from ves_twin.thesis.claim import Claim
 from ves_twin.thesis.context import Context, Models

@@ -12,8 +12,8 @@ from ves_twin.core.types import ComplexArray, FloatArray
 from ves_twin.mechanics.emulated import EmulatedSystem
 from ves_twin.plant.modes import structural_modes
 from ves_twin.plant.statics import check_reach
-from ves_twin.procedures.gravity_shift import gravity_shift
-from ves_twin.procedures.stability_bench import MassLimit, StabilityBench
+from ves_twin.procedures.gravity.gravity_shift import gravity_shift
+from ves_twin.procedures.stability.stability_bench import MassLimit, StabilityBench
 from ves_twin.scenario.schema import Scenario
 from ves_twin.simulator.clock import Clock
 from ves_twin.simulator.linear.leg_settings import RATE_GAIN_PER_K2, LegSettings

@@ -9,10 +9,10 @@ import numpy as np
 from ves_twin.control.leg_loop import FilterPlace
 from ves_twin.plant.hydraulics import Hydraulics
 from ves_twin.plant.plant import Plant
-from ves_twin.procedures.bode_plot import BodePlot
-from ves_twin.procedures.frequency_response import actuator_slope
-from ves_twin.procedures.sine_fit import MeasuredResponse
-from ves_twin.procedures.sweep import SweepOptions, sweep_platform
+from ves_twin.procedures.response.bode_plot import BodePlot
+from ves_twin.procedures.response.frequency_response import actuator_slope
+from ves_twin.procedures.response.sine_fit import MeasuredResponse
+from ves_twin.procedures.response.sweep import SweepOptions, sweep_platform
 from ves_twin.scenario.schema import Legs
 from ves_twin.simulator.linear.leg_loop import leg_loop
 from ves_twin.simulator.linear.leg_settings import LegSettings

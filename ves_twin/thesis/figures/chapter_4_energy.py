@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 
 from ves_twin.plant.plant import Plant
-from ves_twin.procedures.coupling_map_paths import CYCLE, CouplingMapPaths, peak_ratio
+from ves_twin.procedures.planning.coupling_map_paths import CYCLE, CouplingMapPaths, peak_ratio
 from ves_twin.report.figure import new_figure
 from ves_twin.report.picture import PICTURE_WIDTH, save_picture
 from ves_twin.thesis.figures.chapter_4_map import STYLES

@@ -12,7 +12,7 @@ from ves_twin.mechanics.emulated import EmulatedSystem
 from ves_twin.mechanics.planning.coupling_map import CouplingMap, coupling_map
 from ves_twin.plant.plant import Plant
 from ves_twin.plant.puma_chain import puma_chain
-from ves_twin.procedures.coupling_map_paths import CouplingMapPaths
+from ves_twin.procedures.planning.coupling_map_paths import CouplingMapPaths
 from ves_twin.report.figure import new_figure
 from ves_twin.report.picture import save_picture
 from ves_twin.thesis.figures.chapter_4_shipped import shipped

@@ -7,7 +7,7 @@ from pathlib import Path
 from ves_twin.mechanics.planning.flexible_base import HIGH_GAINS, PPED_GAINS, JointGains
 from ves_twin.mechanics.planning.pped import damping_estimator
 from ves_twin.plant.plant import Plant
-from ves_twin.procedures.pped_release import PpedRelease
+from ves_twin.procedures.planning.pped_release import PpedRelease
 from ves_twin.report.figure import new_figure
 from ves_twin.report.picture import PICTURE_WIDTH, save_picture
 from ves_twin.thesis.figures.chapter_4_shipped import shipped

@@ -10,7 +10,7 @@ import numpy as np
 from ves_twin.core.types import FloatArray
 from ves_twin.mechanics.planning.flexible_base import HIGH_GAINS, PPED_GAINS
 from ves_twin.plant.plant import Plant
-from ves_twin.procedures.pped_release import CYCLE, PpedRelease, Release
+from ves_twin.procedures.planning.pped_release import CYCLE, PpedRelease, Release
 from ves_twin.report.figure import new_figure
 from ves_twin.report.picture import PICTURE_WIDTH, save_picture
 from ves_twin.thesis.figures.chapter_4_shipped import shipped

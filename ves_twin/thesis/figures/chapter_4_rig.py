@@ -5,8 +5,8 @@ from __future__ import annotations
 from pathlib import Path
 
 from ves_twin.plant.plant import Plant
-from ves_twin.procedures.coupling_map_paths import CouplingMapPaths
-from ves_twin.procedures.pped_release_emulated import PpedReleaseEmulated
+from ves_twin.procedures.planning.coupling_map_paths import CouplingMapPaths
+from ves_twin.procedures.planning.pped_release_emulated import PpedReleaseEmulated
 from ves_twin.report.figure import new_figure
 from ves_twin.report.picture import PICTURE_WIDTH, save_picture
 from ves_twin.thesis.figures.chapter_4_release import SHOWN, STYLES

@@ -8,8 +8,8 @@ import numpy as np
 
 from ves_twin.control.leg_loop import FilterPlace
 from ves_twin.plant.plant import Plant
-from ves_twin.procedures.bode_plot import BodePlot
-from ves_twin.procedures.sweep import SweepOptions, sweep_platform
+from ves_twin.procedures.response.bode_plot import BodePlot
+from ves_twin.procedures.response.sweep import SweepOptions, sweep_platform
 from ves_twin.simulator.linear.filter_types import CORNER, basic_filters
 from ves_twin.simulator.linear.leg_loop import section
 from ves_twin.simulator.linear.leg_settings import LegSettings

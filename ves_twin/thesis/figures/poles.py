@@ -9,7 +9,7 @@ import numpy as np
 from ves_twin.control.leg_loop import FilterPlace
 from ves_twin.core.types import ComplexArray
 from ves_twin.plant.plant import Plant
-from ves_twin.procedures.measured_poles import measure_poles
+from ves_twin.procedures.stability.measured_poles import measure_poles
 from ves_twin.report.figure import new_figure
 from ves_twin.report.picture import PICTURE_WIDTH, save_picture
 from ves_twin.simulator.linear.admittance_loop import AxisModel, admittance_loop, payload_mass

@@ -7,14 +7,14 @@ from pathlib import Path
 import numpy as np
 
 from ves_twin.plant.plant import Plant
-from ves_twin.procedures.positioning_error import (
+from ves_twin.procedures.registry import load_procedure
+from ves_twin.procedures.response.positioning_error import (
     AXES,
     PositioningErrorTest,
     compare_releases,
     draw_releases,
     reduction,
 )
-from ves_twin.procedures.registry import load_procedure
 from ves_twin.thesis.figures.figure import FigureResult
 
 QUICK_DURATION = 4.0

@@ -8,7 +8,7 @@ import numpy as np
 
 from ves_twin.control.leg_loop import FilterPlace
 from ves_twin.plant.plant import Plant
-from ves_twin.procedures.measured_step import measure_step
+from ves_twin.procedures.response.measured_step import measure_step
 from ves_twin.report.figure import new_figure
 from ves_twin.report.picture import PICTURE_WIDTH, save_picture
 from ves_twin.simulator.linear.leg_loop import leg_loop

@@ -10,13 +10,13 @@ import numpy as np
 
 from ves_twin.core.errors import InvalidInputError
 from ves_twin.core.types import BoolArray, FloatArray
-from ves_twin.data.clock_fields import clock_fields
-from ves_twin.data.clock_report import GAP, UNEVEN, usual_step
-from ves_twin.data.column_expression import ColumnExpression
+from ves_twin.data.clock.clock_fields import clock_fields
+from ves_twin.data.clock.clock_report import GAP, UNEVEN, usual_step
+from ves_twin.data.clock.unwrapped import unwrapped
 from ves_twin.data.empty_cells import filled, lone
-from ves_twin.data.log import Column, Kind
-from ves_twin.data.open_log import open_log
-from ves_twin.data.unwrapped import unwrapped
+from ves_twin.data.formats.log import Column, Kind
+from ves_twin.data.formats.open_log import open_log
+from ves_twin.data.mapping.column_expression import ColumnExpression
 
 FEWEST = 64
 """Rows below which neither noise nor motion can be told."""

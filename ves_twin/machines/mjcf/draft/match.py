@@ -10,8 +10,8 @@ import numpy as np
 from scipy.optimize import linear_sum_assignment
 
 from ves_twin.core.units import to_unit
-from ves_twin.data.column_expression import quoted
-from ves_twin.data.unit_names import bare_name, spelled
+from ves_twin.data.formats.unit_names import bare_name, spelled
+from ves_twin.data.mapping.column_expression import quoted
 from ves_twin.machines.mjcf.draft.log_columns import LogColumns
 from ves_twin.machines.mjcf.draft.names import (
     ELECTRICAL,

@@ -6,7 +6,7 @@ import re
 from collections.abc import Collection
 from dataclasses import dataclass
 
-from ves_twin.data.unit_names import bare_name, spelled
+from ves_twin.data.formats.unit_names import bare_name, spelled
 from ves_twin.machines.mjcf.draft.spots import Quantity, Spot, own_number, words_of
 from ves_twin.machines.mjcf.rig.column import LAB_UNITS
 

@@ -8,7 +8,7 @@ from itertools import combinations
 
 import numpy as np
 
-from ves_twin.data.column_expression import quoted
+from ves_twin.data.mapping.column_expression import quoted
 from ves_twin.diagnosis.record.likeness import FACTORS
 from ves_twin.machines.mjcf.motion.forward import MjcfForward
 from ves_twin.machines.mjcf.parts.predecessor import predecessor

@@ -13,12 +13,12 @@ from ves_twin.core.missing_file import missing_file
 from ves_twin.core.recording.recording import POSES, Recording, RecordingInfo
 from ves_twin.core.signals import Role
 from ves_twin.core.types import BoolArray, FloatArray
-from ves_twin.data.clock_report import usual_step
-from ves_twin.data.column_expression import ColumnExpression
+from ves_twin.data.clock.clock_report import usual_step
+from ves_twin.data.clock.unwrapped import unwrapped
 from ves_twin.data.empty_cells import FEW, MOST, filled, lone
-from ves_twin.data.log import Kind, Log
-from ves_twin.data.open_log import open_log
-from ves_twin.data.unwrapped import unwrapped
+from ves_twin.data.formats.log import Kind, Log
+from ves_twin.data.formats.open_log import open_log
+from ves_twin.data.mapping.column_expression import ColumnExpression
 from ves_twin.machines.mjcf.parts.joint_units import joint_units
 from ves_twin.machines.mjcf.parts.turned import turned
 from ves_twin.machines.mjcf.recordings.signals import rig_signals

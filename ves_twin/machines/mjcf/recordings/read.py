@@ -7,9 +7,9 @@ from pathlib import Path
 
 from ves_twin.core.recording.files import is_recording, load_recording, recording_name
 from ves_twin.core.recording.recording import Recording
+from ves_twin.data.formats.open_log import open_log
 from ves_twin.data.import_log import import_log
-from ves_twin.data.import_map import ImportMap
-from ves_twin.data.open_log import open_log
+from ves_twin.data.mapping.import_map import ImportMap
 from ves_twin.machines.mjcf.recordings.columns import read_rig_recording
 from ves_twin.machines.mjcf.recordings.recorded import rig_recording
 from ves_twin.machines.mjcf.recordings.signals import rig_ranges, rig_signals

@@ -7,7 +7,7 @@ from typing import Annotated, Any, Literal, Self
 
 from pydantic import Field, model_validator
 
-from ves_twin.data.import_map import Window
+from ves_twin.data.mapping.import_map import Window
 from ves_twin.diagnosis.model.grid import RATE
 from ves_twin.effects.element import Element
 from ves_twin.effects.law_table import LawTable

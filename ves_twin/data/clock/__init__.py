@@ -1,0 +1,1 @@
+"""Clocks of logs: which column, offsets between files, rows at an even rate."""

@@ -1,0 +1,102 @@
+"""clock_fields: which columns of a table look like its time, the likeliest first."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from ves_twin.core.types import FloatArray
+from ves_twin.data.formats.log import Block, Column, Kind
+from ves_twin.data.formats.unit_names import TIME, bare_name
+
+_NAMED = re.compile(
+    r"^(?:t|time|times|timestamp|time_stamp|stamp|tstamp|zeit|temps|elapsed|clock|tijd|"
+    r".*[ _.]?time|.*stamp|rowtimes)$",
+    re.IGNORECASE,
+)
+_COUNTER = re.compile(r"^(?:idx|index|i|n|row|sample|samples|count|counter|seq)$", re.IGNORECASE)
+
+EPOCHS = ((1e9, 4e9, "s"), (1e12, 4e12, "ms"), (1e15, 4e15, "us"), (1e18, 4e18, "ns"))
+"""Sizes of a count since 1970 (years 2001 to 2096) in each unit."""
+
+
+@dataclass(frozen=True)
+class ClockField:
+    """A column that may be the time; its unit, and whether that is a guess.
+
+    A counter of rows (`counter`) rises as a clock does and tells no time.
+    """
+
+    column: str
+    unit: str
+    guessed: bool
+    score: float
+    counter: bool
+
+    @property
+    def scale(self) -> float:
+        """Of the unit [s]."""
+        return TIME[self.unit]
+
+
+def clock_fields(columns: Sequence[Column], block: Block) -> tuple[ClockField, ...]:
+    """Columns that rise from row to row, the likeliest time first.
+
+    Args:
+        columns: of a table.
+        block: its first rows.
+    """
+    found = []
+    for place, column in enumerate(columns):
+        if column.kind is Kind.TEXT or column.name not in block:
+            continue
+        values = block[column.name]
+        score = _score(column, values, place)
+        if score > 0.0:
+            unit, guessed = _unit(column, values)
+            counter = _counts(column, block[column.name])
+            found.append(ClockField(column.name, unit, guessed, score, counter))
+    return tuple(sorted(found, key=lambda f: (f.counter, -f.score)))
+
+
+def _score(column: Column, values: FloatArray, place: int) -> float:
+    values = values[np.isfinite(values)]
+    if len(values) < 3:
+        return 0.0
+    steps = np.diff(values)
+    forward = steps[steps > 0.0]
+    if np.mean(steps >= 0.0) < 0.9 or len(forward) < 0.2 * len(steps):
+        return 0.0
+    usual = float(np.median(forward))
+    even = float(np.mean(np.abs(forward - usual) < 0.5 * usual))
+    name = bare_name(column.name)
+    score = even + 2.0 * (column.kind is Kind.STAMP) + 0.5 * (place == 0)
+    score += 2.0 * bool(_NAMED.match(name)) + 1.0 * (column.unit in TIME)
+    return score if score > 1.0 else 0.0
+
+
+def _counts(column: Column, values: FloatArray) -> bool:
+    """Whether a column counts rows: named so, or in steps of one without a name or unit of time."""
+    name = bare_name(column.name)
+    if column.unit in TIME or _NAMED.match(name):
+        return False
+    steps = np.diff(values[np.isfinite(values)])
+    return bool(_COUNTER.match(name)) or bool(np.all(steps == 1.0))
+
+
+def _unit(column: Column, values: FloatArray) -> tuple[str, bool]:
+    if column.unit in TIME:
+        return column.unit, False
+    if column.kind is Kind.STAMP:
+        return "s", False
+    told = values[np.isfinite(values)]
+    size = float(np.median(np.abs(told))) if len(told) else np.nan
+    for low, high, unit in EPOCHS:
+        if low <= size <= high:
+            return unit, True
+    step = float(np.median(np.abs(np.diff(told)))) if len(told) > 1 else np.nan
+    whole = bool(np.all(np.mod(told, 1.0) == 0.0))
+    return ("ms", True) if whole and step >= 1.0 else ("s", True)

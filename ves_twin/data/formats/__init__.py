@@ -1,0 +1,1 @@
+"""Readers of log files: each a table of columns in blocks."""

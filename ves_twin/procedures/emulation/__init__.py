@@ -1,0 +1,1 @@
+"""How large the emulation error is, where it comes from, and learning it away."""

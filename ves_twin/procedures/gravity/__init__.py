@@ -1,0 +1,1 @@
+"""What the payload weighs, how that is found, and what errors of it do."""

@@ -1,0 +1,1 @@
+"""Measured frequency responses, steps and positioning errors."""

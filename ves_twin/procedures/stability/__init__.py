@@ -1,0 +1,1 @@
+"""Which rigs are stable: maps, growth, one axis, plants that agree with measured poles."""
