@@ -280,3 +280,20 @@ def test_what_looks_odd_in_one_of_three_recordings_alone_is_let_through():
     most = preprocess.preprocess(Toy(), [data, turned, turned])
     with pytest.raises(InvalidInputError, match="the other sign"):
         check_likeness(most, most.runs.one(most.runs.origin))
+
+
+def test_a_held_out_recording_that_is_too_short_is_refused_before_anything_is_simulated(settings):
+    """After 82 s of a measured flexible link before."""
+
+    class Counted(Toy):
+        runs = 0
+
+        def simulate(self, *given, **named):
+            Counted.runs += 1
+            return super().simulate(*given, **named)
+
+    data = record(np.random.default_rng(1), FRICTION)
+    short = Recording(data.time[:60], {n: v[:60] for n, v in data.signals.items()}, data.info)
+    with pytest.raises(InvalidInputError, match="got 60, expected at least 100"):
+        diagnose(Counted(), [data], held_out=[short], settings=settings)
+    assert Counted.runs == 0

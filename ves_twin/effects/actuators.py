@@ -53,6 +53,17 @@ class ActuatorGain(Effect):
         source="assumed; magnets and amplifiers, per cents",
     )
 
+    @classmethod
+    def magnitudes_at(cls, place: Place) -> tuple[Magnitude, ...]:
+        """The gain with its range; raises InvalidInputError of a servo, whose kp is another kind.
+
+        A gain of the set-point alone would make another actuator of it than a servo.
+        """
+        if place.stiffness:
+            expected = "a drive whose command is no place; of a servo name servo_stiffness"
+            raise InvalidInputError(f"target of {cls.kind}", place.name, expected)
+        return super().magnitudes_at(place)
+
 
 @final
 @dataclass(frozen=True)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import final
+from typing import TYPE_CHECKING, final
 
 from ves_twin.core.errors import InvalidInputError
 from ves_twin.effects import change
@@ -14,17 +14,24 @@ from ves_twin.effects.place import Place
 from ves_twin.effects.row import Anywhere
 from ves_twin.effects.size import DAMPING, STIFFNESS, Size
 
+if TYPE_CHECKING:
+    import mujoco
+
 SLOWEST = 0.3
 """Time constant kv / kp of a slow servo [s]: assumed, hobby servos take 0.1 to 0.2 s for 60 deg."""
 
 QUICKEST = 0.005
-"""Time constant that a lag does not fall below [s]: MuJoCo's `filter` needs steps that are shorter,
-and a lag of that length no log of set-points shows."""
+"""Time constant that a fit does not go below [s], unless the model does: no log of set-points shows
+less."""
+
+SOFTEST = 0.001
+"""Share of its kp that a servo has at least: none pushes away from where it is told to be, and one
+without any is no servo."""
 
 
 def _of_servo(kind: str, place: Place) -> Place:
     if not place.stiffness:
-        expected = "a position servo, whose command is where its joint is pulled to"
+        expected = "a position servo that is fed its set-points (drive.mode control)"
         raise InvalidInputError(f"target of {kind}", place.name, expected)
     return place
 
@@ -56,8 +63,8 @@ class ServoStiffness(Effect):
         return super().magnitudes_at(_of_servo(cls.kind, place))
 
     def least(self, nominal: float) -> float:
-        """None pushes away from where it is told to be."""
-        return 0.0
+        """A thousandth of it."""
+        return SOFTEST * nominal
 
 
 @final
@@ -110,10 +117,17 @@ class ActuatorLag(Effect):
     def magnitudes_at(cls, place: Place) -> tuple[Magnitude, ...]:
         """The lag with its range; raises InvalidInputError where the model has none."""
         if not place.lag:
-            expected = "an actuator whose dyntype is filter or filterexact"
+            expected = "an actuator of dyntype filter or filterexact (drive.mode control)"
             raise InvalidInputError(f"target of {cls.kind}", place.name, expected)
         return super().magnitudes_at(place)
 
     def least(self, nominal: float) -> float:
-        """None is quicker than the step."""
-        return QUICKEST
+        """QUICKEST, or what the model has."""
+        return min(QUICKEST, nominal)
+
+    def edit_model(self, model: mujoco.MjModel) -> None:
+        """The slower filter; no quicker than the model's step, as `filter` is explicit."""
+        if self.time:
+            super().edit_model(model)
+            at = change.LAG.entry(model, self.target)
+            model.actuator_dynprm[at] = max(float(model.actuator_dynprm[at]), model.opt.timestep)

@@ -166,3 +166,22 @@ def test_rows_of_a_machine_that_has_not_begun_to_move_are_no_repeats(healthy):
     for values in signals.values():
         values[1], values[-1] = values[0], values[-2]
     assert "repeats" not in found(vt.Recording(healthy.time, signals, healthy.info))
+
+
+def angles(values: np.ndarray) -> dict[str, str]:
+    recording = vt.Recording(
+        0.01 * np.arange(len(values)), {"angle": values[:, None]}, RecordingInfo("measured")
+    )
+    return found(recording)
+
+
+def test_a_joint_that_stops_is_no_range_that_is_too_small_and_one_that_is_cut_off_is():
+    time = 0.01 * np.arange(400)
+    swing = np.round(np.sin(3.0 * time) * 400.0) / 400.0
+    assert "saturation" in angles(np.minimum(swing, 0.7))
+    settles = np.round(200.0 * (1.0 - np.exp(-4.0 * time))) / 200.0
+    assert "saturation" not in angles(settles)
+
+
+def test_a_counter_that_comes_back_every_five_rows_is_judged_without_a_traceback():
+    assert "saturation" not in angles(np.arange(400.0) % 5)

@@ -38,3 +38,29 @@ def test_a_fit_at_which_nothing_is_predicted_moves_no_column(monkeypatch):
     assert kept is halves
     assert point is begin
     assert still == chosen
+
+
+def test_a_fit_at_which_held_out_rows_alone_break_off_moves_no_column(monkeypatch):
+    """A square wave that was held out ended the diagnosis of a servo's sweep in a traceback."""
+    plant = Linear(("viscous_friction", "coulomb"))
+    hidden = {"viscous_friction@a:size": 1.0}
+    one, two = (seen(plant, recorded(plant, hidden, seed)) for seed in (5, 6))
+    screen = SimpleNamespace(bank=SimpleNamespace(hypotheses=plant.hypotheses))
+    desk = SimpleNamespace(first=SimpleNamespace(screen=screen), progress=silent)
+    builder = Builder(desk, one, two)
+    halves = builder.halves(one.runs.origin, ())
+    chosen = PlainSelector(halves.regression).run([])
+    assert halves.sound
+    whole = Builder.halves
+
+    def broken(self, *given, **named):
+        found = whole(self, *given, **named)
+        lost = np.full_like(found.held.target, np.nan)
+        return replace(found, held=replace(found.held, target=lost))
+
+    monkeypatch.setattr(Builder, "halves", broken)
+    begin = one.runs.origin
+    kept, point, still = builder.settled(PlainSelector, halves, chosen, begin)
+    assert kept is halves
+    assert point is begin
+    assert still == chosen

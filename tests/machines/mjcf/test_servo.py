@@ -15,6 +15,7 @@ from ves_twin.diagnosis.settings import Settings
 from ves_twin.diagnosis.verdict.verdict import Kind
 from ves_twin.machines.diagnose import diagnose
 from ves_twin.machines.mjcf.motion.forward import MjcfForward
+from ves_twin.machines.mjcf.rig.description import Setting
 from ves_twin.machines.mjcf.rig.extend import extended
 from ves_twin.machines.mjcf.rig.machine import Rig
 
@@ -60,8 +61,8 @@ def test_a_loop_that_is_otherwise_is_named_with_its_size(machine: Rig, name: str
 @pytest.mark.parametrize(
     ("kind", "words"),
     [
-        ("servo_stiffness", "a position servo"),
-        ("servo_damping", "a position servo"),
+        ("servo_stiffness", "a position servo that is fed"),
+        ("servo_damping", "a position servo that is fed"),
         ("actuator_lag", "filter or filterexact"),
     ],
 )
@@ -74,7 +75,37 @@ def test_a_motor_has_no_loops_of_a_servo(kind: str, words: str, tmp_path: Path):
         servo_rig.rig(tmp_path, text, model)
 
 
+def test_a_servo_has_no_gain_that_would_make_another_actuator_of_it(tmp_path: Path):
+    text = servo_rig.TOML.replace('"servo_stiffness"', '"actuator_gain"')
+    with pytest.raises(VesTwinError, match="of a servo name servo_stiffness"):
+        servo_rig.rig(tmp_path, text)
+
+
+def test_an_actuator_that_integrates_a_speed_is_no_servo(tmp_path: Path):
+    drive = '<intvelocity name="servo" joint="swing" kp="8" kv="0.3" actrange="-2 2"/>'
+    head, _, tail = servo_rig.MODEL.partition("<general")
+    model = head + drive + tail[tail.index("/>") + 2 :]
+    with pytest.raises(VesTwinError, match="a position servo that is fed"):
+        servo_rig.rig(tmp_path, model=model)
+
+
+@pytest.mark.parametrize("name", ["servo_stiffness@servo:stiffness", "actuator_lag@servo:time"])
+def test_sizes_at_the_ends_of_their_ranges_are_written_and_simulated(machine: Rig, name: str):
+    """A search may end there: kp of next to nothing, a filter quicker than any log shows."""
+    forward = MjcfForward.of(machine)
+    (told,) = (p for p in forward.parameters if p.name == name)
+    for value in (told.low, told.high):
+        rows = forward.simulate(servo_rig.programme(), {name: value})
+        assert np.all(np.isfinite(rows))
+        setting = {"attribute": "kp" if "stiffness" in name else "timeconst", "actuator": "servo"}
+        new = Setting.model_validate(setting | {"value": value})
+        described = machine.description.model_copy(update={"parameters": (new,)})
+        plant = Rig(described, machine.folder, machine.file)
+        again = MjcfForward.of(plant).simulate(servo_rig.programme(), {})
+        assert np.allclose(again, rows, atol=1e-6)  # predictions are in single precision
+
+
 def test_a_star_on_a_servo_means_its_loops_and_no_dead_band_about_an_angle_of_zero(machine: Rig):
     kinds = {entry.effect.kind for entry in machine.entries}
     assert {"servo_stiffness", "actuator_lag"} <= kinds
-    assert not {"actuator_deadband", "servo_damping"} & kinds
+    assert not {"actuator_deadband", "actuator_gain", "servo_damping"} & kinds

@@ -26,8 +26,13 @@ SWITCHED = 3
 def check_values(recording: Recording) -> list[Check]:
     """Numbers that are missing, stuck or saturated, for each measured signal."""
     commands = {own.name for own in recording.info.own_signals if own.role is Role.COMMAND}
-    measured = [n for n in recording.signals if _is_measured(n) and n not in commands]
-    return [check for name in measured for check in _signal(recording, name)]
+    measured = [n for n in recording.signals if _is_measured(n)]
+    return [
+        check
+        for name in measured
+        for check in _signal(recording, name)
+        if check.name != "saturation" or name not in commands
+    ]
 
 
 def columns(name: str, width: int) -> tuple[str, ...]:
@@ -88,6 +93,8 @@ def _saturated(values: FloatArray) -> bool:
     if len(np.unique(values)) <= SWITCHED or len(values) <= RUN:
         return False
     travels = np.abs(values[RUN:] - values[:-RUN])  # over some rows: one of coarse steps is a step
+    if not np.any(travels > 0.0):
+        return False
     fast = float(np.percentile(travels[travels > 0.0], 90.0))
     for end in (values.max(), values.min()):
         at = values == end

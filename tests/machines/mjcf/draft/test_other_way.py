@@ -76,3 +76,14 @@ def test_degrees_under_the_name_of_radians_are_asked_after(machine, tmp_path):
 def test_a_command_in_per_cent_is_asked_after(machine, tmp_path):
     asked = looked(machine, tmp_path, command=10.0, unit="_rad")
     assert "drive.effort times 0.1" in asked
+
+
+def test_rows_of_another_clock_end_in_its_question_and_no_traceback(machine, tmp_path):
+    path, angles, commands = machine
+    columns, names = [100.0 * np.arange(len(TIME)), -angles], ["t_s", "swing_rad"]
+    if commands is not None:
+        columns, names = [*columns, commands], [*names, "drive_cmd"]
+    log = tmp_path / "slow.csv"
+    np.savetxt(log, np.column_stack(columns), "%.6g", ",", header=",".join(names), comments="")
+    asked = "\n".join(draft(path, [log], tmp_path / "machine.toml").look)
+    assert "is that its unit?" in asked

@@ -97,6 +97,18 @@ def test_the_typical_effort_of_a_servo_is_its_limit(log, write):
     assert tomllib.loads(found.text)["typical"]["joint"]["shoulder"]["effort"] == 2.5
 
 
+def test_loops_inside_a_servo_are_drafted_as_hardly_known(log, write):
+    path, columns = log
+    found, rig = drafted(path, write(columns))
+    told = tomllib.loads(found.text)["tolerances"]
+    assert (told["kp"], told["kv"]) == ("20 %", "20 %")
+    kinds = {entry.effect.kind: entry for entry in rig.entries}
+    assert kinds["servo_stiffness"].magnitudes[0].sd == pytest.approx(
+        0.2 * kinds["servo_stiffness"].nominal[0]
+    )
+    assert "actuator_gain" not in kinds
+
+
 def test_another_zero_is_written_in_the_unit_of_its_column(swing, write):
     """A quarter turn was written as -1.57 beside `unit = "deg"`."""
     path, columns = swing

@@ -33,6 +33,37 @@ def test_earlier_commands_leave_in_a_filter_what_mujoco_leaves_there():
     assert told.act[0] == pytest.approx(stepped.act[0], abs=1e-12)  # both are exact: round-off
 
 
+def test_a_limit_of_commands_is_one_of_the_filter_too():
+    text = servo_rig.MODEL.replace('gainprm="8"', 'gainprm="8" ctrlrange="-0.2 0.2"')
+    text = text.replace("<worldbody>", '<compiler autolimits="true"/><worldbody>')
+    model = mujoco.MjModel.from_xml_string(text)
+    data = mujoco.MjData(model)
+    fill_filters(model, data, np.ones((100, 1)), PERIOD)
+    assert data.act[0] == pytest.approx(0.2)
+
+
+def test_a_lead_that_is_shorter_than_the_filter_remembers_leaves_a_servo_where_its_joint_is():
+    model = filtered()
+    data = mujoco.MjData(model)
+    data.qpos[0] = 0.5
+    fill_filters(model, data, np.full((3, 1), 1.5), PERIOD)  # 20 ms of 60 ms
+    held = 0.5 + 0.2 * 9.81 * 0.1 * np.sin(0.5) / 8.0
+    assert data.act[0] == pytest.approx(held, abs=1e-9)
+
+
+def test_two_servos_of_one_joint_begin_by_their_commands():
+    """What each holds of the load nobody knows."""
+    twice = servo_rig.MODEL.replace("</actuator>", "{}</actuator>").format(
+        servo_rig.MODEL.partition("<actuator>")[2]
+        .partition("</actuator>")[0]
+        .replace('name="servo"', 'name="second"')
+    )
+    model = mujoco.MjModel.from_xml_string(twice)
+    data = mujoco.MjData(model)
+    fill_filters(model, data, np.array([[0.7, 0.6]]), PERIOD)
+    assert data.act.tolist() == [0.7, 0.6]
+
+
 def test_without_earlier_commands_the_first_one_was_there_of_a_motor_behind_a_filter():
     model = filtered(servo=False)
     data = mujoco.MjData(model)

@@ -33,6 +33,8 @@ ENOUGH = 115
 LOST = 0.1
 """Share of an effort's power above the band of a diagnosis that is told."""
 
+FRAME_POSITION = int(mujoco.mjtSensor.mjSENS_FRAMEPOS)
+
 FIRST = 10
 """Rows that tell where a log begins."""
 
@@ -375,11 +377,12 @@ def _with_position(own: tuple[float, str], induced: float) -> tuple[float, str]:
 
 def _refuse(log: LogColumns, matches: Matches, check: Checked, model: mujoco.MjModel) -> None:
     """Say what is missing."""
-    there = ", ".join(f"{m.column} as {m.spot.quantity} of {m.spot.name}" for m in check.found)
+    efforts = [m for m in check.found if m.spot.quantity is Quantity.EFFORT]
+    there = ", ".join(f"{m.column}{' as an effort' * (m in efforts)}" for m in check.found)
     left = ", ".join([*matches.left, *matches.setpoints]) or "none"
     motors = ", ".join(model.actuator(i).name for i in range(model.nu))
     joints = ", ".join(model.joint(i).name for i in single_joints(model))
-    lacks_effort = all(m.spot.quantity is not Quantity.EFFORT for m in check.found)
+    lacks_effort = not efforts
     expected = f"an effort of {motors}" if lacks_effort else f"a position or speed of {joints}"
     placed = any(m.spot.quantity in (Quantity.POSITION, Quantity.SPEED) for m in check.found)
     if lacks_effort and not placed and model.nu:
@@ -388,7 +391,8 @@ def _refuse(log: LogColumns, matches: Matches, check: Checked, model: mujoco.MjM
     if not model.nu:
         came = f"a model without actuators; {came}"
         expected = f"actuators, or a position of {joints} and what follows from it"
-    if model.nsensor and not placed:
-        name = model.sensor(0).name
+    sensors = (model.sensor(i) for i in range(model.nsensor))
+    name = next((s.name for s in sensors if int(s.type[0]) == FRAME_POSITION), "")
+    if name and not placed:
         expected += f"; of {name} alone the file is written by hand, with a [start] of {joints}"
     raise InvalidInputError(f"{log.file} does not fit the model", came, expected)

@@ -149,7 +149,8 @@ def draft(model: Path, logs: Sequence[Path], out: Path, rate: float | None = Non
     silent = untold(given.model, check.found, check.locked)
     turned: list[str] = []
     if now.mode.mode is Mode.CONTROL and now.explained[now.least] < HALF:
-        turned = other_way(now.rig, _first_part(now.rig, logs[0]))
+        part = _first_part(now.rig, logs[0])
+        turned = other_way(now.rig, part) if len(part.time) >= FEWEST else []
     coarse = [] if turned else now.coarse
     look = (*given.notes, *log.notes, *check.findings, *silent, *turned, *coarse)
     words, stretch = f"{now.mode.mode}: {now.mode.why}", _stretch(now.mode, log)

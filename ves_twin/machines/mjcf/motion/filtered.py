@@ -9,23 +9,27 @@ from scipy.signal import lfilter
 from ves_twin.core.types import FloatArray
 from ves_twin.machines.mjcf.parts.servo import FILTERS, is_servo
 
+LONG = 3.0
+"""Time constants of earlier commands from which on they tell what is in a filter: to 5 %."""
+
 
 def fill_filters(
     model: mujoco.MjModel, data: mujoco.MjData, commands: FloatArray, period: float
 ) -> None:
     """Set the activation a of filtered actuators where a motion begins.
 
-    By the commands u of earlier rows, where there are some:
+    By the commands u of earlier rows, where these go back LONG time constants:
 
         a[k] = a[k-1] + (u[k-1] - a[k-1]) (1 - exp(-T / tau)),   a[0] = u[0]
 
-    Else of a servo by its joint, which it holds against gravity and the model's own friction and
-    springs: kp (a - q) - kv v = what these take; one without a kp holds nothing. Else as if the
-    first command had been there long. MuJoCo begins with zero, from where a servo would fall.
+    Else of a servo that drives its joint alone, by where that is and what it takes there against
+    gravity, the model's damping and springs: kp (a - q) - kv v = load. A log may begin with a step.
+    Else the same by what rows there are, or as if the first command had been there long. MuJoCo
+    begins with zero, from where a servo would fall.
 
     Args:
         model: with its actuators.
-        data: of it where the motion begins; its activations are changed.
+        data: of it where the motion begins, all joints in place; its activations are changed.
         commands: as they reach the actuators, up to the row that is begun with (n, nu).
         period: between rows [s].
     """
@@ -36,14 +40,30 @@ def fill_filters(
     mujoco.mj_fwdVelocity(model, data)
     for number in map(int, filtered):
         column = commands[:, number]
-        if len(column) > 1:
-            tau = max(float(model.actuator_dynprm[number, 0]), 1e-12)
-            share = -np.expm1(-period / tau)
-            begin = np.array([(1.0 - share) * column[0]])
-            filled = lfilter([share], [1.0, share - 1.0], column[:-1], zi=begin)[0][-1]
-        else:
-            filled = _held(model, data, number) if is_servo(model, number) else column[0]
+        if model.actuator_ctrllimited[number]:
+            column = np.clip(column, *model.actuator_ctrlrange[number])
+        tau = max(float(model.actuator_dynprm[number, 0]), 1e-12)
+        told = (len(column) - 1) * period >= LONG * tau
+        servo = is_servo(model, number) and _alone(model, number)
+        filled = _held(model, data, number) if servo and not told else _left(column, period / tau)
         data.act[int(model.actuator_actadr[number])] = filled
+
+
+def _left(column: FloatArray, share: float) -> float:
+    """What a filter has at the last of some commands (n,), a row being a share of its tau."""
+    if len(column) == 1:
+        return float(column[0])
+    gain = -np.expm1(-share)
+    begin = np.array([(1.0 - gain) * column[0]])
+    return float(lfilter([gain], [1.0, gain - 1.0], column[:-1], zi=begin)[0][-1])
+
+
+def _alone(model: mujoco.MjModel, number: int) -> bool:
+    """Whether no other actuator acts on the same joint."""
+    on_joint = model.actuator_trntype == int(mujoco.mjtTrn.mjTRN_JOINT)
+    return (
+        int(np.sum(on_joint & (model.actuator_trnid[:, 0] == model.actuator_trnid[number, 0]))) == 1
+    )
 
 
 def _held(model: mujoco.MjModel, data: mujoco.MjData, number: int) -> float:
@@ -52,6 +72,8 @@ def _held(model: mujoco.MjModel, data: mujoco.MjData, number: int) -> float:
     dof = int(model.jnt_dofadr[joint])
     stiffness, damping = (-float(one) for one in model.actuator_biasprm[number, 1:3])
     load = float(data.qfrc_bias[dof] - data.qfrc_passive[dof])
+    if model.jnt_actgravcomp[joint]:
+        load -= float(data.qfrc_gravcomp[dof])
     moving = damping * float(data.qvel[dof])
     place = float(data.qpos[int(model.jnt_qposadr[joint])])
     return place + (load + moving) / stiffness if stiffness > 0.0 else place

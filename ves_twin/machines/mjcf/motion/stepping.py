@@ -107,8 +107,6 @@ def motion_of_drive(
     closed = mode is Mode.REFERENCE or bool(programs)
     first = 0 if closed else lead_rows(work.rig, work.programme.time)
     state = _start(work, first)
-    if not closed and model.na:
-        fill_filters(model, state, _commands(work)[: first + 1], period)
     if not (closed or drive.imposed or drive.locked or _resisted(work)):
         path, sensed, commands = _open(work, state, steps, first)
     else:
@@ -193,6 +191,7 @@ def _open(
     model = work.model
     every = _commands(work)
     commands = every[first:]
+    fill_filters(model, data, every[: first + 1], work.programme.period)
     laws = compiled_laws(work.laws, model)
     if len(laws.codes):
         path, sensed = lawful_rows(model, data, commands, _steady(work), steps, laws)
@@ -272,6 +271,8 @@ def _stepped(
     loaded = {e.parts[0] for e, _ in work.effects if type(e).carry is not Effect.carry}
     laws, own = compiled_laws(work.laws, model), np.zeros(model.nv)
     imposed.begin(data, first * steps)
+    if not closed:
+        fill_filters(model, data, asked[: first + 1], work.programme.period)
     for k in range(first, rows):
         imposed.move(data, k * steps)
         path[k, : model.nq], path[k, model.nq :] = data.qpos, data.qvel

@@ -9,7 +9,10 @@ FILTERS = (int(mujoco.mjtDyn.mjDYN_FILTER), int(mujoco.mjtDyn.mjDYN_FILTEREXACT)
 
 
 def is_servo(model: mujoco.MjModel, actuator: int) -> bool:
-    """Whether a command is the position that one joint is pulled to."""
+    """Whether a command, or what a filter leaves of it, is the position a joint is pulled to."""
+    quick = (int(mujoco.mjtDyn.mjDYN_NONE), *FILTERS)
+    if int(model.actuator_dyntype[actuator]) not in quick:
+        return False
     affine = int(model.actuator_biastype[actuator]) == int(mujoco.mjtBias.mjBIAS_AFFINE)
     pulled = float(model.actuator_gainprm[actuator, 0]) == -float(
         model.actuator_biasprm[actuator, 1]

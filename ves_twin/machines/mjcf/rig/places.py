@@ -143,10 +143,10 @@ def _actuator(effect: Effect, told: RigDescription, model: mujoco.MjModel) -> Pl
     actuator, joint = model.actuator(target), driven_joint(model, target)
     span, gain = told.typical.joint.get(joint, Span()), float(actuator.gainprm[0])
     units = joint_units(model, joint) if joint else ("", "")
-    filtered = int(actuator.dyntype[0]) in FILTERS
-    lag = float(actuator.dynprm[0]) if filtered else 0.0
+    integrated = told.drive.mode is not Mode.MOTION
+    lag = float(actuator.dynprm[0]) if int(actuator.dyntype[0]) in FILTERS and integrated else 0.0
     place = Place(Element.ACTUATOR, target, hinge=units[0] == "rad", gain=gain, lag=lag)
-    if is_servo(model, int(actuator.id)):
+    if integrated and is_servo(model, int(actuator.id)):
         travel = to_si(span.travel, units[0], f"typical.joint.{joint}.travel")
         return replace(place, stiffness=gain, effort=travel, unit=units[0])
     exerted = abs(float(actuator.gear[0]) * gain)
