@@ -277,6 +277,8 @@ def _tolerances(model: mujoco.MjModel, check: Checked) -> str:
     }
     drives = range(model.nu)
     servos = [i for i in drives if is_servo(model, i)]
+    if len(servos) == model.nu:
+        there.pop("gain", None)
     if servos:
         there["kp"] = NOBODY_TELLS
     if any(model.actuator_biasprm[i, 2] for i in servos):
