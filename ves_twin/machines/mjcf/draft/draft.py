@@ -130,16 +130,17 @@ def draft(model: Path, logs: Sequence[Path], out: Path, rate: float | None = Non
         return _Version(mode, text, rig, *_predicted(rig, logs[0]))
 
     now = version(chosen(log, matches, check, given.model))
-    if now.mode.mode is not Mode.MOTION:
-        sizes = unmeasured(now.rig, read_rig_recording(logs[0], now.rig))
+    part = _first_part(now.rig, logs[0])
+    simulated = now.mode.mode is not Mode.MOTION and len(part.time) >= FEWEST
+    if simulated:
+        sizes = unmeasured(now.rig, part)
         now = version(replace(now.mode, typical=sizes)) if sizes else now
     if now.mode.either and now.explained[now.least] < HALF:
         why = f"open loop the model explains {_percent(now)} of {now.least}"
         now = version(chosen(log, matches, check, given.model, why))
-    if now.mode.mode is Mode.CONTROL and now.explained[now.least] < HALF:
-        recording = read_rig_recording(logs[0], now.rig)
+    if now.mode.mode is Mode.CONTROL and simulated and now.explained[now.least] < HALF:
         drifts = now.explained[now.least] < AWAY
-        if drifts or runs_away(MjcfForward.of(now.rig), recording):
+        if drifts or runs_away(MjcfForward.of(now.rig), read_rig_recording(logs[0], now.rig)):
             now = _in_pieces(now, version, 1.0 / log.period)
     for other in logs[1:]:
         read_rig_recording(other, now.rig)
@@ -148,9 +149,8 @@ def draft(model: Path, logs: Sequence[Path], out: Path, rate: float | None = Non
     left |= {m.column: "is a speed" for m in check.found if not used(m, now.mode)}
     silent = untold(given.model, check.found, check.locked)
     turned: list[str] = []
-    if now.mode.mode is Mode.CONTROL and now.explained[now.least] < HALF:
-        part = _first_part(now.rig, logs[0])
-        turned = other_way(now.rig, part) if len(part.time) >= FEWEST else []
+    if now.mode.mode is Mode.CONTROL and simulated and now.explained[now.least] < HALF:
+        turned = other_way(now.rig, _first_part(now.rig, logs[0]))
     coarse = [] if turned else now.coarse
     look = (*given.notes, *log.notes, *check.findings, *silent, *turned, *coarse)
     words, stretch = f"{now.mode.mode}: {now.mode.why}", _stretch(now.mode, log)
