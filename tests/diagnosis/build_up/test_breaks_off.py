@@ -14,16 +14,20 @@ from ves_twin.diagnosis.build_up.plain_selector import PlainSelector
 from ves_twin.diagnosis.record.runs import silent
 
 
-def test_a_fit_at_which_nothing_is_predicted_moves_no_column(monkeypatch):
-    """Columns about it are no numbers: `cho_factor` of them ended a servo's diagnosis."""
+def built() -> Builder:
     plant = Linear(("viscous_friction", "coulomb"))
     hidden = {"viscous_friction@a:size": 1.0}
     one, two = (seen(plant, recorded(plant, hidden, seed)) for seed in (5, 6))
     screen = SimpleNamespace(bank=SimpleNamespace(hypotheses=plant.hypotheses))
     desk = SimpleNamespace(first=SimpleNamespace(screen=screen), progress=silent)
-    builder = Builder(desk, one, two)
-    halves = builder.halves(one.runs.origin, ())
-    begin, chosen = one.runs.origin, PlainSelector(halves.regression).run([])
+    return Builder(desk, one, two)
+
+
+def test_a_fit_at_which_nothing_is_predicted_moves_no_column(monkeypatch):
+    """Columns about it are no numbers: `cho_factor` of them ended a servo's diagnosis."""
+    builder = built()
+    halves = builder.halves(builder.fitted.runs.origin, ())
+    begin, chosen = builder.fitted.runs.origin, PlainSelector(halves.regression).run([])
     fit = builder_module.in_full
 
     def broken(*given, **named):
@@ -42,13 +46,8 @@ def test_a_fit_at_which_nothing_is_predicted_moves_no_column(monkeypatch):
 
 def test_a_fit_at_which_held_out_rows_alone_break_off_moves_no_column(monkeypatch):
     """A square wave that was held out ended the diagnosis of a servo's sweep in a traceback."""
-    plant = Linear(("viscous_friction", "coulomb"))
-    hidden = {"viscous_friction@a:size": 1.0}
-    one, two = (seen(plant, recorded(plant, hidden, seed)) for seed in (5, 6))
-    screen = SimpleNamespace(bank=SimpleNamespace(hypotheses=plant.hypotheses))
-    desk = SimpleNamespace(first=SimpleNamespace(screen=screen), progress=silent)
-    builder = Builder(desk, one, two)
-    halves = builder.halves(one.runs.origin, ())
+    builder = built()
+    halves = builder.halves(builder.fitted.runs.origin, ())
     chosen = PlainSelector(halves.regression).run([])
     assert halves.sound
     whole = Builder.halves
@@ -59,7 +58,7 @@ def test_a_fit_at_which_held_out_rows_alone_break_off_moves_no_column(monkeypatc
         return replace(found, held=replace(found.held, target=lost))
 
     monkeypatch.setattr(Builder, "halves", broken)
-    begin = one.runs.origin
+    begin = builder.fitted.runs.origin
     kept, point, still = builder.settled(PlainSelector, halves, chosen, begin)
     assert kept is halves
     assert point is begin
