@@ -108,8 +108,8 @@ def _gated(gain: Gain | None, causes: Mapping[str, float]) -> str:
         return "the held-out recordings show nothing that it could improve"
     if gain.grown:
         return "the rms errors on held-out recordings grow with it"
-    after = {name: (causes[name], gain.errors[name][1]) for name in causes}
-    if replace(gain, errors=after).grown:
+    over_causes = {name: (causes[name], gain.errors[name][1]) for name in causes}
+    if replace(gain, errors=over_causes).grown:
         return "the proved causes alone leave smaller rms errors on held-out recordings"
     if gain.share < GATE or gain.low is None or gain.low <= 0.0:
         return f"it takes only {100.0 * gain.share:.0f} % of the held-out excess away"

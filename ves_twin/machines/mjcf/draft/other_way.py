@@ -20,8 +20,8 @@ its rest both explain the same, and a sign that is wrong explains nothing."""
 MOST = 6
 """Columns that are tried: each costs a simulation."""
 
-
 DEGREE = np.pi / 180.0
+"""In radians."""
 
 QUESTIONS = {
     -1.0: "turned, {}: does it count the other way?",
