@@ -73,8 +73,6 @@ def test_a_load_resists_one_way_holds_and_is_gone_on_the_way_back():
     np.testing.assert_allclose(effort[51:71], 4000.0)
     np.testing.assert_allclose(effort[73:122], 0.0, atol=1e-9)
     np.testing.assert_allclose(effort[125:], 4000.0)
-    holder = OneWayLoad("rod", load=4000.0, travel=0.002).holder()
-    np.testing.assert_allclose([holder(x) for x in path], effort)
 
 
 def test_a_load_of_the_other_sign_resists_the_other_way():

@@ -61,13 +61,6 @@ def test_presliding_is_softer_by_dahl_than_by_a_spring_and_a_slider():
     assert DAHL.hold(x)[1] == pytest.approx(slider[1], rel=0.02)
 
 
-@pytest.mark.parametrize("effect", [DAHL, Ripple("axis.7", 0.3, -0.2)])
-def test_position_by_position_the_effort_is_the_same(effect):
-    x = 0.3 * np.sin(np.linspace(0, 20, 500)) + 0.1 * np.cos(np.linspace(0, 43, 500))
-    step = effect.holder()
-    assert effect.hold(x) == pytest.approx([step(float(q)) for q in x], rel=1e-12, abs=1e-12)
-
-
 def test_a_ripple_has_its_waves_and_gives_back_over_a_turn_what_it_took():
     turn = np.linspace(0.0, 2.0 * np.pi, 3201)[:-1]
     effort = Ripple("axis.320", 0.3, -0.4).hold(turn)

@@ -17,6 +17,7 @@ from ves_twin.effects.change import Attribute, Log, Loop, Table
 from ves_twin.effects.element import Element
 from ves_twin.effects.magnitude import Magnitude
 from ves_twin.effects.place import Place
+from ves_twin.effects.resistance import Resistance
 from ves_twin.effects.row import ALL_LEGS, AXES, JOINTS, LEGS, LINKS, RIG, Anywhere, Row
 from ves_twin.effects.size import Size
 
@@ -58,8 +59,6 @@ class Effect(ABC):
     magnitudes: ClassVar[tuple[Magnitude, ...]] = ()
     channels: ClassVar[tuple[str, ...]] = ()
     source: ClassVar[str] = ""
-    steady: ClassVar[bool] = False
-    """Whether `resist` is the same effort at any speed."""
     proportional: ClassVar[bool] = True
     """Whether its trace on VES II is proportional to its size."""
 
@@ -211,21 +210,26 @@ class Effect(ABC):
         if self.attribute:
             self.attribute.add(model, self.target, self._size)
 
+    @property
+    def resistance(self) -> Resistance:
+        """Effort against a joint in one of the forms that compiled loops know."""
+        return Resistance()
+
     def resist(self, speed: FloatArray, slow: float) -> FloatArray:
         """Effort [N, N m] against a joint's motion at speeds (n,); `slow` smooths signs."""
-        return np.zeros_like(speed)
+        return self.resistance.by_speed(speed, slow)
 
     def hold(self, position: FloatArray) -> FloatArray:
         """Effort [N, N m] against a joint along positions (n,), of a kind with place or memory."""
-        return np.zeros_like(position)
+        return self.resistance.by_place(position)
 
     def holder(self) -> Callable[[float], float]:
-        """The same, position by position from where the motion begins; it keeps the memory."""
+        """Of a `hold` of its own: the same, position by position; it keeps the memory."""
         return lambda position: 0.0
 
     def carry(self, load: FloatArray, speed: FloatArray, slow: float) -> FloatArray:
         """Effort [N, N m] against a joint's motion that grows with the load (n,) it carries."""
-        return np.zeros_like(load)
+        return self.resistance.by_load(load, speed, slow)
 
     def edit_position(self, position: FloatArray) -> FloatArray:
         """A joint's position (n,) on the other side of what lies between drive and joint."""

@@ -6,13 +6,11 @@ from dataclasses import dataclass
 from itertools import product
 from typing import final
 
-import numpy as np
-
-from ves_twin.core.types import FloatArray
 from ves_twin.effects.effect import Effect
 from ves_twin.effects.element import Element
 from ves_twin.effects.magnitude import Magnitude, Sign
 from ves_twin.effects.place import Place
+from ves_twin.effects.resistance import Form, Resistance
 from ves_twin.effects.row import Anywhere
 from ves_twin.effects.size import EFFORT, SPEED, Size
 
@@ -32,9 +30,10 @@ class QuadraticDrag(Effect):
     sizes = (Size("drag", ("N*s^2/m^2", "N*m*s^2/rad^2")),)
     anywhere = Anywhere(Element.JOINT, lambda p: 3.0 * p.effort / p.speed**2)
 
-    def resist(self, speed: FloatArray, slow: float) -> FloatArray:
+    @property
+    def resistance(self) -> Resistance:
         """The drag times speed and its size."""
-        return np.asarray(self.drag * speed * np.abs(speed))
+        return Resistance(Form.BY_SQUARE, (self.drag,))
 
 
 @final
@@ -65,13 +64,10 @@ class StribeckFriction(Effect):
         grid = product((0.1, -0.1), (0.03, 0.1, 0.3))
         return tuple((level * place.effort, fall * place.speed) for level, fall in grid)
 
-    def resist(self, speed: FloatArray, slow: float) -> FloatArray:
+    @property
+    def resistance(self) -> Resistance:
         """The level where the joint is slow, gone where it is fast."""
-        if self.fall <= 0.0:
-            return np.zeros_like(speed)
-        return np.asarray(
-            self.level * np.exp(-np.square(speed / self.fall)) * np.tanh(speed / slow)
-        )
+        return Resistance(Form.FALLING, (self.level, self.fall))
 
 
 @final
@@ -103,9 +99,10 @@ class RegularizedFriction(Effect):
         """A tenth of the typical effort over 1, 3, 10, 30 % of the typical speed."""
         return tuple((0.1 * place.effort, s * place.speed) for s in (0.01, 0.03, 0.1, 0.3))
 
-    def resist(self, speed: FloatArray, slow: float) -> FloatArray:
+    @property
+    def resistance(self) -> Resistance:
         """The level, less where the joint is slower than the transition."""
-        return np.asarray(self.level * np.tanh(speed / max(self.transition, slow)))
+        return Resistance(Form.SMOOTHED, (self.level, self.transition))
 
 
 @final
@@ -126,6 +123,7 @@ class LoadFriction(Effect):
     # a worm gear that can just be turned from its output side loses half
     anywhere = Anywhere(Element.JOINT, 0.5, 0.002, source="assumed: a worm gear loses half")
 
-    def carry(self, load: FloatArray, speed: FloatArray, slow: float) -> FloatArray:
+    @property
+    def resistance(self) -> Resistance:
         """The share of the load's size, against the motion."""
-        return np.asarray(self.share * np.abs(load) * np.tanh(speed / slow))
+        return Resistance(Form.BY_LOAD, (self.share,))

@@ -15,6 +15,7 @@ from ves_twin.effects.effect import Effect
 from ves_twin.effects.element import Element
 from ves_twin.effects.magnitude import Magnitude, Sign
 from ves_twin.effects.place import Place
+from ves_twin.effects.resistance import Form, Resistance
 from ves_twin.effects.row import JOINTS, LEGS, Anywhere, Part, Row
 from ves_twin.effects.size import (
     COMPLIANCE,
@@ -111,9 +112,10 @@ class ViscousAsymmetry(Effect):
     sizes = (Size("slope", DAMPING),)
     anywhere = Anywhere(Element.JOINT, lambda p: p.effort / p.speed)
 
-    def resist(self, speed: FloatArray, slow: float) -> FloatArray:
+    @property
+    def resistance(self) -> Resistance:
         """Slope times the size of the speed."""
-        return np.asarray(self.slope * np.abs(speed))
+        return Resistance(Form.BY_SIZE, (self.slope,))
 
 
 @final
@@ -127,9 +129,10 @@ class CoulombAsymmetry(Effect):
     sizes = (Size("level", EFFORT),)
     anywhere = Anywhere(Element.JOINT, lambda p: 0.5 * p.effort)
 
-    def resist(self, speed: FloatArray, slow: float) -> FloatArray:
+    @property
+    def resistance(self) -> Resistance:
         """The level, gone where the joint stands."""
-        return np.asarray(self.level * np.tanh(speed / slow) ** 2)
+        return Resistance(Form.BY_SIDE, (self.level,))
 
 
 @final
@@ -142,11 +145,11 @@ class ForceOffset(Effect):
     kind = "force_offset"
     sizes = (Size("offset", EFFORT),)
     anywhere = Anywhere(Element.JOINT, lambda p: 0.5 * p.effort)
-    steady = True
 
-    def resist(self, speed: FloatArray, slow: float) -> FloatArray:
+    @property
+    def resistance(self) -> Resistance:
         """The offset."""
-        return np.full_like(speed, self.offset)
+        return Resistance(Form.STEADY, (self.offset,))
 
 
 @final

@@ -2,20 +2,15 @@
 
 from __future__ import annotations
 
-import math
-from collections.abc import Callable
 from dataclasses import dataclass
 from itertools import product
 from typing import final
 
-import numpy as np
-
-from ves_twin.core.compiled import compiled
-from ves_twin.core.types import FloatArray
 from ves_twin.effects.effect import Effect
 from ves_twin.effects.element import Element
 from ves_twin.effects.magnitude import Magnitude, Sign
 from ves_twin.effects.place import Place
+from ves_twin.effects.resistance import Form, Resistance
 from ves_twin.effects.row import Anywhere
 from ves_twin.effects.size import EFFORT, LENGTH, Size
 
@@ -65,27 +60,11 @@ class FrictionBehindGap(Effect):
         grid, reach = product((-0.25, 0.0, 0.25), travels, gaps), place.travel
         return tuple((0.5 * place.effort, d, e * reach, g * reach) for d, e, g in grid)
 
-    def hold(self, position: FloatArray) -> FloatArray:
-        """The effort along a motion that begins with the slider in the middle of the gap."""
-        if self.level == 0.0:
-            return np.zeros_like(position)
-        return np.asarray(self.level * _jenkins(np.asarray(position, float), *self._shape))
-
-    def holder(self) -> Callable[[float], float]:
-        """The same, position by position."""
-        slider: list[float] = []
-
-        def effort(position: float) -> float:
-            if not slider:
-                slider.append(position)
-            share, slider[0] = _slip(position, slider[0], *self._shape)
-            return self.level * share
-
-        return effort
-
     @property
-    def _shape(self) -> tuple[float, float, float]:
-        return self.difference, max(self.travel, LEAST_TRAVEL), self.gap
+    def resistance(self) -> Resistance:
+        """Of a motion that begins with the slider in the middle of the gap."""
+        travel = max(self.travel, LEAST_TRAVEL)
+        return Resistance(Form.SLIDER, (self.level, self.difference, travel, self.gap))
 
 
 @final
@@ -116,19 +95,11 @@ class OneWayLoad(Effect):
         grid = product((0.5, -0.5), (0.002, 0.008, 0.032))
         return tuple((load * place.effort, e * place.travel) for load, e in grid)
 
-    def hold(self, position: FloatArray) -> FloatArray:
-        """The effort along a motion that begins unloaded."""
-        return self._element.hold(np.asarray(position, float))
-
-    def holder(self) -> Callable[[float], float]:
-        """The same, position by position."""
-        return self._element.holder()
-
     @property
-    def _element(self) -> FrictionBehindGap:
-        """Twice half the load on one side, none on the other."""
-        side = 1.0 if self.load > 0.0 else -1.0
-        return FrictionBehindGap(self.target, 0.5 * abs(self.load), side, 0.5 * self.travel)
+    def resistance(self) -> Resistance:
+        """A slider with twice half the load on one side, none on the other."""
+        side, travel = 1.0 if self.load > 0.0 else -1.0, max(0.5 * self.travel, LEAST_TRAVEL)
+        return Resistance(Form.SLIDER, (0.5 * abs(self.load), side, travel))
 
 
 @final
@@ -164,66 +135,7 @@ class DahlFriction(Effect):
         """A tenth of the typical effort over travels each four times the last one."""
         return tuple((0.1 * place.effort, e * place.travel) for e in (0.0005, 0.002, 0.008, 0.032))
 
-    def hold(self, position: FloatArray) -> FloatArray:
-        """The effort along a motion that begins unloaded."""
-        if self.level == 0.0:
-            return np.zeros_like(position)
-        return np.asarray(self.level * _dahl(np.asarray(position, float), self._travel))
-
-    def holder(self) -> Callable[[float], float]:
-        """The same, position by position."""
-        last: list[tuple[float, float]] = []
-
-        def effort(position: float) -> float:
-            share = _crept(*last[0], position, self._travel) if last else 0.0
-            last[:] = [(share, position)]
-            return self.level * share
-
-        return effort
-
     @property
-    def _travel(self) -> float:
-        return max(self.travel, LEAST_TRAVEL)
-
-
-@compiled
-def _slip(
-    position: float, slider: float, difference: float, travel: float, gap: float
-) -> tuple[float, float]:
-    """Share of the level, and where the slider is then."""
-    apart = position - slider
-    half = 0.5 * gap
-    strain = apart - half if apart > half else (apart + half if apart < -half else 0.0)
-    share = strain / travel
-    forward, back = 1.0 + difference, -(1.0 - difference)
-    if share > forward:
-        return forward, slider + (share - forward) * travel
-    if share < back:
-        return back, slider + (share - back) * travel
-    return share, slider
-
-
-@compiled
-def _jenkins(position: FloatArray, difference: float, travel: float, gap: float) -> FloatArray:
-    """Share of the level at each position (n,)."""
-    shares = np.empty_like(position)
-    slider = position[0]
-    for k in range(len(position)):
-        shares[k], slider = _slip(position[k], slider, difference, travel, gap)
-    return shares
-
-
-@compiled
-def _crept(share: float, start: float, end: float, travel: float) -> float:
-    """Share of the level of a Dahl element behind a move that it began with another share."""
-    side = 1.0 if end > start else -1.0
-    return side - (side - share) * math.exp(-abs(end - start) / travel)
-
-
-@compiled
-def _dahl(position: FloatArray, travel: float) -> FloatArray:
-    """Share of the level at each position (n,)."""
-    shares = np.zeros_like(position)
-    for k in range(1, len(position)):
-        shares[k] = _crept(shares[k - 1], position[k - 1], position[k], travel)
-    return shares
+    def resistance(self) -> Resistance:
+        """Of a motion that begins unloaded."""
+        return Resistance(Form.CREEPING, (self.level, max(self.travel, LEAST_TRAVEL)))

@@ -3,17 +3,13 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable
 from dataclasses import dataclass
-from math import cos, sin
 from typing import final
 
-import numpy as np
-
 from ves_twin.core.errors import InvalidInputError
-from ves_twin.core.types import FloatArray
 from ves_twin.effects.effect import Effect
 from ves_twin.effects.element import Element
+from ves_twin.effects.resistance import Form, Resistance
 from ves_twin.effects.row import Anywhere
 from ves_twin.effects.size import EFFORT, Size
 
@@ -45,15 +41,10 @@ class Ripple(Effect):
         """The joint."""
         return (self._told[1],)
 
-    def hold(self, position: FloatArray) -> FloatArray:
+    @property
+    def resistance(self) -> Resistance:
         """The effort along a motion."""
-        phase = float(self._told[2]) * position
-        return np.asarray(self.cosine * np.cos(phase) + self.sine * np.sin(phase))
-
-    def holder(self) -> Callable[[float], float]:
-        """The same, position by position."""
-        n = float(self._told[2])
-        return lambda position: self.cosine * cos(n * position) + self.sine * sin(n * position)
+        return Resistance(Form.WAVES, (self.cosine, self.sine, float(self._told[2])))
 
     @property
     def _told(self) -> re.Match[str]:

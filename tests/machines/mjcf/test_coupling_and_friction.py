@@ -161,13 +161,6 @@ def test_friction_behind_a_gap_takes_energy_out_of_every_cycle(gap):
     assert work == pytest.approx(3.0 * amplitude, rel=0.01)
 
 
-def test_step_by_step_friction_behind_a_gap_is_the_same():
-    effect = FrictionBehindGap("a", level=3.0, difference=-0.3, travel=0.02, gap=0.1)
-    x = 0.3 * np.sin(np.linspace(0, 20, 2000)) + 0.1 * np.cos(np.linspace(0, 43, 2000))
-    step = effect.holder()
-    assert np.array_equal(effect.hold(x), [step(float(q)) for q in x])
-
-
 def test_without_gap_and_travel_it_is_dry_friction():
     effect = FrictionBehindGap("a", level=3.0)
     x = np.sin(np.linspace(0, 10, 5000))

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import copy
 from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import NamedTuple
 
 import mujoco
 import numpy as np
@@ -21,6 +23,28 @@ what is asked, which the next step, set anew to the recorded place and speed, do
 
 STAGED = mujoco.mjtIntegrator.mjINT_RK4
 """Integrator with several looks at a step, of which the last one is left behind in the data."""
+
+
+class Pushed(NamedTuple):
+    """Imposed motion as compiled loops take it.
+
+    Attributes:
+        places, dofs: addresses of the imposed coordinates in qpos and qvel.
+        position, speed: of them at each step (steps, k).
+        pull, begun: efforts [N, N m] that accelerate their inertia, held from there on, and at
+            each step (steps, k).
+        staged: whether the integrator leaves the last of its looks behind in the data.
+        begin_qacc: accelerations (nv,) at the begin of the last step, where it is staged.
+    """
+
+    places: IntArray
+    dofs: IntArray
+    position: FloatArray
+    speed: FloatArray
+    pull: FloatArray
+    begun: FloatArray
+    staged: bool
+    begin_qacc: FloatArray
 
 
 @dataclass(frozen=True)
@@ -102,25 +126,17 @@ class Imposed:
             assemble(self.work.model, data, self.dofs)
 
     def move(self, data: mujoco.MjData, step: int) -> None:
-        """Set place and speed of a step, and the effort that keeps the recorded acceleration."""
-        if not len(self.dofs):
-            return
+        """Set place and speed of a step."""
         data.qpos[self.places] = self.position[step]
         data.qvel[self.dofs] = self.speed[step]
-        data.qfrc_applied[self.dofs] = self.inertia * self.pull[step]
 
-    def step(self, model: mujoco.MjModel, data: mujoco.MjData, step: int) -> FloatArray:
-        """One step of the machine; accelerations (nv,) at its begin."""
-        self.move(data, step)
-        if model.opt.integrator != STAGED or not len(self.dofs):
-            mujoco.mj_step(model, data)
-            return np.asarray(data.qacc)
-        data.qfrc_applied[self.dofs] = self.inertia * self.begun[step]
-        mujoco.mj_forward(model, data)
-        begun = np.array(data.qacc)
-        self.move(data, step)
-        mujoco.mj_step(model, data)
-        return begun
+    @cached_property
+    def pushed(self) -> Pushed:
+        """For compiled loops."""
+        staged = bool(self.work.model.opt.integrator == STAGED and len(self.dofs))
+        pull, begun = self.inertia * self.pull, self.inertia * self.begun
+        seen = np.zeros(self.work.model.nv)
+        return Pushed(self.places, self.dofs, self.position, self.speed, pull, begun, staged, seen)
 
     def commands(self, path: FloatArray, pull: FloatArray) -> dict[str, FloatArray]:
         """What the actuators of imposed joints give (n,), where they are compared.

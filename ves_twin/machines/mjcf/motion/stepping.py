@@ -9,7 +9,6 @@ from typing import Protocol
 
 import mujoco
 import numpy as np
-from mujoco import rollout
 
 from ves_twin.core.engine_log import log_engine
 from ves_twin.core.types import FloatArray
@@ -17,19 +16,15 @@ from ves_twin.core.units import to_si
 from ves_twin.effects.effect import Effect
 from ves_twin.effects.element import Element
 from ves_twin.machines.mjcf.motion.filtered import fill_filters
-from ves_twin.machines.mjcf.motion.imposed import Imposed
-from ves_twin.machines.mjcf.motion.law_loop import compiled_laws, lawful_rows, push
 from ves_twin.machines.mjcf.motion.started import first_state, lead_rows, read_from, start_signal
-from ves_twin.machines.mjcf.motion.work import Work, sensor_rows, variables
+from ves_twin.machines.mjcf.motion.stepper import CARRIED, Stepper
+from ves_twin.machines.mjcf.motion.work import SMOOTH, Work, sensor_rows, variables
 from ves_twin.machines.mjcf.parts.joint_units import joint_units
 from ves_twin.machines.mjcf.parts.loops import assemble
 from ves_twin.machines.mjcf.rig.description import Controller, Mode
 
 CHECKED = 50
 """Rows after which it is looked whether the engine gave up: a look costs as much as a step."""
-
-CARRIED = 4
-"""Iterations of a friction that its load makes: of a tenth of the load it is then known to 1e-4."""
 
 FAILED = (
     mujoco.mjtWarning.mjWARN_BADQPOS,
@@ -103,17 +98,14 @@ def motion_of_drive(
     model, period = work.model, work.programme.period
     steps = max(1, round(period / model.opt.timestep)) * (2 if refined else 1)
     model.opt.timestep = period / steps
-    drive = work.rig.description.drive
     closed = mode is Mode.REFERENCE or bool(programs)
     first = 0 if closed else lead_rows(work.rig, work.programme.time)
     state = _start(work, first)
-    if not (closed or drive.imposed or drive.locked or _resisted(work)):
-        path, sensed, commands = _open(work, state, steps, first)
-    else:
-        told = work.rig.description.controllers
-        own = [_Pd(work, name, c) for name, c in told.items()] if mode is Mode.REFERENCE else []
-        loops = (programs or own) if closed else None
-        path, sensed, commands = _stepped(work, state, steps, first, loops)
+    told = work.rig.description.controllers
+    own = [_Pd(work, name, c) for name, c in told.items()] if mode is Mode.REFERENCE else []
+    path, sensed, commands = _stepped(
+        work, state, steps, first, (programs or own) if closed else None
+    )
     if _failed(state):
         path, sensed = np.full_like(path, np.nan), np.full_like(sensed, np.nan)
         commands = np.full_like(commands, np.nan)
@@ -159,57 +151,6 @@ def _measured_start(work: Work, joint: str, first: int) -> tuple[float, float]:
     return first_state(column, work.programme.period, told.drive.smoothing)
 
 
-def _resisted(work: Work) -> bool:
-    """Whether an effect depends on speed or place in a way that the model itself lacks."""
-    plain = (Effect.resist, Effect.hold, Effect.carry)
-    return any(
-        (type(e).resist, type(e).hold, type(e).carry) != plain and not e.steady
-        for e, _ in work.effects
-    )
-
-
-def _carried(work: Work, joint: str, given: FloatArray, speed: FloatArray) -> float:
-    """Friction by a joint's load where the effort that is given (1,) holds both: by iteration."""
-    friction = np.zeros(1)
-    for _ in range(CARRIED):
-        friction = work.carried(joint, given - friction, speed)
-    return float(friction[0])
-
-
-def _steady(work: Work) -> FloatArray:
-    """Efforts (nv,) of the effects that are the same at any speed."""
-    effort, still = np.zeros(work.model.nv), np.zeros(1)
-    for name in {e.parts[0] for e, _ in work.effects if e.steady}:
-        effort[int(work.model.joint(name).dofadr[0])] -= work.resistance(name, still)[0]
-    return effort
-
-
-def _open(
-    work: Work, data: mujoco.MjData, steps: int, first: int
-) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Recorded commands, stepped by MuJoCo's own loop."""
-    model = work.model
-    every = _commands(work)
-    commands = every[first:]
-    fill_filters(model, data, every[: first + 1], work.programme.period)
-    laws = compiled_laws(work.laws, model)
-    if len(laws.codes):
-        path, sensed = lawful_rows(model, data, commands, _steady(work), steps, laws)
-        return _led(path, first), _led(sensed, first), every
-    size = mujoco.mj_stateSize(model, mujoco.mjtState.mjSTATE_FULLPHYSICS)
-    state = np.zeros(size)
-    mujoco.mj_getState(model, data, state, mujoco.mjtState.mjSTATE_FULLPHYSICS)
-    steady = np.tile(_steady(work), (len(commands), 1))
-    control = np.repeat(np.hstack([commands, steady]), steps, axis=0)[None]
-    fed = mujoco.mjtState.mjSTATE_CTRL | mujoco.mjtState.mjSTATE_QFRC_APPLIED
-    states, sensors = rollout.rollout(
-        model, data, initial_state=state[None], control=control, control_spec=int(fed)
-    )
-    rows = np.concatenate([state[None], states[0][steps - 1 :: steps][:-1]])
-    path = rows[:, 1 : 1 + model.nq + model.nv]
-    return _led(path, first), _led(np.asarray(sensors[0][::steps]), first), every
-
-
 def _led(rows: FloatArray, first: int) -> FloatArray:
     """Rows (n, w) behind those of the lead, which have what the first of them has."""
     return np.concatenate([np.repeat(rows[:1], first, axis=0), rows])
@@ -251,54 +192,70 @@ class _Pd:
 def _stepped(
     work: Work, data: mujoco.MjData, steps: int, first: int, loops: Sequence[Loop] | None
 ) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Row by row, with controllers, or commands for None, and efforts that follow the speed."""
-    model, rows = work.model, len(work.programme.time)
-    closed = loops is not None
+    """Path, sensors and commands: under controllers row by row, or under commands for None."""
+    model, rows, closed = work.model, len(work.programme.time), loops is not None
     asked = np.zeros((rows, model.nu)) if closed else _commands(work)
-    resisted = [
-        (name, int(model.joint(name).dofadr[0]), int(model.joint(name).qposadr[0]))
-        for name in {e.parts[0] for e, _ in work.effects if e.element is Element.JOINT}
-    ]
-    at_joint = {n: [e for e, _ in work.at(Element.JOINT, n)] for n, _, _ in resisted}
-    holders = {
-        n: [e.holder() for e in found if type(e).holder is not Effect.holder]
-        for n, found in at_joint.items()
-    }
-    resists = {n: work.resists(n) for n, _, _ in resisted}
-    path, sensed = np.zeros((rows, model.nq + model.nv)), np.zeros((rows, model.nsensordata))
-    pull, imposed = np.zeros((rows, model.nv)), Imposed.of(work, steps)
-    speed, given, reach = np.zeros(1), np.zeros(1), _Reach(work)
-    loaded = {e.parts[0] for e, _ in work.effects if type(e).carry is not Effect.carry}
-    laws, own = compiled_laws(work.laws, model), np.zeros(model.nv)
-    imposed.begin(data, first * steps)
+    run = Stepper.of(work, data, steps, asked.copy())
+    run.imposed.begin(data, first * steps)
     if not closed:
         fill_filters(model, data, asked[: first + 1], work.programme.period)
-    for k in range(first, rows):
-        imposed.move(data, k * steps)
-        path[k, : model.nq], path[k, model.nq :] = data.qpos, data.qvel
+    hooks = _Hooks(work)
+    if not (closed or hooks.any):
+        run.advance(first * steps, rows * steps)
+    reach = _Reach(work)
+    for k in range(first, rows) if closed or hooks.any else ():
+        run.imposed.move(data, k * steps)
         for loop in loops or ():
             asked[k, loop.actuator] = loop.command(k, data)
-        data.ctrl[:] = reach.at(asked[k], k) if closed else asked[k]
-        for n in range(steps):
-            data.qfrc_applied[:] = 0.0
-            for name, dof, at in resisted:
-                speed[0], q = data.qvel[dof], float(data.qpos[at])
-                effort = sum(float(resist(speed)[0]) for resist in resists[name])
-                effort += sum(holder(q) for holder in holders[name])
-                given[0] = data.qfrc_actuator[dof]
-                effort += _carried(work, name, given, speed) if name in loaded else 0.0
-                data.qfrc_applied[dof] = -effort
-            if len(laws.codes):
-                push(laws, data, own)
-            begun = imposed.step(model, data, k * steps + n)
-            if n == 0:
-                sensed[k], pull[k] = data.sensordata, begun
+        run.commands[k] = reach.at(asked[k], k) if closed else asked[k]
+        for n in range(k * steps, (k + 1) * steps) if hooks.any else ():
+            run.own[:] = hooks.efforts(data)
+            run.advance(n, n + 1)
+        if not hooks.any:
+            run.advance(k * steps, (k + 1) * steps)
         if k % CHECKED == 0 and _failed(data):
             break
-    path, sensed, pull = (_led(one[first:], first) for one in (path, sensed, pull))
-    for name, command in imposed.commands(path, pull).items():
+    path, sensed, pull = (_led(one[first:], first) for one in (run.path, run.sensed, run.pull))
+    for name, command in run.imposed.commands(path, pull).items():
         asked[:, model.actuator(name).id] = command
     return path, sensed, asked
+
+
+class _Hooks:
+    """Efforts of kinds with hooks of their own, which compiled code does not know."""
+
+    def __init__(self, work: Work) -> None:
+        joints = [(e, p) for e, p in work.effects if e.element is Element.JOINT]
+        at = {e.target: work.model.joint(e.parts[0]) for e, _ in joints}
+        place = {name: (int(j.dofadr[0]), int(j.qposadr[0])) for name, j in at.items()}
+        self.resists = [
+            (*place[e.target], e.resist, SMOOTH * p.speed)
+            for e, p in joints
+            if type(e).resist is not Effect.resist
+        ]
+        self.holders = [
+            (*place[e.target], e.holder()) for e, _ in joints if type(e).holder is not Effect.holder
+        ]
+        self.carries = [
+            (*place[e.target], e.carry, SMOOTH * p.speed)
+            for e, p in joints
+            if type(e).carry is not Effect.carry
+        ]
+        self.any = bool(self.resists or self.holders or self.carries)
+
+    def efforts(self, data: mujoco.MjData) -> FloatArray:
+        """What they add to the efforts of the joints now (nv,)."""
+        total = np.zeros(len(data.qvel))
+        for dof, _, resist, slow in self.resists:
+            total[dof] -= float(resist(data.qvel[[dof]], slow)[0])
+        for dof, place, holder in self.holders:
+            total[dof] -= holder(float(data.qpos[place]))
+        for dof, _, carry, slow in self.carries:
+            friction = np.zeros(1)
+            for _ in range(CARRIED):
+                friction = carry(data.qfrc_actuator[[dof]] - friction, data.qvel[[dof]], slow)
+            total[dof] -= float(friction[0])
+        return total
 
 
 class _Reach:

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import copy
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from functools import lru_cache, partial
+from functools import lru_cache
 from threading import get_ident
 
 import mujoco
@@ -82,15 +82,10 @@ class Work:
 
     def resistance(self, joint: str, speed: FloatArray) -> FloatArray:
         """Effort [N, N m] against motion of a joint that the model itself lacks (n,)."""
-        return sum((resist(speed) for resist in self.resists(joint)), np.zeros_like(speed))
-
-    def resists(self, joint: str) -> list[Callable[[FloatArray], FloatArray]]:
-        """The parts of it, of each effect that has one."""
-        return [
-            partial(effect.resist, slow=SMOOTH * place.speed)
-            for effect, place in self.at(Element.JOINT, joint)
-            if type(effect).resist is not Effect.resist
-        ]
+        total = np.zeros_like(speed)
+        for effect, place in self.at(Element.JOINT, joint):
+            total = total + effect.resist(speed, SMOOTH * place.speed)
+        return total
 
     def carried(self, joint: str, load: FloatArray, speed: FloatArray) -> FloatArray:
         """Effort [N, N m] against motion of a joint that its load makes (n,)."""
