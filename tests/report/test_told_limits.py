@@ -100,6 +100,17 @@ def test_numbers_of_the_model_that_left_their_tolerance_are_told(pull, high, tol
     assert told or not words
 
 
+def test_a_named_cause_that_a_law_changed_is_no_number_of_the_model():
+    """A ball's friction was told as the model's 2.08 mN, where the model had none."""
+    plain = verdict()
+    (cause,) = plain.causes
+    name = f"{cause.effect}@{cause.target}:{next(iter(cause.parameters))}"
+    told = replace(plain, tuned={name: replace(SIZE, pull=-3.8, high=96e3)})
+    assert tuned_words(told).endswith("beside the law")
+    assert "declared tolerances" not in tuned_words(told)
+    assert not check_sentence(told)
+
+
 @pytest.mark.parametrize(("pull", "high", "told"), [(-3.8, 96e3, True), (-2.9, 96e3, False)])
 def test_what_data_put_far_off_its_tolerance_is_to_be_measured_next(pull, high, told):
     """A link's mass, doubled by its owner, was tuned by 4 declared tolerances and not advised."""

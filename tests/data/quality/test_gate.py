@@ -185,3 +185,17 @@ def test_a_joint_that_stops_is_no_range_that_is_too_small_and_one_that_is_cut_of
 
 def test_a_counter_that_comes_back_every_five_rows_is_judged_without_a_traceback():
     assert "saturation" not in angles(np.arange(400.0) % 5)
+
+
+def test_a_reading_that_drops_out_is_told_with_its_rows():
+    swing = 1.0 + 0.2 * np.sin(0.01 * np.arange(400))
+    swing[100:107] = 0.0
+    told = angles(swing)["dropout"]
+    assert told.startswith("angle: 1 times a jump away")
+    assert "at 1.000 s, for 7 rows" in told
+
+
+def test_a_clock_that_may_be_in_another_unit_is_told():
+    time = 20.0 * np.arange(400)
+    recording = vt.Recording(time, {"angle": np.sin(time)[:, None]}, RecordingInfo("measured"))
+    assert "rows are 20 s apart" in found(recording)["rate"]

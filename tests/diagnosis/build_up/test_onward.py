@@ -15,7 +15,6 @@ from ves_twin.diagnosis.build_up import in_full as in_full_module
 from ves_twin.diagnosis.build_up import judges as judges_module
 from ves_twin.diagnosis.build_up import trials as trials_module
 from ves_twin.diagnosis.build_up.best_proved import best_proved
-from ves_twin.diagnosis.build_up.build_up import _counted
 from ves_twin.diagnosis.build_up.builder import Builder
 from ves_twin.diagnosis.build_up.in_full import _likeliest, in_full
 from ves_twin.diagnosis.build_up.offer import least_left
@@ -233,7 +232,27 @@ def test_a_rejected_cause_makes_room_for_the_one_that_it_stood_for(forward, monk
     assert begun.rejected == {"actuator_asymmetry@valve"}
     found = builder.best()
     assert causes(found) == {"actuator_gain", "actuator_deadband", "actuator_delay"}
-    assert _counted(found).tested == 4
+    assert found.proof.tested == 4
+
+
+def test_an_offer_that_the_count_of_all_leaves_nothing_gives_way_to_the_next(forward, monkeypatch):
+    """A link of twice its mass beside a delay: by the count of all only the delay stayed."""
+    choose(monkeypatch, *2 * (lambda *_: ("gain", "deadband"),))
+    builder = builder_of(forward)
+    found = builder.best()
+    counted = builder._counted(found, found.known | {"one more"})
+    assert counted.proof.tested == found.proof.tested + 1
+    other = replace(found, known=counted.known, held_out=1.05 * found.held_out)
+
+    def less(self, offer, known):
+        if offer is other:
+            return offer
+        nothing = replace(offer.proof, proved=())
+        return replace(offer, proof=nothing, held_out=offer.halves.held.target, known=known)
+
+    monkeypatch.setattr(Builder, "_counted", less)
+    monkeypatch.setattr(Builder, "few", lambda *_: [other])
+    assert builder.best() is other
 
 
 def test_many_causes_never_end_worse_than_the_best_pair(forward, monkeypatch):

@@ -158,3 +158,10 @@ def test_a_model_with_too_much_friction_of_its_own_is_no_wrong_unit(tmp_path):
     found = implausible(machine, scaled(recording, u=-1.0))
     assert found is not None
     assert "other sign" in found.came
+
+
+def test_efforts_by_a_factor_that_no_unit_has_are_told_with_it(machine):
+    found = implausible(machine, scaled(recorded(machine), **{"drive.force": 400.0}))
+    assert found is not None
+    assert "drive.force times 0.00" in found.came
+    assert "gears of the model" in found.expected

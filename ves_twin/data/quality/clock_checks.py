@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from ves_twin.core.recording.recording import Recording
+from ves_twin.data.clock.usual_period import is_usual
 from ves_twin.data.quality.check import Check, failed, passed, unknown
 
 JITTER = 0.05
@@ -40,6 +41,8 @@ def _rate(recording: Recording, steps: np.ndarray, period: float) -> Check:
         return failed(
             "rate", f"rows come at {said}, the recording declares {1.0 / declared:.2f} Hz"
         )
+    if not is_usual(period):
+        return failed("rate", f"rows are {period:.3g} s apart: is that the unit of their clock?")
     if jitter > JITTER:
         return failed("rate", f"rows come at {said} with {jitter:.0%} jitter, expected under 5 %")
     return passed("rate", f"{said}, jitter {jitter:.1%}")

@@ -1,4 +1,4 @@
-"""check_values: missing numbers, stuck and saturated columns of a recording."""
+"""check_values: missing numbers, stuck, saturated and dropped-out columns of a recording."""
 
 from __future__ import annotations
 
@@ -9,6 +9,7 @@ from ves_twin.core.recording.recording import Recording
 from ves_twin.core.signals import SIGNALS, Role
 from ves_twin.core.types import FloatArray
 from ves_twin.data.quality.check import Check, failed, passed, unknown
+from ves_twin.data.quality.dropouts import dropouts
 
 PILE = 0.02
 """Share of rows at the very largest or smallest value that counts as saturation."""
@@ -19,19 +20,22 @@ COMMANDS = {"leg.length": "leg.command", "arm.q": "arm.command"}
 RUN = 5
 """Rows in a row at an end value that count as saturation."""
 
+OF_READINGS = ("saturation", "dropout")
+"""Checks that a command does not have: it stays at its ends, and jumps, as it likes."""
+
 SWITCHED = 3
 """Values that a switched command has at most."""
 
 
 def check_values(recording: Recording) -> list[Check]:
-    """Numbers that are missing, stuck or saturated, for each measured signal."""
+    """Numbers that are missing, stuck, saturated or dropped out, for each measured signal."""
     commands = {own.name for own in recording.info.own_signals if own.role is Role.COMMAND}
     measured = [n for n in recording.signals if _is_measured(n)]
     return [
         check
         for name in measured
         for check in _signal(recording, name)
-        if check.name != "saturation" or name not in commands
+        if check.name not in OF_READINGS or name not in commands
     ]
 
 
@@ -72,6 +76,19 @@ def _signal(recording: Recording, name: str) -> list[Check]:
         checks.append(failed("saturation", text, *full))
     else:
         checks.append(passed("saturation", f"{name}: no column stays at an end value", name))
+    lost = {label: dropouts(values[:, i]) for i, label in enumerate(labels)}
+    gone = {label: found for label, found in lost.items() if found}
+    if gone:
+        label, found = next(iter(gone.items()))
+        at, rows = found[0].start, found[0].stop - found[0].start
+        text = (
+            f"{', '.join(gone)}: {sum(map(len, gone.values()))} times a jump away, a stand and a"
+            f" jump back, as of a reading that drops out; {label} first at"
+            f" {recording.time[at]:.3f} s, for {rows} rows"
+        )
+        checks.append(failed("dropout", text, *gone))
+    else:
+        checks.append(passed("dropout", f"{name}: no column jumps away and back", name))
     return checks
 
 

@@ -16,7 +16,6 @@ from ves_twin.diagnosis.build_up.halves import Halves, carried_point
 from ves_twin.diagnosis.build_up.idle import idle, missed
 from ves_twin.diagnosis.build_up.in_full import in_full
 from ves_twin.diagnosis.build_up.nearest import nearest
-from ves_twin.diagnosis.build_up.offer import Offer
 from ves_twin.diagnosis.build_up.proof import Proof
 from ves_twin.diagnosis.build_up.regression import Regression
 from ves_twin.diagnosis.build_up.report import report_of
@@ -24,7 +23,6 @@ from ves_twin.diagnosis.build_up.result import UNFINISHED, BuildUp
 from ves_twin.diagnosis.build_up.select import Selector
 from ves_twin.diagnosis.build_up.simpler import simpler
 from ves_twin.diagnosis.build_up.sizes import half_widths
-from ves_twin.diagnosis.build_up.weighed import weighed
 from ves_twin.diagnosis.build_up.within_range import within_range
 from ves_twin.diagnosis.fit.explanation import Explanation
 from ves_twin.diagnosis.fit.fit_context import FitContext
@@ -80,7 +78,7 @@ def build_up(
     found = builder.best(begin)
     halves, point, budget = found.halves, found.point, builder.fitted.runs.budget
     budget.stage(1.0)
-    proof = _counted(found)
+    proof = found.proof
     if not proof.tested:
         return None
     desk.progress(0.0, "fitting what is proved, and its intervals")
@@ -145,16 +143,6 @@ def _near(builder: Builder, halves: Halves, proof: Proof) -> Fit | None:
     few = replace(proof, proved=trials, judges=proof.judges.fitted(trials))
     left, fit = _at_work(halves, few, origin, evidence, builder.held)
     return fit if left.proved else None
-
-
-def _counted(offer: Offer) -> Proof:
-    """The proof of an offer by the count of all causes that were put to proof."""
-    proof, trials = offer.proof, offer.halves.regression.trials
-    chosen = [*proof.proved, *proof.dropped]
-    more = len(offer.known - {trials[n].cause.label for n in chosen})
-    if len(chosen) + more == proof.tested:
-        return proof
-    return weighed(offer.halves.regression, offer.halves.held, chosen, more)
 
 
 def _on(whitening: Whitening, runs: Runs) -> Whitening:

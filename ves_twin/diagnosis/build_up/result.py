@@ -58,6 +58,7 @@ class Proved:
             own mean: what makes a simulation out of step smaller improves it.
         bent: whether it is one of STRAIGHT, and one of SUBLINEAR of negative size is proved at its
             place: with it, its size is that of a line through a curve.
+        drives: whether the friction of its place would push the joint on with it.
     """
 
     effect: str
@@ -73,6 +74,7 @@ class Proved:
     below_row: bool = False
     unfollowed: tuple[str, ...] = ()
     bent: bool = False
+    drives: bool = False
 
     @property
     def label(self) -> str:

@@ -113,7 +113,9 @@ def _best(
     falls, sizes = [], []
     for n in range(0, len(pairs), 2):
         own = gram[n : n + 2, n : n + 2]
-        sizes.append(np.linalg.solve(own + RIDGE * np.trace(own) * np.eye(2), slope[n : n + 2]))
+        ridged = own + RIDGE * np.trace(own) * np.eye(2)
+        # a tone that changes nothing has no size
+        sizes.append(np.linalg.lstsq(ridged, slope[n : n + 2], rcond=None)[0])
         falls.append(float(slope[n : n + 2] @ sizes[-1]))
     best = int(np.argmax(falls))
     w, phase = float(tried[best]), float(np.arctan2(sizes[best][1], sizes[best][0]))

@@ -27,6 +27,7 @@ from ves_twin.diagnosis.record.preprocess import Dataset
 from ves_twin.diagnosis.record.residual_structure import ResidualStructure, describe
 from ves_twin.diagnosis.settings import Settings
 from ves_twin.diagnosis.unseen.gain import Gain
+from ves_twin.diagnosis.verdict.driving import driving
 from ves_twin.diagnosis.verdict.report_traces import ReportTraces, exhibit_of
 from ves_twin.diagnosis.verdict.verdict import (
     Basis,
@@ -109,7 +110,7 @@ def assemble_verdict(
     components = {p.name for p in parameters if p.component}
     row = _row(findings.seen)
     proved = sized(built, causes, ends, row, components) if built and named else ()
-    proved = shaken(proved, findings.law)
+    proved = driving(shaken(proved, findings.law), {p.name: p.nominal for p in parameters})
     firm = {one.label: one.firm for one in proved}
     causes = tuple(replace(c, firm=firm.get(f"{c.effect}@{c.target}", c.firm)) for c in causes)
     worse = findings.gain is not None and bool(findings.gain.worse)

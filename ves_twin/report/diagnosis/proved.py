@@ -90,6 +90,11 @@ def standing_words(one: Proved) -> str:
         )
     if one.below_row:
         return "less than a row of the log: its clock explains that as well"
+    if one.drives:
+        return (
+            "acts like it, and is no friction: its joint would be pushed on by it. An effort that"
+            " is read late or early (`sensor_delay` of efforts), an offset or a wrong gain reads so"
+        )
     if one.sublinear:
         return "acts like it: friction that grows less than in proportion to speed reads so"
     if one.bent:

@@ -35,8 +35,18 @@ def tuned_words(verdict: Verdict) -> str:
         f" from the model's {quantity(one.nominal, one.unit)}"
         for pull, name, one in (_far(verdict, SHOWN_FROM) if verdict.causes else [])
     ]
+    told += [
+        f"{spoken(label)} {interval_words(one)} beside the law"
+        for name, one in verdict.tuned.items()
+        if (label := name.rpartition(":")[0]) in _named(verdict)
+    ]
     more = f"; and {len(told) - TOLD} more (verdict.json)" if len(told) > TOLD else ""
     return "; ".join(told[:TOLD]) + more
+
+
+def _named(verdict: Verdict) -> set[str]:
+    """Labels of named causes, whose sizes are fitted anew beside a law."""
+    return {f"{cause.effect}@{cause.target}" for cause in verdict.causes}
 
 
 def check_sentence(verdict: Verdict) -> str:
@@ -57,6 +67,7 @@ def _far(verdict: Verdict, sd: float) -> list[tuple[float, str, Estimate]]:
         (abs(one.pull), name, one)
         for name, one in verdict.tuned.items()
         if one.pull is not None and abs(one.pull) > sd
+        if name.rpartition(":")[0] not in _named(verdict)
         if not (one.at_limit or one.low <= one.nominal <= one.high)
     ]
     return sorted(far, key=lambda item: -item[0])

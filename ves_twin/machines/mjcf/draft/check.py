@@ -3,22 +3,25 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import mujoco
 import numpy as np
 
 from ves_twin.core.types import FloatArray
-from ves_twin.machines.mjcf.draft.changes import DEGREE, changes, misnamed
+from ves_twin.data.clock.usual_period import is_usual
+from ves_twin.machines.mjcf.draft.angles import counted, other_angle
+from ves_twin.machines.mjcf.draft.changes import changes
 from ves_twin.machines.mjcf.draft.effort_fit import FAR, LOADED, STRONG, TELLS, EffortFit
 from ves_twin.machines.mjcf.draft.late import Pushed, words_of_lag
 from ves_twin.machines.mjcf.draft.locked import locked_joints, words_of_locked
-from ves_twin.machines.mjcf.draft.log_columns import LogColumns, is_usual
+from ves_twin.machines.mjcf.draft.log_columns import LogColumns
+from ves_twin.machines.mjcf.draft.lost import words_of_dropouts
 from ves_twin.machines.mjcf.draft.match import Match, Matches
 from ves_twin.machines.mjcf.draft.milli import in_milli
 from ves_twin.machines.mjcf.draft.motion import Motion, band_of, motion_of
 from ves_twin.machines.mjcf.draft.rates import differs, rated
-from ves_twin.machines.mjcf.draft.scaled import words_of_scale
+from ves_twin.machines.mjcf.draft.scaled import scales_of, words_of_scale
 from ves_twin.machines.mjcf.draft.servos import followed
 from ves_twin.machines.mjcf.draft.spots import Quantity
 from ves_twin.machines.mjcf.draft.stops import beyond, in_degrees_by_stops
@@ -44,14 +47,15 @@ MAJORITY = 0.5
 """Share of the joints that a change is about beyond which the model must be right there: of one or
 two that is all of them."""
 
+ALIKE = 0.05
+"""Difference of scores within which another change would do as well, and is told: of an arm with a
+tip mass that its model lacks an angle from the world, degrees and a quarter turn came to that."""
+
 TURN = 0.02
 """Weight against turning an effort's sign, so that where all else is equal none is turned."""
 
 ODD = 50.0
 """Times what the model needs from which on an effort is in another unit, whatever friction does."""
-
-COUNTS = 16.0 * np.pi
-"""Whole numbers as large as that are no radians: eight turns."""
 
 LITTLE = " Where the model needs next to nothing (a balanced wrist), friction does that, too"
 """What is said of an effort that is large and not like that of the model."""
@@ -69,6 +73,7 @@ class Checked:
         corner: of the low-pass that was used [Hz].
         dofs: joint -> its degree of freedom.
         locked: joints that are taken as standing still.
+        times: joint -> times what the model needs there that the log has, where it tells it.
     """
 
     found: tuple[Match, ...]
@@ -78,6 +83,7 @@ class Checked:
     corner: float
     dofs: Mapping[str, int]
     locked: tuple[str, ...] = ()
+    times: Mapping[str, float] = field(default_factory=dict)
 
 
 def checked(log: LogColumns, matches: Matches, model: mujoco.MjModel) -> Checked:
@@ -99,7 +105,7 @@ def checked(log: LogColumns, matches: Matches, model: mujoco.MjModel) -> Checked
     found, findings = followed(log, list(matches.found), model)
     found, said = in_degrees_by_stops(log, found, model)
     findings += said
-    motion, explained = None, {}
+    motion, explained, scales = None, {}, dict[Match, float]()
     findings += words_of_locked(locked)
     before = len(findings)
     if absent or not (positions or cyclic):
@@ -114,14 +120,33 @@ def checked(log: LogColumns, matches: Matches, model: mujoco.MjModel) -> Checked
         findings += said
         found, said = judge.efforts(found, motion)
         findings += said
-        findings += words_of_scale({m: judge.fit(m, motion) for m in judge.driving(found)})
+        scales = scales_of({m: judge.fit(m, motion) for m in judge.driving(found)})
+        findings += words_of_scale(scales)
         findings += judge.late(found, motion)
         findings += judge.rough(found, motion)
         explained = judge.explained(found, motion)
-    findings[before:before] = [*_counted(log, found), *beyond(log, found, model)]
+    lost = words_of_dropouts(log, found)
+    findings[before:before] = [*lost, *counted(log, found), *beyond(log, found, model)]
     found, said = rated(log, found, corner, model)
     dofs = {name: int(model.joint(name).dofadr[0]) for name in every if name}
-    return Checked(tuple(found), (*findings, *said), explained, motion, corner, dofs, locked)
+    times = {match.spot.joint: scale for match, scale in scales.items()}
+    return Checked(tuple(found), (*findings, *said), explained, motion, corner, dofs, locked, times)
+
+
+def _is_turned(new: list[Match], found: list[Match]) -> bool:
+    """Whether a column counts the other way in a change."""
+    return any(a.scale == -b.scale for a, b in zip(new, found, strict=True))
+
+
+def _is_flipped(new: list[Match], found: list[Match]) -> bool:
+    """Whether an angle is half a turn off in a change: of small ones a sign says the same."""
+    return any(abs(a.zero - b.zero) == np.pi for a, b in zip(new, found, strict=True))
+
+
+def _against(new: list[Match], found: list[Match]) -> float:
+    """Weight against a change of a unit that the column's name tells, beside other changes."""
+    pairs = zip(new, found, strict=True)
+    return GAINED * any(a.unit != b.unit for a, b in pairs if b.told and a.column == b.column)
 
 
 def _cyclic(matches: Matches, model: mujoco.MjModel) -> tuple[str, ...]:
@@ -161,14 +186,20 @@ class _Judge:
             driven = {m.spot.joint for m in self.driving(found)}
             ways = changes(found, driven, self.model, self.reach(found))
             tried = [(self.score(new), new, words) for new, words in ways]
-            better = sorted(
-                (one for one in tried if one[0] >= best + GAINED), key=lambda one: -one[0]
-            )
-            chosen = next((one for one in better if self.sound(one[1], found)), None)
-            if chosen is None:
+            better = [one for one in tried if one[0] >= best + GAINED]
+            turned = any(_is_turned(new, found) for _, new, _ in better)
+            ranked = [
+                (one[0] - _against(one[1], found) - (turned and _is_flipped(one[1], found)), one)
+                for one in better
+            ]
+            ranked.sort(key=lambda one: -one[0])
+            sound = (one for one in ranked if self.sound(one[1][1], found))
+            first = next(sound, None)
+            if first is None:
                 break
-            best, found = chosen[:2]
-            said.append(chosen[2])
+            alike = [one[2] for rank, one in sound if rank > first[0] - ALIKE]
+            best, found, words = first[1]
+            said.append(f"{words}; or else: {'; or '.join(alike)}" if alike else words)
         return found, said
 
     def reach(self, found: list[Match]) -> dict[str, float]:
@@ -201,9 +232,10 @@ class _Judge:
                 total -= OFF * min(abs(float(np.log10(abs(fit.slope)))), 3.0)
         still = {int(self.model.joint(name).dofadr[0]) for name in self.locked}
         for dof in set(range(self.model.nv)) - driven - self.pushed(found) - still:
-            inertia = motion.effort[:, dof] - motion.steady[:, dof]
-            if np.std(inertia) > 0.0 and np.std(motion.steady[:, dof]) > 0.0:
-                alike = float(np.corrcoef(-inertia, motion.steady[:, dof])[0, 1])
+            steady = motion.steady[:, dof]
+            inertia, weight = motion.effort[:, dof] - steady, float(np.std(steady))
+            if weight > 0.0 and 1.0 / ODD < float(np.std(inertia)) / weight < ODD:
+                alike = float(np.corrcoef(-inertia, steady)[0, 1])
                 total += max(alike, 0.0) ** 2
         return total
 
@@ -306,7 +338,7 @@ class _Judge:
                     f"{match.column} is electrical: {abs(scale):.3g} {unit} makes it fit this"
                     f" model{turned}; put the motor's constant there"
                 )
-                said += _other_angle(self.log, found, match.spot.joint, scale, unit)
+                said += other_angle(self.log, found, match.spot.joint, scale, unit)
                 continue
             if match.fitted:
                 told = f"{match.column} is electrical: {match.constant}"
@@ -344,32 +376,3 @@ class _Judge:
             power = float(np.sum((y - y.mean()) ** 2)) or 1.0
             shares[match.column] = max(1.0 - float(np.sum((rest - rest.mean()) ** 2)) / power, 0.0)
         return shares
-
-
-def _other_angle(
-    log: LogColumns, found: list[Match], joint: str, scale: float, unit: str
-) -> Iterator[str]:
-    """An angle that may be in the other unit, where a constant that is fitted hides the factor."""
-    for match in found:
-        mine = match.spot.quantity is Quantity.POSITION and match.spot.name == joint
-        if not (mine and match.told and match.unit in ("deg", "rad")):
-            continue
-        most, degrees = float(np.max(np.abs(log.column(match.column)))), match.unit == "deg"
-        if misnamed(match, most):
-            other, factor = ("radians", 1.0 / DEGREE) if degrees else ("degrees", DEGREE)
-            yield (
-                f"{match.column} reaches {most:.3g} {match.unit} at most: if these are {other}, the"
-                f" constant is {abs(scale) * factor:.3g} {unit}"
-            )
-
-
-def _counted(log: LogColumns, found: list[Match]) -> Iterator[str]:
-    """Angles of whole numbers alone, which reach many turns: what an encoder counts."""
-    for match in found:
-        if match.spot.quantity is Quantity.POSITION and match.spot.unit == "rad" and not match.told:
-            values = log.as_logged(match.column)
-            if np.ptp(values) > COUNTS and np.all(values == np.round(values)):
-                yield (
-                    f"{match.column} has whole numbers alone, {np.min(values):g} to"
-                    f" {np.max(values):g}: counts of an encoder? scale = 2 pi / counts of a turn"
-                )

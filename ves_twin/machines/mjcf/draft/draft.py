@@ -16,6 +16,7 @@ from ves_twin.core.quantity import quantity
 from ves_twin.core.recording.recording import Recording
 from ves_twin.core.types import BoolArray, FloatArray
 from ves_twin.diagnosis.model.forward import Excitation
+from ves_twin.diagnosis.record.preprocess import check_lengths
 from ves_twin.machines.mjcf.draft.by_number import by_number
 from ves_twin.machines.mjcf.draft.check import Checked, checked
 from ves_twin.machines.mjcf.draft.chosen import Chosen, chosen
@@ -152,7 +153,8 @@ def draft(model: Path, logs: Sequence[Path], out: Path, rate: float | None = Non
     if now.mode.mode is Mode.CONTROL and simulated and now.explained[now.least] < HALF:
         turned = other_way(now.rig, _first_part(now.rig, logs[0]))
     coarse = [] if turned else now.coarse
-    look = (*given.notes, *log.notes, *check.findings, *silent, *turned, *coarse)
+    short = _short(now.rig, part)
+    look = (*given.notes, *log.notes, *check.findings, *silent, *turned, *coarse, *short)
     words, stretch = f"{now.mode.mode}: {now.mode.why}", _stretch(now.mode, log)
     guesses = _guesses(check, now.mode)
     told = {name: max(share, 0.0) for name, share in now.explained.items()}
@@ -204,8 +206,18 @@ def _percent(version: _Version) -> str:
 def _stretch(mode: Chosen, log: LogColumns) -> float:
     """Length of stretches to hold out [s]; a last one of half a length is one, too."""
     length = max(STRETCH, float(np.ceil(ROWS / mode.rate)))
-    rows = len(next(iter(log.values.values())))
-    return length if log.period * rows > 1.5 * length else 0.0
+    return length if log.period * (log.rows - 1) > 1.5 * length else 0.0
+
+
+def _short(rig: Rig, part: Recording) -> list[str]:
+    """That a log is too short for a diagnosis, if it is."""
+    if len(part.time) < FEWEST:  # a clock in another unit, which is told
+        return []
+    try:
+        check_lengths(MjcfForward.of(rig), [part], rig.description.rate)
+    except InvalidInputError as short:
+        return [f"too short for a diagnosis: {short}"]
+    return []
 
 
 def _rig(text: str, given: GivenModel, out: Path) -> Rig:

@@ -21,6 +21,7 @@ from ves_twin.machines.mjcf.motion.inverse import smoothed
 from ves_twin.machines.mjcf.parts.servo import FILTERS, is_servo
 from ves_twin.machines.mjcf.rig.column import LAB_UNITS
 from ves_twin.machines.mjcf.rig.description import Mode
+from ves_twin.machines.mjcf.rig.places import carries
 
 SHARES = {
     "mass": ("5 %", "body_mass"),
@@ -40,6 +41,9 @@ friction of a balanced table (a test) made 0.03 rad/s of 0.3. The fit finds the 
 
 NOBODY_TELLS = "20 %"
 """Share to which loops inside a servo are known: no datasheet has them. Assumed."""
+
+HEAVY = 1.4
+"""Times what the model needs from which on a body's usual range, half of its mass, may be short."""
 
 FITTED = "20 %"
 """Share to which a constant is known that was fitted beside friction: put the datasheet's there."""
@@ -72,7 +76,7 @@ def draft_text(
         *([f"window = {_window(log)}"] if log.window else []),
         _drive(mode, check.locked),
         f"tolerances = {_tolerances(model, check)}   # shares of the model's values: yours?",
-        'effects = [{ kind = "*", on = ["*"] }]   # every one that the model has a place for',
+        _effects(check, model),
         "",
         "[signals]",
     ]
@@ -90,6 +94,22 @@ def draft_text(
     starts = list(_starts(log, check, mode)) if mode.mode is Mode.CONTROL else []
     lines += ["", "[start]", *starts] if starts else []
     return "\n".join(lines) + "\n"
+
+
+def _effects(check: Checked, model: mujoco.MjModel) -> str:
+    """Every kind; a body's mass in a wider range where its joint asks for more than that."""
+    heavy = {}
+    for joint, times in check.times.items():
+        body = int(model.joint(joint).bodyid[0])
+        if times > HEAVY and not carries(model, body):
+            heavy[model.body(body).name] = 2.0 * (times - 1.0) * float(model.body_mass[body])
+    own = [
+        f'{{ kind = "body_mass", on = [{_quoted(body)}], largest = "{two_digits(most):g} kg" }}, '
+        for body, most in heavy.items()
+    ]
+    why = "every one that the model has a place for"
+    why += f"; {', '.join(heavy)}: by what the log has beside friction" * bool(heavy)
+    return f'effects = [{"".join(own)}{{ kind = "*", on = ["*"] }}]   # {why}'
 
 
 def signal_name(match: Match) -> str:

@@ -65,8 +65,13 @@ class EffortFit:
 
     @property
     def usable(self) -> bool:
-        """Whether the slope says something: the model explains a part, and by a likely factor."""
-        return self.gain > TELLS and (self.free or 1.0 / FAR < abs(self.slope) < FAR)
+        """Whether the slope says something: the model explains a part, and by a likely factor.
+
+        Or most of it by itself, whatever the slope: an arm's wrist may carry three times its own
+        mass.
+        """
+        likely = 1.0 / FAR < abs(self.slope) < FAR or self.alone > MOST
+        return self.gain > TELLS and (self.free or likely)
 
     @property
     def by_slope(self) -> bool:

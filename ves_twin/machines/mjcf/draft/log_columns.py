@@ -13,7 +13,8 @@ from ves_twin.core.types import BoolArray, FloatArray
 from ves_twin.data.clock.clock_fields import clock_fields
 from ves_twin.data.clock.clock_report import GAP, UNEVEN, usual_step
 from ves_twin.data.clock.unwrapped import unwrapped
-from ves_twin.data.empty_cells import filled, lone
+from ves_twin.data.clock.usual_period import is_usual
+from ves_twin.data.empty_cells import FEW, filled, lone
 from ves_twin.data.formats.log import Column, Kind
 from ves_twin.data.formats.open_log import open_log
 from ves_twin.data.mapping.column_expression import ColumnExpression
@@ -37,9 +38,6 @@ of a wrist with 2 to 4 made 896 and 2470 N m per A, where other motors of it hav
 LEVELS, DITHERS = 5, 0.1
 """Levels, and share of rows that change, from which few steps are a resolution: a switched command
 has two or three, and volts in steps hold theirs."""
-
-USUAL = (1e-5, 0.5)
-"""Time between rows of a machine's log [s], beyond which its clock may be in another unit."""
 
 
 @dataclass(frozen=True)
@@ -135,11 +133,6 @@ class LogColumns:
         return _sorted(named, read, full.get(clock, ""), scale, period, path, notes)
 
 
-def is_usual(period: float) -> bool:
-    """Whether rows of a laboratory's log are that far apart [s]."""
-    return USUAL[0] <= period <= USUAL[1]
-
-
 def _period(time: FloatArray, clock: str, notes: list[str]) -> float:
     period = usual_step(time[np.isfinite(time)])
     if not is_usual(period):
@@ -180,14 +173,18 @@ def _sorted(
     full = {n: np.isfinite(v) for n, v in read.items() if n != clock}
     empty = [n for n, finite in full.items() if np.mean(finite) < FILLED]
     kept = {n: finite | lone(~finite) for n, finite in full.items() if n not in empty}
-    stretch, window = _longest(np.all([*kept.values()] or [good], axis=0)), None
+    broken = np.concatenate([[False], np.diff(time) > (FEW + GAP) * period])
+    stretch, window = _longest(np.all([*kept.values()] or [good], axis=0), broken), None
     count = np.count_nonzero(~np.all([full[n][stretch] for n in kept] or [good[stretch]], axis=0))
     if count:
         notes.append(f"{count} rows lack a number: it is taken straight between its neighbours")
     if stretch != slice(0, rows):
         ends = time[known & (np.arange(rows) >= stretch.start) & (np.arange(rows) < stretch.stop)]
         window = (float(ends[0] - time[known][0]), float(ends[-1] - time[known][0]))
-        notes.append(f"longer empty stretches: window {window[0]:g} to {window[1]:g} s is used")
+        notes.append(
+            f"longer stretches without rows or numbers: window {window[0]:g} to {window[1]:g} s,"
+            " the longest without any, is used"
+        )
     own = time[stretch][good[stretch]]
     even = own[0] + period * np.arange(int((own[-1] - own[0]) / period + 1.0 + 1e-6))
     used = {n: filled(read[n][stretch], ~full[n][stretch], held=False)[good[stretch]] for n in kept}
@@ -213,10 +210,12 @@ def _without_wraps(name: str, values: FloatArray, unit: str, notes: list[str]) -
     return values
 
 
-def _longest(good: BoolArray) -> slice:
-    """The longest stretch of good rows."""
-    edges = np.flatnonzero(np.diff(np.concatenate([[0], good.astype(int), [0]])))
-    if not len(edges):
+def _longest(good: BoolArray, broken: BoolArray) -> slice:
+    """The longest stretch of good rows; none goes across a row that is broken from the last one."""
+    before = np.concatenate([[False], good[:-1]]) & ~broken
+    starts = np.flatnonzero(good & ~before)
+    if not len(starts):
         return slice(0, 0)
-    at = int(np.argmax(edges[1::2] - edges[::2]))
-    return slice(int(edges[2 * at]), int(edges[2 * at + 1]))
+    counts = np.bincount(np.cumsum(good & ~before)[good] - 1)
+    at = int(np.argmax(counts))
+    return slice(int(starts[at]), int(starts[at] + counts[at]))

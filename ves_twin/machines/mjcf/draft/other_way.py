@@ -38,7 +38,7 @@ def other_way(rig: Rig, recording: Recording) -> list[str]:
     """A question about the column that, turned or scaled, lets the model explain most more.
 
     Of a motion that is integrated signs and units are not told by efforts: the model is simulated
-    with each joint's readings, and with each command, otherwise.
+    with each joint's readings, measured or imposed, and with each command, otherwise.
 
     Args:
         rig: a drafted machine whose commands are fed in.
@@ -52,6 +52,8 @@ def other_way(rig: Rig, recording: Recording) -> list[str]:
     for name, compared in told.compare.items():
         if compared.joint and compared.of in ("position", "speed"):
             joints.setdefault(compared.joint, []).append(name)
+    for joint, signal in MjcfForward.of(rig).imposed.items():
+        joints.setdefault(joint, []).append(signal)
     commands = [[name] for name in told.drive.actuators.values()]
     if not 0 < len(joints) + len(commands) <= MOST:
         return []

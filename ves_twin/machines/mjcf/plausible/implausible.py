@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import chain
 
 import numpy as np
 
@@ -85,7 +86,8 @@ def implausible(rig: Rig, recording: Recording) -> Implausible | None:
     if np.all(plain <= LOUD):
         return None
     found, ways = [], seen.readings
-    for reading in ways.every() if np.any(plain > BAD) else ways.from_the_world():
+    every = chain(ways.every(), seen.in_another_unit())
+    for reading in every if np.any(plain > BAD) else ways.from_the_world():
         left = seen.left(reading)
         changed = (plain > BAD) & (left < np.minimum(FEWER * plain, GOOD))
         changed |= bool(reading.less) & (plain > LOUD) & (left < MUCH * plain)

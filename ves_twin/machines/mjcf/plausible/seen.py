@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -29,6 +29,9 @@ ROWS = 10_000
 FEWEST = 20
 """Rows below which nothing is said."""
 
+
+STRANGE = 20.0
+"""Times what the model needs, from which an effort is in another unit: a load is a few times."""
 
 QUIET = 1e-3
 """Speed, as a share of the fastest, over which a sign is smoothed."""
@@ -107,6 +110,28 @@ class Seen:
         work.model.dof_damping[:] = 0.0
         work.model.dof_frictionloss[:] = 0.0
         return work
+
+    def in_another_unit(self) -> Iterator[Reading]:
+        """Efforts by a factor that no usual unit has: counts, a gear that the model lacks."""
+        path = self._path({**self.wheels, **self.positions}, ROWS)
+        needs = self._needs(Reading("", "", {}, {}), list(self.efforts), path)
+        times = {a: self._times(a, self.efforts[a], needs[a], path[1]) for a in self.efforts}
+        odd = {a: s for a, s in times.items() if s > STRANGE or 0.0 < s < 1.0 / STRANGE}
+        if odd:
+            names = dict(zip(self.efforts, self.names, strict=True))
+            told = ", ".join(names[a] for a in odd)
+            by = " and ".join(f"{1.0 / s:.3g}" for s in odd.values())
+            key = f"unit and scale of {told}, and gears of the model"
+            yield Reading(f"{told} times {by}", key, {}, {a: 1.0 / s for a, s in odd.items()})
+
+    def _times(
+        self, actuator: str, effort: FloatArray, need: FloatArray, speed: FloatArray
+    ) -> float:
+        """Times what the model needs that an effort is, beside friction."""
+        own = speed[:, int(self.rig.model.joint(driven_joint(self.rig.model, actuator)).dofadr[0])]
+        quiet = QUIET * max(float(np.max(np.abs(own))), 1e-30)
+        basis = np.stack([need, own, np.tanh(own / quiet), np.ones_like(own)], axis=1)
+        return float(np.linalg.lstsq(basis, effort[self._few(ROWS)], rcond=None)[0][0])
 
     def left(self, reading: Reading, rows: int = ROWS) -> FloatArray:
         """Share of the spread of each effort that inverse dynamics and friction leave (c,).

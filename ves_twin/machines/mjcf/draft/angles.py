@@ -1,0 +1,44 @@
+"""counted, other_angle: angles that are counts of an encoder, or hide their unit in a constant."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from ves_twin.machines.mjcf.draft.changes import DEGREE, misnamed
+from ves_twin.machines.mjcf.draft.log_columns import LogColumns
+from ves_twin.machines.mjcf.draft.match import Match
+from ves_twin.machines.mjcf.draft.spots import Quantity
+
+COUNTS = 16.0 * np.pi
+"""Whole numbers as large as that are no radians: eight turns."""
+
+
+def other_angle(
+    log: LogColumns, found: list[Match], joint: str, scale: float, unit: str
+) -> Iterator[str]:
+    """An angle that may be in the other unit, where a constant that is fitted hides the factor."""
+    for match in found:
+        mine = match.spot.quantity is Quantity.POSITION and match.spot.name == joint
+        if not (mine and match.told and match.unit in ("deg", "rad")):
+            continue
+        most, degrees = float(np.max(np.abs(log.column(match.column)))), match.unit == "deg"
+        if misnamed(match, most):
+            other, factor = ("radians", 1.0 / DEGREE) if degrees else ("degrees", DEGREE)
+            yield (
+                f"{match.column} reaches {most:.3g} {match.unit} at most: if these are {other}, the"
+                f" constant is {abs(scale) * factor:.3g} {unit}"
+            )
+
+
+def counted(log: LogColumns, found: list[Match]) -> Iterator[str]:
+    """Angles of whole numbers alone, which reach many turns: what an encoder counts."""
+    for match in found:
+        if match.spot.quantity is Quantity.POSITION and match.spot.unit == "rad" and not match.told:
+            values = log.as_logged(match.column)
+            if np.ptp(values) > COUNTS and np.all(values == np.round(values)):
+                yield (
+                    f"{match.column} has whole numbers alone, {np.min(values):g} to"
+                    f" {np.max(values):g}: counts of an encoder? scale = 2 pi / counts of a turn"
+                )
