@@ -52,6 +52,7 @@ TARGETS = {
     "load_friction": ["rail"],
     "body_place": ["hook.z"],
     "gravity_direction": ["y"],
+    "clock_rate": ["clock"],
     "rotor_inertia": ["rail"],
     "backlash": ["swing"],
     "quadratic_drag": ["rail"],

@@ -54,15 +54,16 @@ def compiled(function: Function) -> Function:
         numba_config.CACHE_DIR = before
 
 
-@lru_cache(maxsize=1)
-def say_that_it_compiles(longest: Callable[..., object]) -> None:
+@lru_cache
+def say_that_it_compiles(longest: Callable[..., object], takes: str = "about a minute") -> None:
     """Say on stderr what the first run after an installation or an edit waits for.
 
     Args:
         longest: the compiled function that takes by far the longest; it stands for the others.
+        takes: how long that is.
     """
     if not _kept(longest):
-        sys.stderr.write("compiling the inner loop, once: about a minute\n")  # in one piece
+        sys.stderr.write(f"compiling the inner loop, once: {takes}\n")  # in one piece
         sys.stderr.flush()
 
 

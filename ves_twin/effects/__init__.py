@@ -18,6 +18,7 @@ from ves_twin.effects.bodies import (
     Payload,
     PayloadMass,
 )
+from ves_twin.effects.clock import ClockRate
 from ves_twin.effects.couplings import (
     CouplingCoulomb,
     CouplingInertia,
@@ -109,6 +110,7 @@ __all__ = [
     "BodyInertia",
     "BodyMass",
     "BodyPlace",
+    "ClockRate",
     "CommandLimit",
     "CoulombAsymmetry",
     "CoulombFriction",

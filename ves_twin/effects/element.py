@@ -14,3 +14,4 @@ class Element(StrEnum):
     SIGNAL = "signal"
     TENDON = "tendon"
     WORLD = "world"
+    LOG = "log"

@@ -11,6 +11,7 @@ from ves_twin.core.plugins import Registry, lacks
 from ves_twin.effects import (
     actuators,
     bodies,
+    clock,
     couplings,
     friction,
     hydraulics,
@@ -32,7 +33,7 @@ from ves_twin.effects.sensors import CrossTalk
 
 _CATALOGUE = (
     *(transducers, joints, friction, presliding, ripple, couplings, hydraulics, structure),
-    *(actuators, servos, bodies, sensors, programs, recorder),
+    *(actuators, servos, bodies, clock, sensors, programs, recorder),
 )
 
 RENAMED = {

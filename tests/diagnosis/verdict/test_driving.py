@@ -42,3 +42,9 @@ def test_a_difference_by_direction_is_no_more_than_the_friction(level, drives):
     difference, friction = driving(both, NONE)
     assert difference.drives is drives
     assert friction.firm
+
+
+def test_nothing_is_said_beside_a_friction_of_another_form():
+    other = proved("regularized_friction", "level", 0.5)
+    found = driving([proved("coulomb_asymmetry", "level", 0.2), other], NONE)
+    assert [one.drives for one in found] == [False, False]

@@ -161,7 +161,19 @@ def test_a_model_with_too_much_friction_of_its_own_is_no_wrong_unit(tmp_path):
 
 
 def test_efforts_by_a_factor_that_no_unit_has_are_told_with_it(machine):
-    found = implausible(machine, scaled(recorded(machine), **{"drive.force": 400.0}))
+    found = implausible(machine, scaled(recorded(machine), **{"hinge.torque": 400.0}))
     assert found is not None
-    assert "drive.force times 0.00" in found.came
+    assert "hinge.torque times 0.00" in found.came
     assert "gears of the model" in found.expected
+
+
+def test_an_inertia_that_the_model_lacks_is_no_other_unit(machine):
+    """A geared joint whose model has no armature: its motor's inertia is a hundred times its own."""
+    assert implausible(machine, scaled(recorded(machine), **{"drive.force": 400.0})) is None
+
+
+def test_a_usual_unit_is_told_without_the_factor(machine):
+    found = implausible(machine, scaled(recorded(machine), **{"hinge.torque": 1e3}))
+    assert found is not None
+    assert "N mm" in found.came
+    assert "times" not in found.came

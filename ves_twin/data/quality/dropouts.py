@@ -18,7 +18,10 @@ BACK = 0.5
 """Share of a jump within which the rows behind it are where those before it were."""
 
 LONGEST = 0.05
-"""Share of a record up to which a stretch is a dropout, not another state."""
+"""Share of a record up to which stretches are dropouts, not another state."""
+
+FEWEST = 3
+"""Rows above which the first and the last one need not be at that value."""
 
 LEVELS = 20
 """Values that a column has at least: what is switched jumps and stands by its nature."""
@@ -48,10 +51,19 @@ def dropouts(values: FloatArray) -> tuple[slice, ...]:
         lone = all(JUMP * step < min(abs(away), abs(returns)) for step in beside)
         same = abs(away + returns) < BACK * abs(away)
         short = leaves - there < LONGEST * len(x)
-        ends = int(leaves - there > 1)  # rows read at even steps lie between two of the log there
-        if lone and same and short and np.ptp(x[there + ends : leaves + 1 - ends]) == 0.0:
+        if lone and same and short and _stands(x[there : leaves + 1]):
             found.append(slice(begin + 1, back))
-    return tuple(found)
+    rows = sum(one.stop - one.start for one in found)
+    return tuple(found) if rows <= LONGEST * len(x) else ()
+
+
+def _stands(rows: FloatArray) -> bool:
+    """Whether a reading is at one value: twice at least, or once at zero.
+
+    The first and the last row may lie between two of the log, where it was read at even steps.
+    """
+    inner = rows[1:-1] if len(rows) > FEWEST else rows
+    return bool(np.ptp(inner) == 0.0 and (len(inner) > 1 or inner[0] == 0.0))
 
 
 def _jumps(x: FloatArray, limit: float) -> list[tuple[int, int]]:

@@ -23,6 +23,9 @@ RUN = 5
 OF_READINGS = ("saturation", "dropout")
 """Checks that a command does not have: it stays at its ends, and jumps, as it likes."""
 
+MOTION = frozenset({"m", "rad", "m/s", "rad/s"})
+"""Units of places and speeds."""
+
 SWITCHED = 3
 """Values that a switched command has at most."""
 
@@ -76,6 +79,8 @@ def _signal(recording: Recording, name: str) -> list[Check]:
         checks.append(failed("saturation", text, *full))
     else:
         checks.append(passed("saturation", f"{name}: no column stays at an end value", name))
+    if not _is_motion(recording, name):
+        return checks
     lost = {label: dropouts(values[:, i]) for i, label in enumerate(labels)}
     gone = {label: found for label, found in lost.items() if found}
     if gone:
@@ -90,6 +95,12 @@ def _signal(recording: Recording, name: str) -> list[Check]:
     else:
         checks.append(passed("dropout", f"{name}: no column jumps away and back", name))
     return checks
+
+
+def _is_motion(recording: Recording, name: str) -> bool:
+    """Whether a signal tells places or speeds, which do not jump; forces and currents may."""
+    known = {own.name: own for own in recording.info.own_signals} | dict(SIGNALS)
+    return name in known and set(known[name].units) <= MOTION
 
 
 def _asked_to_move(recording: Recording, name: str) -> NDArray[np.bool_]:

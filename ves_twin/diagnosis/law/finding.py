@@ -112,8 +112,9 @@ def _gated(gain: Gain | None, causes: Mapping[str, float]) -> str:
         return "the held-out recordings show nothing that it could improve"
     if gain.grown:
         return "the rms errors on held-out recordings grow with it"
-    over_causes = [np.log(gain.errors[name][1] / rms) for name, rms in causes.items() if rms > 0.0]
-    if over_causes and np.mean(over_causes) > NO_WORSE:
+    over_causes = {name: (rms, gain.errors[name][1]) for name, rms in causes.items() if rms > 0.0}
+    grown = [np.log(after / before) for before, after in over_causes.values()]
+    if grown and (np.mean(grown) > NO_WORSE or replace(gain, errors=over_causes).grown):
         return "the proved causes alone leave smaller rms errors on held-out recordings"
     if gain.share < GATE or gain.low is None or gain.low <= 0.0:
         return f"it takes only {100.0 * gain.share:.0f} % of the held-out excess away"

@@ -15,6 +15,19 @@ BOUNDED = {
 
 DRY_OR_VISCOUS = tuple(BOUNDED.values())
 
+OTHERS = frozenset(
+    {
+        "dahl_friction",
+        "friction_behind_gap",
+        "load_friction",
+        "one_way_load",
+        "regularized_friction",
+        "stribeck_friction",
+        "quadratic_drag",
+    }
+)
+"""Further frictions of a joint, beside which nothing is said: they may be the whole."""
+
 
 def driving(proved: Sequence[Proved], nominal: Mapping[str, float]) -> tuple[Proved, ...]:
     """With those marked, and not firm, whose joint would get energy from its friction.
@@ -35,6 +48,9 @@ def driving(proved: Sequence[Proved], nominal: Mapping[str, float]) -> tuple[Pro
 
 
 def _drives(one: Proved, proved: Sequence[Proved], nominal: Mapping[str, float]) -> bool:
+    beside = (o for o in proved if o is not one and o.target == one.target)
+    if any(o.effect in OTHERS for o in beside):
+        return False
     if one.sublinear:
         whole = [_whole(kind, size, one.target, proved, nominal) for kind, size in DRY_OR_VISCOUS]
         return all(value is not None and value <= 0.0 for value in whole)

@@ -13,6 +13,7 @@ from two_link import programme, rig
 from ves_twin.core.types import FloatArray
 from ves_twin.effects.effect import Effect
 from ves_twin.effects.element import Element
+from ves_twin.effects.law import Law, LawKind, LawShape
 from ves_twin.effects.registry import EFFECTS
 from ves_twin.effects.resistance import Form, Resistance
 from ves_twin.effects.row import Anywhere
@@ -142,6 +143,18 @@ def test_several_of_them_add_up_in_either(work):
     )
     np.testing.assert_allclose(*both, atol=1e-9)
     np.testing.assert_allclose(both[0], mixed, atol=1e-9)
+
+
+STOP = Law("rail", LawKind.EFFORT, LawShape.STOP, ("position@rail",), (), (0.02, 1, 50, 1, 0.8))
+"""A contact that bears most of what pushes against it."""
+
+
+def test_a_contact_knows_its_load_from_step_to_step(work):
+    """Stepped one by one, beside hooks in Python, as in one call."""
+    lawful = replace(work, laws=(STOP,))
+    one, other = (moved(lawful, e) for e in (built_in("quadratic_drag"), SAME["quadratic_drag"][1]))
+    np.testing.assert_allclose(one, other, atol=1e-9)
+    assert np.max(np.abs(one - moved(work, built_in("quadratic_drag")))) > 1e-2
 
 
 def test_every_kind_that_has_a_form_is_held_against_its_formula():

@@ -101,7 +101,8 @@ def _effects(check: Checked, model: mujoco.MjModel) -> str:
     heavy = {}
     for joint, times in check.times.items():
         body = int(model.joint(joint).bodyid[0])
-        if times > HEAVY and not carries(model, body):
+        known = model.body(body).name and model.body_mass[body] > 0.0
+        if times > HEAVY and known and not carries(model, body):
             heavy[model.body(body).name] = 2.0 * (times - 1.0) * float(model.body_mass[body])
     own = [
         f'{{ kind = "body_mass", on = [{_quoted(body)}], largest = "{two_digits(most):g} kg" }}, '

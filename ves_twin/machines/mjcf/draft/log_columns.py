@@ -174,6 +174,7 @@ def _sorted(
     empty = [n for n, finite in full.items() if np.mean(finite) < FILLED]
     kept = {n: finite | lone(~finite) for n, finite in full.items() if n not in empty}
     broken = np.concatenate([[False], np.diff(time) > (FEW + GAP) * period])
+    broken &= np.count_nonzero(np.diff(time) > GAP * period) <= UNEVEN * rows
     stretch, window = _longest(np.all([*kept.values()] or [good], axis=0), broken), None
     count = np.count_nonzero(~np.all([full[n][stretch] for n in kept] or [good[stretch]], axis=0))
     if count:

@@ -4,8 +4,6 @@ from __future__ import annotations
 
 import copy
 from dataclasses import dataclass, replace
-from functools import cached_property
-from typing import NamedTuple
 
 import mujoco
 import numpy as np
@@ -23,28 +21,6 @@ what is asked, which the next step, set anew to the recorded place and speed, do
 
 STAGED = mujoco.mjtIntegrator.mjINT_RK4
 """Integrator with several looks at a step, of which the last one is left behind in the data."""
-
-
-class Pushed(NamedTuple):
-    """Imposed motion as compiled loops take it.
-
-    Attributes:
-        places, dofs: addresses of the imposed coordinates in qpos and qvel.
-        position, speed: of them at each step (steps, k).
-        pull, begun: efforts [N, N m] that accelerate their inertia, held from there on, and at
-            each step (steps, k).
-        staged: whether the integrator leaves the last of its looks behind in the data.
-        begin_qacc: accelerations (nv,) at the begin of the last step, where it is staged.
-    """
-
-    places: IntArray
-    dofs: IntArray
-    position: FloatArray
-    speed: FloatArray
-    pull: FloatArray
-    begun: FloatArray
-    staged: bool
-    begin_qacc: FloatArray
 
 
 @dataclass(frozen=True)
@@ -93,7 +69,7 @@ class Imposed:
         for joint, signal in drive.imposed_signals.items():
             column = work.position(joint, work.seen(signal)[:, 0])
             smooth = smoothed(column, programme.period, drive.smoothing)
-            spline, rate = CubicSpline(np.arange(rows), smooth), 1.0 / programme.period
+            spline, rate = CubicSpline(np.arange(rows), smooth), 1.0 / work.period
             motion = [rate**k * spline(at, k) for k in range(3)]
             motions.append([*motion, rate**2 * spline(at + late, 2)])
             places.append(int(model.joint(joint).qposadr[0]))
@@ -129,14 +105,6 @@ class Imposed:
         """Set place and speed of a step."""
         data.qpos[self.places] = self.position[step]
         data.qvel[self.dofs] = self.speed[step]
-
-    @cached_property
-    def pushed(self) -> Pushed:
-        """For compiled loops."""
-        staged = bool(self.work.model.opt.integrator == STAGED and len(self.dofs))
-        pull, begun = self.inertia * self.pull, self.inertia * self.begun
-        seen = np.zeros(self.work.model.nv)
-        return Pushed(self.places, self.dofs, self.position, self.speed, pull, begun, staged, seen)
 
     def commands(self, path: FloatArray, pull: FloatArray) -> dict[str, FloatArray]:
         """What the actuators of imposed joints give (n,), where they are compared.

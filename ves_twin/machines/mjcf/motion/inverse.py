@@ -129,7 +129,8 @@ def _moved_of(work: Work) -> Moved:
     fed = _single(work)
     recorded = {j: work.programme.drive[s][:, 0] for j, s in fed}
     positions = {j: work.position(j, work.seen(s)[:, 0]) for j, s in fed}
-    digest = hashlib.sha256(f"{work.rig.identity}{work.programme.identity}".encode())
+    told = f"{work.rig.identity}{work.programme.identity}{work.stretch}"
+    digest = hashlib.sha256(told.encode())
     for part in (work.model.qpos0, *positions.values()):
         digest.update(np.ascontiguousarray(part).tobytes())
     path = _Path(digest.hexdigest(), work, positions)
@@ -224,14 +225,14 @@ def _states(path: _Path) -> tuple[FloatArray, FloatArray, FloatArray]:
         if joint not in path.positions:  # a free joint: MuJoCo has the scalar part first
             q[:, at : at + 7] = programme.drive[signal][:, [0, 1, 2, 6, 3, 4, 5]]
             if not programme.poses:
-                _move_free(model, joint, programme.period, told.drive.smoothing, (q, v, a))
+                _move_free(model, joint, work.period, told.drive.smoothing, (q, v, a))
             continue
         q[:, at] = path.positions[joint]
         if not programme.poses:
             smooth = smoothed(q[:, at], programme.period, told.drive.smoothing)
             q[:, at] = smooth
-            v[:, dof] = np.gradient(smooth, programme.period)
-            a[:, dof] = np.gradient(v[:, dof], programme.period)
+            v[:, dof] = np.gradient(smooth, work.period)
+            a[:, dof] = np.gradient(v[:, dof], work.period)
     return q, v, a
 
 

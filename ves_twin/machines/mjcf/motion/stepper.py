@@ -9,13 +9,13 @@ from typing import NamedTuple
 import mujoco
 import numpy as np
 
-from ves_twin.core.compiled import compiled
+from ves_twin.core.compiled import compiled, say_that_it_compiles
 from ves_twin.core.types import FloatArray, IntArray
 from ves_twin.effects.element import Element
 from ves_twin.effects.law import Law, LawKind
 from ves_twin.effects.law_kernel import CompiledLaws, law_efforts
 from ves_twin.effects.resistance import NUMBERS, Form, of_load, of_place, of_speed
-from ves_twin.machines.mjcf.motion.imposed import Imposed, Pushed
+from ves_twin.machines.mjcf.motion.imposed import STAGED, Imposed
 from ves_twin.machines.mjcf.motion.work import SMOOTH, Work
 from ves_twin.simulator.engine import address_of, call_engine, handles
 
@@ -57,6 +57,38 @@ class _Resisting(NamedTuple):
             np.array([slow for *_, slow in found]),
             np.full((len(found), 2), np.nan),
         )
+
+
+class _Pushed(NamedTuple):
+    """Imposed motion as compiled loops take it.
+
+    Attributes:
+        places, dofs: addresses of the imposed coordinates in qpos and qvel.
+        position, speed: of them at each step (steps, k).
+        pull, begun: efforts [N, N m] that accelerate their inertia, held from there on, and at
+            each step (steps, k).
+        staged: whether the integrator leaves the last of its looks behind in the data.
+        begin_qacc: accelerations (nv,) at the begin of the last step, where it is staged.
+    """
+
+    places: IntArray
+    dofs: IntArray
+    position: FloatArray
+    speed: FloatArray
+    pull: FloatArray
+    begun: FloatArray
+    staged: bool
+    begin_qacc: FloatArray
+
+    @staticmethod
+    def of(imposed: Imposed) -> _Pushed:
+        """Of one prediction."""
+        model, mass = imposed.work.model, imposed.inertia
+        staged = bool(model.opt.integrator == STAGED and len(imposed.dofs))
+        return _Pushed(
+            imposed.places, imposed.dofs, imposed.position, imposed.speed,
+            mass * imposed.pull, mass * imposed.begun, staged, np.zeros(model.nv),
+        )  # fmt: skip
 
 
 class _State(NamedTuple):
@@ -106,16 +138,20 @@ class Stepper:
     sensed: FloatArray
     pull: FloatArray
     _laws: CompiledLaws
+    _lawful: FloatArray
     _resisting: _Resisting
+    _pushed: _Pushed
 
     @staticmethod
     def of(work: Work, data: mujoco.MjData, steps: int, commands: FloatArray) -> Stepper:
         """Of a prediction whose data is in its first state."""
-        model, rows = work.model, len(commands)
+        say_that_it_compiles(_advance, "some 15 s")
+        model, rows, imposed = work.model, len(commands), Imposed.of(work, steps)
         return Stepper(
-            work, data, steps, commands, Imposed.of(work, steps), np.zeros(model.nv),
+            work, data, steps, commands, imposed, np.zeros(model.nv),
             np.zeros((rows, model.nq + model.nv)), np.zeros((rows, model.nsensordata)),
-            np.zeros((rows, model.nv)), _compiled(work.laws, model), _Resisting.of(work),
+            np.zeros((rows, model.nv)), _compiled(work.laws, model), np.zeros(model.nv),
+            _Resisting.of(work), _Pushed.of(imposed),
         )  # fmt: skip
 
     def advance(self, first: int, last: int) -> None:
@@ -128,7 +164,7 @@ class Stepper:
         _advance(
             address_of("mj_step"), address_of("mj_forward"), *handles(model, data), first, last,
             self.steps, float(model.opt.timestep), self.commands, state, self._laws,
-            self._resisting, self.imposed.pushed, self.own, np.zeros(model.nv),
+            self._resisting, self._pushed, self.own, self._lawful,
             _Rows(self.path, self.sensed, self.pull),
         )  # fmt: skip
 
@@ -150,7 +186,7 @@ def _compiled(laws: Sequence[Law], model: mujoco.MjModel) -> CompiledLaws:
 def _advance(
     mj_step: int, mj_forward: int, model: int, data: int, first: int, last: int, steps: int,
     period: float, commands: FloatArray, state: _State, laws: CompiledLaws,
-    resisting: _Resisting, pushed: Pushed, own: FloatArray, lawful: FloatArray, rows: _Rows,
+    resisting: _Resisting, pushed: _Pushed, own: FloatArray, lawful: FloatArray, rows: _Rows,
 ) -> None:  # fmt: skip
     width, imposed = len(state.qpos), len(pushed.dofs) > 0
     for n in range(first, last):
@@ -191,7 +227,7 @@ def _resist(resisting: _Resisting, state: _State) -> None:
 
 
 @compiled
-def _lead(mj_forward: int, model: int, data: int, pushed: Pushed, n: int, state: _State) -> None:
+def _lead(mj_forward: int, model: int, data: int, pushed: _Pushed, n: int, state: _State) -> None:
     """Push imposed joints through a step; where it is staged, look at its begin first."""
     if pushed.staged:
         _push(pushed.dofs, pushed.begun[n], state)
@@ -202,7 +238,7 @@ def _lead(mj_forward: int, model: int, data: int, pushed: Pushed, n: int, state:
 
 
 @compiled
-def _place(pushed: Pushed, n: int, state: _State) -> None:
+def _place(pushed: _Pushed, n: int, state: _State) -> None:
     """Set imposed joints to their recorded places and speeds."""
     for k in range(len(pushed.places)):
         state.qpos[pushed.places[k]] = pushed.position[n, k]

@@ -95,7 +95,7 @@ def motion_of_drive(
         The motion; NaN throughout where it diverged and MuJoCo had to start it anew.
     """
     log_engine()
-    model, period = work.model, work.programme.period
+    model, period = work.model, work.period
     steps = max(1, round(period / model.opt.timestep)) * (2 if refined else 1)
     model.opt.timestep = period / steps
     closed = mode is Mode.REFERENCE or bool(programs)
@@ -119,7 +119,7 @@ def _failed(data: mujoco.MjData) -> bool:
 def _start(work: Work, first: int) -> mujoco.MjData:
     """State of the first row that is simulated."""
     data = work.data
-    data.time = first * work.programme.period
+    data.time = first * work.period
     for joint in work.rig.description.start:
         at = work.model.joint(joint)
         position, speed = _measured_start(work, joint, first)
@@ -127,6 +127,9 @@ def _start(work: Work, first: int) -> mujoco.MjData:
         data.qvel[at.dofadr[0]] = speed + work.values.get(f"start@{joint}:speed", 0.0)
     begun = [int(work.model.joint(joint).dofadr[0]) for joint in work.rig.description.start]
     assemble(work.model, data, np.array(begun, int))
+    warm = data.qacc_warmstart.copy()
+    mujoco.mj_forward(work.model, data)  # what ends the engine ends compiled code without a word
+    data.qacc_warmstart[:] = warm
     return data
 
 
@@ -148,7 +151,7 @@ def _measured_start(work: Work, joint: str, first: int) -> tuple[float, float]:
     column = sign * work.seen(signal)[first:, 0]
     if is_speed:
         return float(work.model.qpos0[work.model.joint(joint).qposadr[0]]), float(column[0])
-    return first_state(column, work.programme.period, told.drive.smoothing)
+    return first_state(column, work.period, told.drive.smoothing)
 
 
 def _led(rows: FloatArray, first: int) -> FloatArray:
@@ -175,7 +178,7 @@ class _Pd:
         self.at = int(work.model.joint(told.joint).qposadr[0])
         self.dof = int(work.model.joint(told.joint).dofadr[0])
         self.reference = work.programme.drive[told.reference][:, 0].tolist()
-        self.period = work.programme.period
+        self.period = work.period
         self.last: list[float] = []
         self.mean = 0.0
 
@@ -198,7 +201,7 @@ def _stepped(
     run = Stepper.of(work, data, steps, asked.copy())
     run.imposed.begin(data, first * steps)
     if not closed:
-        fill_filters(model, data, asked[: first + 1], work.programme.period)
+        fill_filters(model, data, asked[: first + 1], work.period)
     hooks = _Hooks(work)
     if not (closed or hooks.any):
         run.advance(first * steps, rows * steps)

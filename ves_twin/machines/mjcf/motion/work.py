@@ -41,6 +41,7 @@ class Work:
         effects: all that are at work.
         values: parameter -> value.
         laws: of the rig's file, and others.
+        stretch: of time, where the log's clock runs off.
     """
 
     rig: Rig
@@ -49,6 +50,7 @@ class Work:
     effects: tuple[tuple[Effect, Place], ...]
     values: Mapping[str, float]
     laws: tuple[Law, ...] = ()
+    stretch: float = 1.0
 
     @staticmethod
     def begin(
@@ -64,7 +66,9 @@ class Work:
             effect.edit_model(model)
         factors = [(told, values.get(told.name, 0.0)) for told in rig.promoted]
         named = (told.scaled(factor).law for told, factor in factors if factor != 0.0)
-        work = Work(rig, programme, model, effects, values, (*rig.laws, *named, *laws))
+        every = (*rig.laws, *named, *laws)
+        stretch = float(model.opt.timestep / rig.model.opt.timestep)
+        work = Work(rig, programme, model, effects, values, every, stretch)
         if effects:
             mujoco.mj_setConst(model, work.data)
         return work
@@ -75,6 +79,11 @@ class Work:
         data = _data(self.rig.model, get_ident())
         mujoco.mj_resetData(self.model, data)
         return data
+
+    @property
+    def period(self) -> float:
+        """Time that a row takes in the machine [s]."""
+        return self.programme.period * self.stretch
 
     def at(self, element: Element, name: str) -> list[tuple[Effect, Place]]:
         """Effects on one target."""

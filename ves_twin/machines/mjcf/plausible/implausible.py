@@ -10,6 +10,7 @@ import numpy as np
 
 from ves_twin.core.errors import InvalidInputError
 from ves_twin.core.recording.recording import Recording
+from ves_twin.core.types import BoolArray, FloatArray
 from ves_twin.machines.mjcf.plausible.load_fits import load_fits
 from ves_twin.machines.mjcf.plausible.reading import Reading
 from ves_twin.machines.mjcf.plausible.seen import Seen
@@ -68,7 +69,8 @@ def implausible(rig: Rig, recording: Recording) -> Implausible | None:
 
     That holds in every mode, since it is no simulation in time. Where it leaves most of an effort,
     signs, units and order of columns and the sign of gravity are turned round one by one; a
-    reading that leaves a small part of it is named. Causes change an effort by a part of it. What
+    reading that leaves a small part of it is named, at last by a factor of more than twenty that no
+    usual unit has. Causes change an effort by a part of it. What
     leaves less, down to LOUD, may be an angle from the world alone. Where a load on the last body
     of an arm leaves as little, columns are not in question.
 
@@ -85,9 +87,11 @@ def implausible(rig: Rig, recording: Recording) -> Implausible | None:
     plain = seen.left(Reading("", "", {}, {}))
     if np.all(plain <= LOUD):
         return None
-    found, ways = [], seen.readings
+    found, ways = list[tuple[float, FloatArray, BoolArray, Reading]](), seen.readings
     every = chain(ways.every(), seen.in_another_unit())
     for reading in every if np.any(plain > BAD) else ways.from_the_world():
+        if found and reading.odd:
+            break
         left = seen.left(reading)
         changed = (plain > BAD) & (left < np.minimum(FEWER * plain, GOOD))
         changed |= bool(reading.less) & (plain > LOUD) & (left < MUCH * plain)

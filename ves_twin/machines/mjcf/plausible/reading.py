@@ -13,7 +13,8 @@ class Reading:
     """Columns read in another way: factors and order of positions and efforts, gravity's sign.
 
     `less` has positions of which another one, times 1 or -1, is taken off, `zeros` what is added;
-    `load` is a point mass and its place on a body [kg, m] (4,).
+    `load` is a point mass and its place on a body [kg, m] (4,); `odd` where no usual unit has the
+    factors.
     """
 
     name: str
@@ -25,3 +26,4 @@ class Reading:
     less: Mapping[str, tuple[str, float]] = field(default_factory=dict)
     zeros: Mapping[str, float] = field(default_factory=dict)
     load: tuple[int, FloatArray] | None = None
+    odd: bool = False

@@ -33,6 +33,9 @@ FEWEST = 20
 STRANGE = 20.0
 """Times what the model needs, from which an effort is in another unit: a load is a few times."""
 
+BESIDE = 0.5
+"""Share of an effort's spread that an inertia more may leave, and its unit is right."""
+
 QUIET = 1e-3
 """Speed, as a share of the fastest, over which a sign is smoothed."""
 
@@ -115,23 +118,38 @@ class Seen:
         """Efforts by a factor that no usual unit has: counts, a gear that the model lacks."""
         path = self._path({**self.wheels, **self.positions}, ROWS)
         needs = self._needs(Reading("", "", {}, {}), list(self.efforts), path)
-        times = {a: self._times(a, self.efforts[a], needs[a], path[1]) for a in self.efforts}
+        times = {a: self._times(a, self.efforts[a], needs[a], path) for a in self.efforts}
         odd = {a: s for a, s in times.items() if s > STRANGE or 0.0 < s < 1.0 / STRANGE}
         if odd:
             names = dict(zip(self.efforts, self.names, strict=True))
             told = ", ".join(names[a] for a in odd)
             by = " and ".join(f"{1.0 / s:.3g}" for s in odd.values())
             key = f"unit and scale of {told}, and gears of the model"
-            yield Reading(f"{told} times {by}", key, {}, {a: 1.0 / s for a, s in odd.items()})
+            factors = {a: 1.0 / s for a, s in odd.items()}
+            yield Reading(f"{told} times {by}", key, {}, factors, odd=True)
 
     def _times(
-        self, actuator: str, effort: FloatArray, need: FloatArray, speed: FloatArray
+        self,
+        actuator: str,
+        effort: FloatArray,
+        need: FloatArray,
+        path: tuple[FloatArray, ...],
     ) -> float:
-        """Times what the model needs that an effort is, beside friction."""
-        own = speed[:, int(self.rig.model.joint(driven_joint(self.rig.model, actuator)).dofadr[0])]
+        """Times what the model needs that an effort is, beside friction.
+
+        Once where an inertia at the joint, which models of geared drives lack, fits beside that.
+        """
+        dof = int(self.rig.model.joint(driven_joint(self.rig.model, actuator)).dofadr[0])
+        own, effort = path[1][:, dof], effort[self._few(ROWS)]
         quiet = QUIET * max(float(np.max(np.abs(own))), 1e-30)
-        basis = np.stack([need, own, np.tanh(own / quiet), np.ones_like(own)], axis=1)
-        return float(np.linalg.lstsq(basis, effort[self._few(ROWS)], rcond=None)[0][0])
+        friction = [own, np.tanh(own / quiet), np.ones_like(own)]
+        beside = np.stack([path[2][:, dof], *friction], axis=1)
+        rest = effort - need
+        rest = rest - beside @ np.linalg.lstsq(beside, rest, rcond=None)[0]
+        if np.std(rest) < BESIDE * np.std(effort):
+            return 1.0
+        basis = np.stack([need, *friction], axis=1)
+        return float(np.linalg.lstsq(basis, effort, rcond=None)[0][0])
 
     def left(self, reading: Reading, rows: int = ROWS) -> FloatArray:
         """Share of the spread of each effort that inverse dynamics and friction leave (c,).

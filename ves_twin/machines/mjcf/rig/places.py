@@ -8,6 +8,7 @@ import mujoco
 
 from ves_twin.core.errors import InvalidInputError, UnknownNameError
 from ves_twin.core.units import to_si
+from ves_twin.effects.clock import CLOCK
 from ves_twin.effects.effect import Effect
 from ves_twin.effects.element import Element
 from ves_twin.effects.place import Place
@@ -40,6 +41,9 @@ def place_of(effect: Effect, told: RigDescription, model: mujoco.MjModel) -> Pla
         return _signal(kind, target, on, told)
     if element is Element.WORLD:
         _known("axis of the world", target, ("x", "y"))
+        return Place(element, target)
+    if element is Element.LOG:
+        _known("part of a log", target, (CLOCK,))
         return Place(element, target)
     if element is Element.BODY:
         name, _, axis = target.rpartition(".") if on.axis else (target, "", "")

@@ -17,6 +17,7 @@ from ves_twin.effects.actuators import (
     DriveCrossTalk,
 )
 from ves_twin.effects.bodies import BodyInertia, BodyPlace, MassCentre, Payload
+from ves_twin.effects.clock import CLOCK
 from ves_twin.effects.effect import Effect
 from ves_twin.effects.element import Element
 from ves_twin.effects.friction import RegularizedFriction
@@ -109,6 +110,8 @@ def names_of(model: mujoco.MjModel, element: Element) -> list[str]:
         found = [model.tendon(i).name for i in range(model.ntendon)]
     elif element is Element.WORLD:
         found = ["x", "y"] if np.any(model.opt.gravity) else []
+    elif element is Element.LOG:
+        found = [CLOCK]
     return [name for name in found if name]
 
 
@@ -170,6 +173,8 @@ def _targets(kind: str, told: RigDescription, model: mujoco.MjModel) -> list[str
         fed = set(told.drive.actuators) if told.drive.mode is Mode.CONTROL else set(names)
         names = [name for name in names if name in fed]
         return _neighbours(names, model) if kind == DriveCrossTalk.kind else names
+    if on.element is Element.LOG and (model.nu or told.drive.mode is Mode.MOTION):
+        return []  # commands and efforts are of the same clock: a file that doubts it says so
     if kind in OF_TURNING:
         names = [name for name in names if _turns(model, model.body(name).id)]
     if kind == BodyPlace.kind:
