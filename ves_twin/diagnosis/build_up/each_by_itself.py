@@ -53,6 +53,8 @@ def _single(proof: Proof, one: int, two: int) -> list[tuple[int, int]]:
         channel = int(np.argmax(acts))
         if cause.effect in USUAL and cause.label not in known and acts.sum() == 1 and channel in at:
             at[channel].append(n)
+    failed = bench.held.columns.failed([n for some in at.values() for n in some])
+    at = {channel: [n for n in some if n not in failed] for channel, some in at.items()}
     pairs = [
         (a, b) for a, b in product(*at.values()) if trials[a].cause.effect == trials[b].cause.effect
     ]

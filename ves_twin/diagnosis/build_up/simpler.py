@@ -44,6 +44,8 @@ def _fewer(proof: Proof, trial: int) -> list[int]:
         for k in regression.rest(kept)
         if trials[k].cause.target == cause.target and _is_simpler(trials[k].cause, cause)
     ]
+    failed = proof.bench.held.columns.failed(others)  # of held-out motion that goes farther
+    others = [k for k in others if k not in failed]
     if not others:
         return []
     rest = [k for k in kept if k != trial]

@@ -52,7 +52,7 @@ class Rival:
         causes: effect@target of each of its causes.
         sizes: fitted departures of their parameters, with units; empty if not fitted.
         standing: what became of it.
-        behind: chi^2 that it leaves more than the best; None if it was not fitted.
+        behind: chi^2 that it leaves more than the best; None if it was not fitted, or breaks off.
         score: chi^2 that the screen expects it to take away; None if it was fitted.
         pull: largest commissioning error that it needs, in declared sd; None if it was not fitted.
         place: where it leaves most more; None for the best, and for one that only loses by the
@@ -98,11 +98,12 @@ def _fitted(found: Explanation, fit: Fit, standing: Standing) -> Rival:
     free = fit.active[: len(fit.sizes)]
     units = [runs.coordinates[int(i)].parameter.unit for i in free]
     channels = [runs.forward.channels[c] for c in runs.columns]
+    behind = fit.chi2 - found.best.chi2
     return Rival(
         causes=tuple(h.label for h in fit.causes),
         sizes=tuple((float(s), unit) for s, unit in zip(fit.sizes, units, strict=True)),
         standing=standing,
-        behind=max(fit.chi2 - found.best.chi2, 0.0),
+        behind=max(behind, 0.0) if np.isfinite(behind) else None,
         score=None,
         pull=fit.pull,
         place=_place(found, fit, channels),

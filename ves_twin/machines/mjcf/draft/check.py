@@ -327,8 +327,8 @@ class _Judge:
                     found[i] = replace(match, scale=own)
                     said.append(
                         f"{match.column} is taken as the command of {match.spot.label} as the model"
-                        f" has it{', turned' * (scale < 0.0)}; {scale / own:.3g} times it would fit"
-                        " best"
+                        f" has it{', turned' * (scale < 0.0)}; by the model's inertia and weight"
+                        f" {scale / own:.3g} times it would fit best"
                     )
                     continue
                 found[i] = replace(match, scale=float(f"{scale:.3g}"))

@@ -20,6 +20,7 @@ from ves_twin.diagnosis.record.preprocess import check_lengths
 from ves_twin.machines.mjcf.draft.by_number import by_number
 from ves_twin.machines.mjcf.draft.check import Checked, checked
 from ves_twin.machines.mjcf.draft.chosen import Chosen, chosen
+from ves_twin.machines.mjcf.draft.commanded import as_commanded
 from ves_twin.machines.mjcf.draft.draft_text import compared, draft_text, signal_name, used
 from ves_twin.machines.mjcf.draft.given_model import GivenModel
 from ves_twin.machines.mjcf.draft.log_columns import LogColumns
@@ -123,11 +124,12 @@ def draft(model: Path, logs: Sequence[Path], out: Path, rate: float | None = Non
     check = checked(log, matches, given.model)
     file = out.with_suffix(".xml").name if given.text else os.path.relpath(model, out.parent)
 
-    def version(mode: Chosen) -> _Version:
-        text = draft_text(out.stem, model, file, log, matches, check, mode, given.model)
+    def version(mode: Chosen, other: Checked | None = None) -> _Version:
+        told = other or check
+        text = draft_text(out.stem, model, file, log, matches, told, mode, given.model)
         rig = _rig(text, given, out)
         if mode.mode is Mode.MOTION:
-            return _Version(mode, text, rig, dict(check.explained), [])
+            return _Version(mode, text, rig, dict(told.explained), [])
         return _Version(mode, text, rig, *_predicted(rig, logs[0]))
 
     now = version(chosen(log, matches, check, given.model))
@@ -136,6 +138,7 @@ def draft(model: Path, logs: Sequence[Path], out: Path, rate: float | None = Non
     if simulated:
         sizes = unmeasured(now.rig, part)
         now = version(replace(now.mode, typical=sizes)) if sizes else now
+        check, now = _by_simulation(now, check, version)
     if now.mode.either and now.explained[now.least] < HALF:
         why = f"open loop the model explains {_percent(now)} of {now.least}"
         now = version(chosen(log, matches, check, given.model, why))
@@ -143,8 +146,8 @@ def draft(model: Path, logs: Sequence[Path], out: Path, rate: float | None = Non
         drifts = now.explained[now.least] < AWAY
         if drifts or runs_away(MjcfForward.of(now.rig), read_rig_recording(logs[0], now.rig)):
             now = _in_pieces(now, version, 1.0 / log.period)
-    for other in logs[1:]:
-        read_rig_recording(other, now.rig)
+    for further in logs[1:]:
+        read_rig_recording(further, now.rig)
     left = dict(matches.left)
     left |= {c: "says what was asked for" for c in matches.setpoints}
     left |= {m.column: "is a speed" for m in check.found if not used(m, now.mode)}
@@ -175,6 +178,19 @@ class _Version:
     def least(self) -> str:
         """What it explains least of."""
         return min(self.explained, key=lambda name: self.explained[name])
+
+
+def _by_simulation(
+    now: _Version, check: Checked, version: Callable[[Chosen, Checked], _Version]
+) -> tuple[Checked, _Version]:
+    """With the model's own commands in place of fitted constants, where that explains more."""
+    plain = as_commanded(check) if now.mode.mode is Mode.CONTROL else None
+    if plain is None:
+        return check, now
+    other = version(now.mode, plain)
+    return (
+        (plain, other) if other.explained[other.least] > now.explained[now.least] else (check, now)
+    )
 
 
 def _in_pieces(whole: _Version, version: Callable[[Chosen], _Version], native: float) -> _Version:
