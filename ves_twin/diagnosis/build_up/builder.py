@@ -287,10 +287,12 @@ class Builder:
                 break
             builder = replace(builder, barred=builder.barred | base.rejected)
             base = found = other
-        every += self.few(halves, begin.point, known)
-        known = every[-1].known | known
-        first = [found, *(one for one in every if one is not found)]
-        return preferred([self._counted(one, known) for one in first])
+        few = self.few(halves, begin.point, known)
+        found, known = preferred([found, *few]), known.union(*(one.known for one in few))
+        # one of each set of causes: others of it differ by where their columns are taken
+        by_causes = {one.proved: one for one in (*every, *few)} | {found.proved: found}
+        rest = [one for one in by_causes.values() if one is not found]
+        return preferred([self._counted(one, known) for one in (found, *rest)])
 
     def _counted(self, offer: Offer, known: frozenset[str]) -> Offer:
         """By the count of all causes that were put to proof; what that leaves fitted anew."""
