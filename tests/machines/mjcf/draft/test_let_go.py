@@ -137,6 +137,15 @@ def test_a_current_across_the_field_is_a_current(tmp_path, write, name):
     assert any(f"{name} is electrical" in words for words in found.look)
 
 
+@pytest.mark.parametrize("name", ["Vm", "duty"])
+def test_a_motor_s_voltage_and_its_duty_are_commands(tmp_path, write, name):
+    path, log = tmp_path / "rotor.xml", spun()
+    path.write_text(ROTOR)
+    log[name] = log.pop("Voltage_q")
+    _, rig = drafted(path, write(log))
+    assert rig.description.signals["arm_motor.effort"].columns == (name,)
+
+
 def test_whole_numbers_of_many_turns_are_asked_for_as_counts(tmp_path, write):
     path, log = tmp_path / "rotor.xml", spun()
     path.write_text(ROTOR)

@@ -19,8 +19,8 @@ SPEED = (
     " geschw geschwindigkeit"
 )
 EFFORT = (
-    "tau torque trq tq force f fx u effort load moment current i iq isq cur amp volt voltage pwm"
-    " drive motor control ctrl command input kraft drehmoment strom motorstrom spannung"
+    "tau torque trq tq force f fx u effort load moment current i iq isq cur amp volt voltage vm pwm"
+    " duty drive motor control ctrl command input kraft drehmoment strom motorstrom spannung"
 )
 MECHANICAL = "tau torque trq tq force effort load moment kraft drehmoment"
 KIND_WORDS = {
@@ -71,7 +71,7 @@ VOLTS = re.compile(r"V[_.]?\d*")
 
 IMPLIED = {
     **dict.fromkeys(("current", "cur", "iq", "isq", "amp", "amps", "strom", "motorstrom"), "A"),
-    **dict.fromkeys(("volt", "volts", "voltage", "spannung"), "V"),
+    **dict.fromkeys(("volt", "volts", "voltage", "vm", "spannung"), "V"),
 }
 """Words of an electrical quantity -> its unit, where nobody says one."""
 
