@@ -54,6 +54,24 @@ def test_of_a_machine_that_is_let_go_it_is_offered_and_of_no_other(tmp_path):
     (tmp_path / "swing.toml").write_text(TOLD)
     kinds = {cause.effect for cause in Rig.load(str(tmp_path / "swing.toml")).hypotheses}
     assert "clock_rate" in kinds
+    led = FREE.replace(
+        "</body></worldbody>",
+        """<body pos="0 0 -0.4"><joint name="tip" axis="0 1 0"/>
+      <geom size="0.02" mass="0.1" pos="0 0 -0.1"/></body></body></worldbody>""",
+    )
+    (tmp_path / "swing.xml").write_text(led)
+    imposed = (
+        'drive = { mode = "control", imposed = ["swing"], joints = { swing = "swing.angle" } }'
+    )
+    tip = '"tip.angle" = { columns = ["p"], unit = "rad", joint = "tip", noise = 1e-3 }\n'
+    told = TOLD.replace('drive = { mode = "control" }', imposed).replace(
+        "[signals]\n", f"[signals]\n{tip}"
+    )
+    told = told.replace(
+        "[start]\nswing", "tip = { effort = 1, speed = 3, travel = 1 }\n[start]\ntip"
+    )
+    (tmp_path / "swing.toml").write_text(told)
+    assert "clock_rate" not in {c.effect for c in Rig.load(str(tmp_path / "swing.toml")).hypotheses}
     actuator = '<actuator><motor name="drive" joint="swing"/></actuator></mujoco>'
     (tmp_path / "swing.xml").write_text(FREE.replace("</mujoco>", actuator))
     fed = 'drive = { mode = "control", actuators = { drive = "u" } }'
