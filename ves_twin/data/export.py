@@ -67,8 +67,9 @@ def _mat(recording: Recording, path: Path) -> tuple[Path, ...]:
     units = {"t": "s"}
     for name, values in recording.signals.items():
         signal = recording.info.signal(name)
-        content[signal.field] = values
-        columns = _mat_columns(signal.field, signal.width)
+        variable = f"{signal.field}_" if signal.field in content else signal.field  # t is the time
+        content[variable] = values
+        columns = _mat_columns(variable, signal.width)
         units |= dict(zip(columns, signal.units, strict=True))
     content["units"] = {key.replace(".", "_"): unit for key, unit in units.items()}
     content["ves_twin"] = json.dumps(_metadata(recording, schema))

@@ -105,6 +105,16 @@ FINITE = st.floats(allow_nan=True, allow_infinity=False)
 """Of exports: a lab file's reader takes an infinity for a cell that is no number."""
 
 
+def test_a_signal_by_the_name_of_the_time_does_not_take_its_place_in_a_mat_file(tmp_path):
+    signal = Signal(TIME, ("x", "y"), ("m", "m"), Role.MEASUREMENT, "", "")
+    info = RecordingInfo("measured", own_signals=(signal,))
+    export_recording(
+        Recording(np.arange(3.0), {TIME: np.ones((3, 2))}, info), "mat", tmp_path / "r.mat"
+    )
+    (table,) = [t for t in open_log(tmp_path / "r.mat").tables if t.name != "units"]
+    assert [c.unit for c in table.columns] == ["s", "m", "m"]
+
+
 @MANY
 @given(out=recordings(FINITE, fewest=2), form=st.sampled_from(FORMATS))
 def test_what_is_exported_reads_the_same_with_its_units(out, form, tmp_path):
