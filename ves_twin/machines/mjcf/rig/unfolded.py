@@ -173,8 +173,8 @@ def _targets(kind: str, told: RigDescription, model: mujoco.MjModel) -> list[str
         fed = set(told.drive.actuators) if told.drive.mode is Mode.CONTROL else set(names)
         names = [name for name in names if name in fed]
         return _neighbours(names, model) if kind == DriveCrossTalk.kind else names
-    fed = model.nu or told.drive.imposed or told.drive.mode is Mode.MOTION
-    if on.element is Element.LOG and fed:
+    led = bool(model.nu or told.drive.imposed or told.drive.mode is Mode.MOTION)
+    if on.element is Element.LOG and led:
         return []  # commands and efforts are of the same clock: a file that doubts it says so
     if kind in OF_TURNING:
         names = [name for name in names if _turns(model, model.body(name).id)]
