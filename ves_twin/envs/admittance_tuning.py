@@ -129,9 +129,7 @@ def _zero_gravity_poses(sim: Simulator) -> FloatArray:
     clock, arm = sim.rig.clock, arm_motion(sim.scenario)
     cycle = clock.admittance * clock.tick
     count = round(sim.scenario.run.duration / cycle) + CYCLES + 1
-    poses = np.empty((count, 6))
-    for k in range(count):
-        poses[k] = reference.pose
-        time = k * clock.admittance * clock.tick
-        reference.advance(np.array([arm.q(time + i * cycle) for i in (-1, 0, 1, 2)]), cycle)
+    times = cycle * np.arange(count - 1)
+    points = [[arm.q(time + i * cycle) for i in (-1, 0, 1, 2)] for time in times]
+    poses, _, _ = reference.advance(np.array(points), cycle)
     return poses

@@ -13,13 +13,14 @@ from ves_twin.core.read_only import ReadOnly
 from ves_twin.core.signals import SIGNALS
 from ves_twin.core.types import FloatArray, IntArray
 from ves_twin.mechanics.kinematics.stewart import StewartGeometry, pose_jacobian, track_poses
+from ves_twin.simulator.beside import Beside
 from ves_twin.simulator.clock import Clock
 from ves_twin.simulator.log_faults import LogFaults, LogTail
 from ves_twin.simulator.reference import ZeroGravityReference
 from ves_twin.simulator.signal_bus import SLICES, WIDTH
 
-BUFFER_SECONDS = 4.0
-"""Simulated time that the buffer holds."""
+BUFFER_SECONDS = 1.0
+"""Simulated time that the buffer holds: with more, a run waits longer for its last references."""
 
 FLUSH_SECONDS = 0.5
 """Rows leave the buffer at least this often in wall-clock time: what a kill can cost."""
@@ -94,6 +95,9 @@ class RecorderSnapshot(ReadOnly):
 class Recorder:
     """Completes rows with the pose from leg lengths and the zero-g references, and passes them on.
 
+    It does so in a thread while the run goes on: on a second core the references cost no time.
+    What is asked of the recorder from outside waits for that thread.
+
     Args:
         clock: periods.
         geometry: what the computers believe of the platform, for the pose from leg lengths.
@@ -128,6 +132,7 @@ class Recorder:
         jacobian = pose_jacobian(guess, geometry.base, geometry.top, geometry.home)
         self._at = _Buffers(0, 0, guess.copy(), np.asarray(np.linalg.inv(jacobian)))
         self._flushed = monotonic()
+        self._beside = Beside()
         absent = {*absent, *({IDEAL, LEG_LAG} - set(references))}
         self.names = tuple(name for name in SIGNALS if name not in absent)
 
@@ -159,24 +164,29 @@ class Recorder:
         self._at.rows, self._at.cycles = rows, cycles
 
     def flush(self, unfinished: bool = False) -> None:
-        """Hand the waiting rows to the sink.
+        """Hand the waiting rows to the sink, and return when it has them.
 
         Args:
             unfinished: also those of the cycle under way; only at the end of a run, since a
                 cycle is handed over once.
+
+        Raises:
+            VesTwinError: the sink refused rows, these or earlier ones.
         """
         at = self._at
         if unfinished or at.cycles == 0:
             self._hand_over(at.rows, at.cycles)
         else:
             self._hand_over(int(self._first_rows[at.cycles - 1]), at.cycles - 1)
+        self._beside.wait()
 
     def _flush_in_time(self) -> None:
         if self._at.cycles == len(self._ticks) or monotonic() - self._flushed > FLUSH_SECONDS:
             self._hand_over(self._at.rows, self._at.cycles)
 
     def _hand_over(self, count: int, cycles: int) -> None:
-        """Complete the first rows and hand them on; move what is left to the front."""
+        """Have the first rows completed and handed on beside; move what is left to the front."""
+        self._beside.wait()
         at = self._at
         rows, time = self.log[:count, 1:].copy(), self.log[:count, 0].copy()
         ticks, points = self._ticks[:cycles].copy(), self._points[:cycles].copy()
@@ -187,8 +197,13 @@ class Recorder:
         self._first_rows[:cycles_left] -= count
         at.rows, at.cycles = left, cycles_left  # first, so that an interrupt writes no row twice
         self._flushed = monotonic()
-        if isinstance(self.sink, NoSink):
-            return
+        if not isinstance(self.sink, NoSink):
+            self._beside.start(lambda: self._complete(rows, time, ticks, points))
+
+    def _complete(
+        self, rows: FloatArray, time: FloatArray, ticks: IntArray, points: FloatArray
+    ) -> None:
+        """Add the computed signals to rows and hand these to the sink."""
         self._add_platform_pose(rows)
         for name, reference in self._references.items():
             self._add_reference(rows, time, name, reference, ticks, points)
@@ -201,17 +216,20 @@ class Recorder:
 
         A run that ended before its first row has every signal, too, of no rows.
         """
+        self._beside.wait()
         time, kept = self.sink.collect() if isinstance(self.sink, MemorySink) else (_NO_TIME, {})
         empty = {name: np.zeros((0, SIGNALS[name].width)) for name in self.names}
         return time, empty | kept
 
     def drop_references(self) -> None:
         """Stop integrating the zero-g references; their signals leave the recording."""
+        self._beside.wait()
         self._references = {}
         self.names = tuple(n for n in self.names if n not in (IDEAL, LEG_LAG))
 
     def snapshot(self) -> RecorderSnapshot:
         """Buffers, references, and how much the memory sink holds."""
+        self._beside.wait()
         return RecorderSnapshot(
             at=self._at.copy(),
             log=self.log[: self._at.rows].copy(),
@@ -225,6 +243,7 @@ class Recorder:
 
     def restore(self, snapshot: RecorderSnapshot) -> None:
         """Go back to a snapshot; rows that a file already has stay there."""
+        self._beside.wait()
         self._at = snapshot.at.copy()
         self.log[: self._at.rows] = snapshot.log
         self._points[:] = snapshot.points
@@ -251,12 +270,7 @@ class Recorder:
         ticks: IntArray,
         points: FloatArray,
     ) -> None:
-        count = len(ticks)
-        poses, rates = np.empty((count + 1, 6)), np.empty((count + 1, 6))
-        for i in range(count):
-            poses[i], rates[i] = reference.pose, reference.pose_rate
-            reference.advance(points[i], self._cycle)
-        poses[count], rates[count] = reference.pose, reference.pose_rate
+        poses, rates, _ = reference.advance(points, self._cycle)
         if self._clock.log == self._clock.admittance:
             rows[:, SLICES[name]] = poses[: len(rows)]
         elif len(rows):

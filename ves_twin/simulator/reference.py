@@ -97,26 +97,24 @@ class ZeroGravityReference:
         """Pose of the platform now, from home [m, rad] (6,)."""
         return self._home + self._state[12:18]
 
-    @property
-    def arm_q(self) -> FloatArray:
-        """Joint angles now [rad] (3,)."""
-        return self._state[24:27].copy()
-
-    @property
-    def pose_rate(self) -> FloatArray:
-        """Rate of the pose now [m/s, rad/s] (6,)."""
-        return self._state[18:24].copy()
-
-    def advance(self, points: FloatArray, cycle: float) -> None:
-        """Advance one command cycle.
+    def advance(
+        self, points: FloatArray, cycle: float
+    ) -> tuple[FloatArray, FloatArray, FloatArray]:
+        """Advance n command cycles.
 
         Args:
-            points: the arm's commands k-1 to k+2 [rad] (4, 3).
-            cycle: length of the cycle [s].
+            points: the arm's commands k-1 to k+2 of each cycle [rad] (n, 4, 3).
+            cycle: length of a cycle [s].
+
+        Returns:
+            At the begin of each cycle and at the end: pose of the platform [m, rad] (n + 1, 6),
+            its rate [m/s, rad/s] (n + 1, 6), joint angles [rad] (n + 1, 3).
         """
         steps = int(np.ceil(cycle / self._longest_step))
+        states = np.empty((len(points) + 1, SIZE))
+        states[0] = self._state
         _advance(
-            self._state,
+            states,
             points,
             cycle,
             steps,
@@ -135,6 +133,8 @@ class ZeroGravityReference:
             self._model.M_rownnz,
             self._model.M_colind,
         )
+        self._state = states[-1].copy()
+        return self._home + states[:, 12:18], states[:, 18:24], states[:, 24:27]
 
     def _fastest_pole(self) -> float:
         """Largest |s| [1/s] of base, arm and servo together, of the bare base, and of the legs."""
@@ -243,7 +243,7 @@ def _rates(
 
 @compiled
 def _advance(
-    x: FloatArray, points: FloatArray, cycle: float, steps: int, lag_block: Block,
+    states: FloatArray, commands: FloatArray, cycle: float, steps: int, lag_block: Block,
     mass: FloatArray, damping: FloatArray, stiffness: FloatArray, home: FloatArray,
     servo_block: Block, position: int, velocity: int, model: int, data: int,
     qpos: FloatArray, qvel: FloatArray, bias: FloatArray, passive: FloatArray,
@@ -254,21 +254,24 @@ def _advance(
     q_set, rate_set, torque = np.empty(3), np.empty(3), np.empty(3)
     weights = np.array([1.0, 2.0, 2.0, 1.0]) / 6.0
     ahead = np.array([0.0, 0.5, 0.5, 1.0])
-    for n in range(steps):
-        total = np.zeros(SIZE)
-        slope = np.zeros(SIZE)
-        for stage in range(4):
-            y = x + ahead[stage] * step * slope
-            if not np.all(np.isfinite(y)):  # the caller sees it; a solver would raise
-                x[:] = np.nan
-                return
-            spline(points, (n + ahead[stage]) / steps, cycle, q_set, rate_set)
-            servo_torque(servo, y[30:33], q_set, rate_set, y[24:27], y[27:30], torque)
-            slope = _rates(
-                y, torque, lag, mass, damping, stiffness, home, position, velocity, model, data,
-                qpos, qvel, bias, passive, sparse, row_start, row_length, column,
-            )  # fmt: skip
-            for j in range(3):
-                slope[30 + j] = servo.integral[j] * (q_set[j] - y[24 + j])
-            total += weights[stage] * slope
-        x += step * total
+    for k in range(len(commands)):
+        points, x = commands[k], states[k + 1]
+        x[:] = states[k]
+        for n in range(steps):
+            total = np.zeros(SIZE)
+            slope = np.zeros(SIZE)
+            for stage in range(4):
+                y = x + ahead[stage] * step * slope
+                if not np.all(np.isfinite(y)):  # the caller sees it; a solver would raise
+                    states[k + 1 :] = np.nan
+                    return
+                spline(points, (n + ahead[stage]) / steps, cycle, q_set, rate_set)
+                servo_torque(servo, y[30:33], q_set, rate_set, y[24:27], y[27:30], torque)
+                slope = _rates(
+                    y, torque, lag, mass, damping, stiffness, home, position, velocity, model,
+                    data, qpos, qvel, bias, passive, sparse, row_start, row_length, column,
+                )  # fmt: skip
+                for j in range(3):
+                    slope[30 + j] = servo.integral[j] * (q_set[j] - y[24 + j])
+                total += weights[stage] * slope
+            x += step * total

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.lib.stride_tricks import sliding_window_view
 
 from ves_twin.control import arm_servo
 from ves_twin.core.errors import InvalidInputError
@@ -61,10 +62,8 @@ def zero_gravity_motion(
     release = np.zeros(6) if start is None else np.asarray(start, float)
     reference = ZeroGravityReference(plant, emulated, servo, release, np.zeros(6), commands[0])
     padded = np.vstack([commands[:1], commands, commands[-1:], commands[-1:]])
-    poses, angles = np.empty((len(commands), 6)), np.empty((len(commands), 3))
-    for k in range(len(commands)):
-        poses[k], angles[k] = reference.pose, reference.arm_q
-        reference.advance(padded[k : k + 4], cycle)
+    points = sliding_window_view(padded, 4, axis=0).transpose(0, 2, 1)[: len(commands) - 1]
+    poses, _, angles = reference.advance(np.ascontiguousarray(points), cycle)
     if not np.all(np.isfinite(poses)):
         what = f"zero-g motion on {emulated.name}"
         raise InvalidInputError(what, "a state that is not finite", "gains that keep it stable")
