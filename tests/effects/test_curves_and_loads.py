@@ -10,10 +10,12 @@ from ves_twin.effects import (
     ActuatorOffset,
     ActuatorSaturation,
     Effect,
+    JointSpring,
     OneWayLoad,
     RegularizedFriction,
 )
 from ves_twin.effects.element import Element
+from ves_twin.effects.place import Place
 from ves_twin.effects.registry import EFFECTS
 
 TIME = 0.01 * np.arange(200)
@@ -88,3 +90,9 @@ def test_regularized_friction_is_viscous_where_slow_and_dry_where_fast():
     np.testing.assert_allclose(effect.resist(speed, 1e-4), [-2.0, -4e-3, 0.0, 4e-3, 2.0], rtol=1e-5)
     sharp = RegularizedFriction("a", level=2.0)
     np.testing.assert_allclose(sharp.resist(speed, 1e-6), [-2.0, -2.0, 0.0, 2.0, 2.0])
+
+
+def test_the_spring_that_a_held_step_shows_is_well_within_its_range():
+    """At rest it takes the whole effort at the travel; that was the end of its range."""
+    (stiffness,) = JointSpring.magnitudes_at(Place(Element.JOINT, "a", effort=2.0, travel=0.5))
+    assert stiffness.largest == 2.0 * 2.0 / 0.5

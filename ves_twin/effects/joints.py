@@ -180,7 +180,10 @@ class JointSpring(Effect):
     sizes = (Size("stiffness", STIFFNESS, Sign.POSITIVE),)
     source = "assumed; dressing of the wrist and the force sensor's cable"
     rows = (Row(JOINTS, (0.3, 0.5, 40.0), TORQUE, change.STIFFNESS, Part.ARM),)
-    anywhere = Anywhere(Element.JOINT, lambda p: p.effort / p.travel, attribute=change.STIFFNESS)
+    # twice what holds the typical effort at the typical travel, to which a step swings past
+    anywhere = Anywhere(
+        Element.JOINT, lambda p: 2.0 * p.effort / p.travel, attribute=change.STIFFNESS
+    )
 
 
 @final

@@ -288,7 +288,8 @@ class Builder:
             builder = replace(builder, barred=builder.barred | base.rejected)
             base = found = other
         few = self.few(halves, begin.point, known)
-        found, known = preferred([found, *few]), known.union(*(one.known for one in few))
+        others = [one for one in few if one.proved != found.proved]  # its own point is its fit's
+        found, known = preferred([found, *others]), known.union(*(one.known for one in few))
         # one of each set of causes: others of it differ by where their columns are taken
         by_causes = {one.proved: one for one in (*every, *few)} | {found.proved: found}
         rest = [one for one in by_causes.values() if one is not found]
