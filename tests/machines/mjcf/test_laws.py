@@ -22,6 +22,7 @@ from ves_twin.machines.diagnose import diagnose
 from ves_twin.machines.mjcf.inputs.programmes import multisine
 from ves_twin.machines.mjcf.mjcf_machine import MjcfMachine
 from ves_twin.machines.mjcf.motion.forward import MjcfForward
+from ves_twin.machines.mjcf.motion.work import Work, measured_variables
 from ves_twin.machines.mjcf.rig.description import Mode
 from ves_twin.machines.mjcf.rig.extend import write_rig
 from ves_twin.machines.mjcf.rig.machine import Rig
@@ -61,6 +62,14 @@ def test_a_law_of_the_command_is_a_gain() -> None:
     strong = FORWARD.simulate(FED, {"actuator_gain@drive:gain": 1.1})
     law = effort("command@drive", -2.0, 2.0)
     assert_allclose(FORWARD.simulate(FED, {}, False, (law,)), strong, atol=1e-9)
+
+
+def test_a_command_that_a_recording_does_not_have_is_none() -> None:
+    """Columns are held against a machine with such a law by inverse dynamics, without commands."""
+    work = Work.begin(MACHINE, replace(FED, drive={}), {}, (effort("command@drive", -2.0, 2.0),))
+    along = measured_variables(work, np.ones((len(FED.time), 2)))
+    assert not np.any(along["command@drive"])
+    assert not np.any(work.lawful("joint", along))
 
 
 def test_a_mesh_that_depends_on_speed_alone_is_the_table() -> None:

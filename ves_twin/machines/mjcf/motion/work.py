@@ -217,9 +217,10 @@ def variables(model: mujoco.MjModel, time: FloatArray, path: FloatArray) -> dict
 
 def measured_variables(work: Work, path: FloatArray) -> dict[str, FloatArray]:
     """The same of a measured motion, and what is fed to actuators; to others nothing is (n,)."""
-    told, fed = work.rig.description, work.programme.drive
-    found = variables(work.model, work.programme.time, path)
-    found |= {f"command@{name}": np.zeros(len(path)) for name in told.controllers}
+    told, fed, model = work.rig.description, work.programme.drive, work.model
+    found = variables(model, work.programme.time, path)
+    every = (model.actuator(number).name for number in range(model.nu))
+    found |= {f"command@{name}": np.zeros(len(path)) for name in every}
     commands = {n: fed[signal][:, 0] for n, signal in told.drive.actuators.items() if signal in fed}
     return found | {f"command@{name}": column for name, column in commands.items()}
 
