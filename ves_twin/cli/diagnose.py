@@ -190,6 +190,7 @@ def _text(found: Diagnosis, folder: Path) -> str:
     from ves_twin.report.diagnosis.answer import confidence_sentence, next_step, verdict_sentence
     from ves_twin.report.diagnosis.basis import gain_words, rests_on
     from ves_twin.report.diagnosis.coarse_step import coarse_sentence
+    from ves_twin.report.diagnosis.flaws import flaw_lines
     from ves_twin.report.diagnosis.law import law_sentences
     from ves_twin.report.diagnosis.out_of_step import out_of_step_sentence
     from ves_twin.report.diagnosis.proved import (
@@ -202,7 +203,7 @@ def _text(found: Diagnosis, folder: Path) -> str:
     from ves_twin.report.diagnosis.words import ambiguity_sentences, interval_words, name_of
 
     verdict = found.verdict
-    doubts = coarse_sentence(verdict), out_of_step_sentence(verdict)
+    doubts = [coarse_sentence(verdict), out_of_step_sentence(verdict), *flaw_lines(verdict.quality)]
     lines = [
         f"verdict   {verdict.verdict.value}: {verdict_sentence(verdict)}",
         *(f"          {text}" for text in ambiguity_sentences(verdict)),
@@ -224,12 +225,14 @@ def _text(found: Diagnosis, folder: Path) -> str:
         lines += ["", f"  {proof_sentence(verdict)}", *map(proved_line, verdict.proved)]
         lines += [f"  {near_sentence(verdict)}"] if near_sentence(verdict) else []
         lines += [f"  not separated: {text}" for text in inseparable_sentences(verdict)]
-    lines += ["", "  channel             before     tuned     after   (rms, in the channel's unit;"]
-    lines += [f"{'':51}tuned: by tolerances alone)"]
+    width = _width(verdict)
+    head = f"  {'channel':<{width}}    before     tuned     after"
+    lines += ["", f"{head}   (rms, in the channel's unit;"]
+    lines += [f"{'':{len(head) + 3}}tuned: by tolerances alone)"]
     for name, error in verdict.residuals.items():
         tuned = error.after_si if error.tolerances_si is None else error.tolerances_si
         numbers = "".join(f"{e:10.3g}" for e in (error.before_si, tuned, error.after_si))
-        lines.append(f"  {name:<18}{numbers}   {error.unit}")
+        lines.append(f"  {name:<{width}}{numbers}   {error.unit}")
     lines += held_out_table(verdict)
     if found.extended is not None and found.refused:
         lines += ["", f"  plant.candidate.toml, no plant.toml: {found.refused}"]
@@ -243,13 +246,19 @@ def held_out_table(verdict: Verdict) -> list[str]:
     if gain is None or not gain.errors:
         return []
     beside = law.gain if law is not None and law.claimed and law.part else None
-    head = "  held out            before     tuned     after"
+    width = _width(verdict)
+    head = f"  {'held out':<{width}}    before     tuned     after"
     lines = ["", f"{head}{'  with law' * (beside is not None)}   (all fitted elsewhere;"]
-    lines += [f"{'':51}the gain allows for what is new in each)"]
+    lines += [f"{'':{len(head) + 3}}the gain allows for what is new in each)"]
     for name, (tuned, after) in gain.errors.items():
         ends = [gain.given.get(name, math.nan), tuned, after]
         if beside is not None:
             ends.append(beside.errors.get(name, (math.nan, math.nan))[1])
         numbers = "".join(f"{e:10.3g}" for e in ends)
-        lines.append(f"  {name:<18}{numbers}   {verdict.residuals[name].unit}")
+        lines.append(f"  {name:<{width}}{numbers}   {verdict.residuals[name].unit}")
     return lines
+
+
+def _width(verdict: Verdict) -> int:
+    """Of the names of channels in a table."""
+    return max(18, *map(len, verdict.residuals))

@@ -12,7 +12,7 @@ from ves_twin.core.errors import InvalidInputError, UnknownNameError
 from ves_twin.core.recording.recording import POSES, Recording
 from ves_twin.core.signals import Signal
 from ves_twin.data.mapping.import_map import ImportMap
-from ves_twin.data.quality.check import Check
+from ves_twin.data.quality.check import Check, Grade
 from ves_twin.data.quality.gate import quality_gate
 from ves_twin.data.suspicions import Range
 from ves_twin.diagnosis.model.forward import Excitation
@@ -231,5 +231,7 @@ def _of_mjcf(experiment: ExperimentFile) -> MjcfExperiment:
 def _flaws(one: Named) -> list[Check]:
     if one.recording.info.log == POSES:
         return []
-    failed = quality_gate(one.recording).failures
-    return [replace(check, message=f"{one.name}: {check.message}") for check in failed]
+    report = quality_gate(one.recording)
+    doubted = (c for c in report.checks if c.name == "rate" and c.grade is Grade.UNKNOWN)
+    told = (*report.failures, *doubted)  # a clock in another unit makes sizes of every cause
+    return [replace(check, message=f"{one.name}: {check.message}") for check in told]

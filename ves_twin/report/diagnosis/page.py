@@ -19,6 +19,7 @@ from ves_twin.report.diagnosis.answer import (
 )
 from ves_twin.report.diagnosis.basis import basis_sentences, gain_sentence, rests_on
 from ves_twin.report.diagnosis.credibility import credibility
+from ves_twin.report.diagnosis.flaws import RESTS, flaws
 from ves_twin.report.diagnosis.law import law_heading, law_parts
 from ves_twin.report.diagnosis.limits import (
     blind_causes,
@@ -69,9 +70,6 @@ CHI2 = (
     " is worse by 2 is as good."
 )
 """How the table of rivals is read; 2 ln 100, at which a rival is dropped, is 9.2."""
-
-FLAWS = 2
-"""Flaws of one sort that are told at once: a log in sixty pieces has each of them sixty times."""
 
 DRAWN = 2
 """Recordings whose traces are drawn; the numbers are of all."""
@@ -128,16 +126,10 @@ def _answer(verdict: Verdict, plant: str) -> Html:
 
 def _flaws(checks: Sequence[Check]) -> list[Html]:
     """Checks that failed, the first of each sort; the others unfold."""
-    sorts: dict[str, list[str]] = {}
-    for check in checks:
-        sorts.setdefault(check.name, []).append(check.message)
-    first, more = (
-        [line for lines in sorts.values() for line in lines[part]]
-        for part in (slice(FLAWS), slice(FLAWS, None))
-    )
+    first, more = flaws(checks)
     parts = []
     if first:
-        parts.append(paragraph("The recordings have flaws that the verdict may rest on:", "bad"))
+        parts.append(paragraph(RESTS, "bad"))
         parts.append(bullets(first))
     if more:
         parts.append(folded(f"{len(more)} more like these", bullets(more)))

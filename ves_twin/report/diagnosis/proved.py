@@ -114,7 +114,7 @@ def proved_line(one: Proved) -> str:
     sizes = ", ".join(
         f"{quantity(s.value, s.unit)} ({_interval(s)})" for s in one.parameters.values()
     )
-    return f"  {one.label:<36}{sizes}; {standing_words(one)}"
+    return f"  {one.label:<35} {sizes}; {standing_words(one)}"
 
 
 def _interval(size: Size) -> str:
