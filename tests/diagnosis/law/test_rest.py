@@ -118,3 +118,10 @@ def test_a_law_is_refused_that_leaves_a_tenth_more_than_the_causes_alone():
     gain = Gain(0.63, 0.55, 0.70, 9.0, 4.0, errors={"one": (3.0, 1.0), "two": (3.0, 1.2)})
     assert not _gated(gain, {"one": 1.1, "two": 1.15})
     assert "the proved causes alone" in _gated(gain, {"one": 0.95, "two": 1.15})
+
+
+def test_a_law_is_refused_for_which_one_channel_pays():
+    """Of a UR10e one joint's error was halved, and those of three others grew by a fifth."""
+    gain = Gain(0.96, 0.93, 0.99, 9.0, 4.0, errors={"one": (14.0, 2.6), "two": (4.0, 0.88)})
+    assert not _gated(gain, {"one": 5.8, "two": 0.82})
+    assert "the proved causes alone" in _gated(gain, {"one": 5.8, "two": 0.71})

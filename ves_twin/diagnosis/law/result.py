@@ -94,7 +94,7 @@ class LawFinding:
         """The law in words: "effort at joint against its speed, -0.02 |x| x"."""
         told = {"play": "play", "hold": "rows that repeat", "stop": "a stop"}
         what = told.get(self.shape, f"an {self.kind}" if self.kind == "effort" else "a reading")
-        along = " and ".join(_spoken(name, self.place) for name in self.of)
+        along = " and ".join(map(_spoken, self.of, self.units, [self.place] * len(self.of)))
         where = f"{what} {'at' if self.kind == 'effort' else 'of'} {named(self.place)}"
         said = f"{where} that depends on {along}" if self.shape in ("table", "mesh") else where
         return f"{said}: {self.form}" if self.form else said
@@ -114,14 +114,14 @@ def named(place: str) -> str:
     return f"{one} and {two}{' together' if sign > 0.0 else ', against one another,'}"
 
 
-def _spoken(variable: str, place: str) -> str:
+def _spoken(variable: str, unit: str, place: str) -> str:
     """A variable as a person says it."""
     what, _, name = variable.partition("@")
     if what == "time":
         return "time"
     name, _, width = name.partition(WITHIN)
     if width:
-        return f"where {name} stands within a play of {width}"
+        return f"where {name} stands within a play of {width} {unit}"
     joints = joints_of(name)
     if len(joints) == 2:
         return f"the {'sum' if joints[1][1] > 0.0 else 'difference'} of their {what}s"
