@@ -32,7 +32,10 @@ def new_text(found: NewMachine, model: Path, logs: Sequence[Path]) -> str:
     *fitted, last = [str(log) for log in logs]
     held = f" --held-out {last}" if fitted else held
     given = " ".join(fitted or [last])
-    first = _first(draft.explained)
+    first = _first({k: v for k, v in draft.explained.items() if k not in draft.rubs})
+    if draft.gravity:
+        file = found.model or model.name
+        first = f"see to the gravity in {file}, and draft again from it; then "
     lines += [f"  next      {first}ves-twin diagnose {given}{held} --plant {found.path}"]
     return "\n".join(lines)
 

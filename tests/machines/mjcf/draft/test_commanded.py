@@ -45,3 +45,12 @@ def test_a_constant_that_a_motor_has_is_kept(tmp_path):
     found, rig = drafted(*logged(tmp_path, 6e-4, gear=0.1))
     assert rig.description.signals["drive.effort"].scale == pytest.approx(0.1 / 0.022, rel=0.2)
     assert any("is electrical" in words for words in found.look)
+
+
+@pytest.mark.parametrize(("name", "known"), [("voltage_V", 0.01), ("motor_pwm", 0.2)])
+def test_what_a_count_of_a_duty_makes_nobody_tells_to_a_hundredth(tmp_path, name, known):
+    """A cart's viscous friction was firm by it, where only its ratio to the gain is known."""
+    model, log = logged(tmp_path, 6e-4)
+    log.write_text(log.read_text().replace("voltage_V", name))
+    _, rig = drafted(model, log)
+    assert rig.description.tolerances["gain"] == known

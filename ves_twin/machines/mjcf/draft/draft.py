@@ -91,6 +91,8 @@ class Draft:
         explained: column or signal -> share of its power that the model as it is explains.
         stretch: length of stretches to hold out [s], long enough for a diagnosis; 0 where the log
             is too short for two.
+        rubs: columns of efforts that friction explains, and the model does not.
+        gravity: that the model should have, as its file has it; empty where it is right.
     """
 
     text: str
@@ -101,6 +103,8 @@ class Draft:
     mode: str
     explained: dict[str, float]
     stretch: float
+    rubs: tuple[str, ...] = ()
+    gravity: str = ""
 
 
 def draft(model: Path, logs: Sequence[Path], out: Path, rate: float | None = None) -> Draft:
@@ -161,7 +165,9 @@ def draft(model: Path, logs: Sequence[Path], out: Path, rate: float | None = Non
     words, stretch = f"{now.mode.mode}: {now.mode.why}", _stretch(now.mode, log)
     guesses = _guesses(check, now.mode)
     told = {name: max(share, 0.0) for name, share in now.explained.items()}
-    return Draft(now.text, given.text, guesses, left, look, words, told, stretch)
+    return Draft(
+        now.text, given.text, guesses, left, look, words, told, stretch, check.rubs, check.gravity
+    )
 
 
 @dataclass(frozen=True)

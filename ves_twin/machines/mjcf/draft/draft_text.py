@@ -11,6 +11,7 @@ import mujoco
 import numpy as np
 
 from ves_twin.core.units import SI_UNITS
+from ves_twin.effects.bodies import LOAD
 from ves_twin.machines.mjcf.draft.check import Checked
 from ves_twin.machines.mjcf.draft.chosen import RATES, Chosen
 from ves_twin.machines.mjcf.draft.estimates import travel, two_digits, typical
@@ -104,12 +105,15 @@ def _effects(check: Checked, model: mujoco.MjModel) -> str:
         known = model.body(body).name and model.body_mass[body] > 0.0
         if times > HEAVY and known and not carries(model, body):
             heavy[model.body(body).name] = 2.0 * (times - 1.0) * float(model.body_mass[body])
+    for name, most in check.lifts.items():
+        if most > LOAD * float(model.body(name).mass[0]):
+            heavy[name] = most
     own = [
         f'{{ kind = "body_mass", on = [{_quoted(body)}], largest = "{two_digits(most):g} kg" }}, '
         for body, most in heavy.items()
     ]
     why = "every one that the model has a place for"
-    why += f"; {', '.join(heavy)}: by what the log has beside friction" * bool(heavy)
+    why += f"; {', '.join(heavy)}: by the efforts in the log" * bool(heavy)
     return f'effects = [{"".join(own)}{{ kind = "*", on = ["*"] }}]   # {why}'
 
 
@@ -306,8 +310,9 @@ def _tolerances(model: mujoco.MjModel, check: Checked) -> str:
         there["kv"] = NOBODY_TELLS
     if any(int(model.actuator_dyntype[i]) in FILTERS for i in drives):
         there["timeconst"] = NOBODY_TELLS
-    if any(match.fitted for match in check.found):
-        there["gain"] = FITTED
+    efforts = [match for match in check.found if match.spot.quantity is Quantity.EFFORT]
+    if any(match.fitted or (match.spot.unit == "1" and not match.told) for match in efforts):
+        there["gain"] = FITTED  # counts or a duty: nobody tells that the model's constant is theirs
     return "{ " + ", ".join(f'{name} = "{share}"' for name, share in there.items()) + " }"
 
 

@@ -64,6 +64,11 @@ class EffortFit:
         return self.usable and (self.free or self.alone > MOST)
 
     @property
+    def rubs(self) -> bool:
+        """Whether friction explains most of the effort, and the model little of it."""
+        return self.gain < STRONG and self.share - self.gain > MOST
+
+    @property
     def usable(self) -> bool:
         """Whether the slope says something: the model explains a part, and by a likely factor.
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
@@ -149,7 +150,21 @@ def _likeness(log: LogColumns, column: str, spot: Spot, spots: Sequence[Spot]) -
     family = [c for c in log.values if re.sub(r"\d+", "#", bare_name(c)) == stem]
     zero = any(re.findall(r"\d+", bare_name(c))[-1:] == ["0"] for c in family)
     zero = zero and not any(re.findall(r"\d+", s.name)[-1:] == ["0"] for s in rivals)
+    spot = _numbered(spot, rivals, len(family))
     return likeness(column, _unit(log, column), spot, len(rivals) == 1, zero)
+
+
+def _numbered(spot: Spot, rivals: Sequence[Spot], columns: int) -> Spot:
+    """With its place as its number, where more columns are numbered than names are alike.
+
+    Six columns q1 to q6 of shoulder, elbow, wrist_1 to wrist_3 count all joints: wrist_1 is no
+    first. Two of a leg1 and a leg2 count those.
+    """
+    numbers = [s.number for s in rivals]
+    alike = Counter(re.sub(r"\d+", "#", s.name) for s in rivals)
+    if len(set(numbers)) == len(numbers) or columns <= max(alike.values()):
+        return spot
+    return replace(spot, number=rivals.index(spot) + 1)
 
 
 def _unit(log: LogColumns, column: str) -> str:

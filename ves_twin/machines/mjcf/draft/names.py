@@ -155,7 +155,8 @@ def implied_unit(column: str) -> str:
     words = _words(column)
     if "rpm" in words:
         return "rpm"
-    if {"i", "q"} <= set(words_of(bare_name(column))):
+    own = {word for word in words_of(bare_name(column)) if not word.isdigit()}
+    if {"i", "q"} <= own or own == {"i"}:
         return "A"
     told = [IMPLIED[word] for word in sorted(words) if word in IMPLIED]
     others = KIND_WORDS[Quantity.POSITION] | KIND_WORDS[Quantity.SPEED] | set(MECHANICAL.split())

@@ -1,0 +1,353 @@
+"""Judge: efforts of a log against those that a model needs along the recorded motion."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+
+import mujoco
+import numpy as np
+
+from ves_twin.core.types import FloatArray
+from ves_twin.data.clock.usual_period import is_usual
+from ves_twin.machines.mjcf.draft.angles import other_angle
+from ves_twin.machines.mjcf.draft.changes import changes
+from ves_twin.machines.mjcf.draft.effort_fit import (
+    FAR,
+    LOADED,
+    MOST,
+    STRONG,
+    TELLS,
+    EffortFit,
+)
+from ves_twin.machines.mjcf.draft.late import Pushed, words_of_lag
+from ves_twin.machines.mjcf.draft.log_columns import LogColumns
+from ves_twin.machines.mjcf.draft.match import Match
+from ves_twin.machines.mjcf.draft.motion import Motion, motion_of
+from ves_twin.machines.mjcf.draft.mounted import Mounted, mounted
+from ves_twin.machines.mjcf.draft.rates import differs
+from ves_twin.machines.mjcf.draft.spots import Quantity
+from ves_twin.machines.mjcf.draft.too_much_friction import too_much_friction
+from ves_twin.machines.mjcf.motion.inverse import smoothed
+from ves_twin.machines.mjcf.parts.cyclic import turned_by
+from ves_twin.machines.mjcf.parts.servo import is_servo
+from ves_twin.machines.mjcf.rig.places import driven_joint
+
+GAINED = 0.15
+"""Share of one joint's power that a change must explain more to be proposed: well above what
+signs and units that are right gain by chance on rough models."""
+
+OFF = 0.1
+"""Weight of a decade between an effort and what the model needs: a factor of 57 is no friction."""
+
+SOUND = 0.1
+"""Weight of an effort that the model explains a part of by a likely factor: a torque that follows
+the sign of speed is explained by friction alone, whatever the position's zero (a pendulum that is
+swung up: 0.87 with a zero upright, 0.94 hanging)."""
+
+MAJORITY = 0.5
+"""Share of the joints that a change is about beyond which the model must be right there: of one or
+two that is all of them."""
+
+ALIKE = 0.05
+"""Difference of scores within which another change would do as well, and is told: of an arm with a
+tip mass that its model lacks an angle from the world, degrees and a quarter turn came to that."""
+
+TURN = 0.02
+"""Weight against turning an effort's sign, so that where all else is equal none is turned."""
+
+ODD = 50.0
+"""Times what the model needs from which on an effort is in another unit, whatever friction does."""
+
+CLEAR = 0.7
+"""Share of each effort that must be explained after a swap, friction and all, where less than MOST
+was before: it is right, however little the model itself needs there (wrists of a UR10e)."""
+
+FOREIGN = 1e5
+"""Times from which on a column is likely of another quantity: no usual unit is as far off."""
+
+LITTLE = " Where the model needs next to nothing (a balanced wrist), friction does that, too"
+"""What is said of an effort that is large and not like that of the model."""
+
+
+def _is_turned(new: list[Match], found: list[Match]) -> bool:
+    """Whether a column counts the other way in a change."""
+    return any(a.scale == -b.scale for a, b in zip(new, found, strict=True))
+
+
+def _is_flipped(new: list[Match], found: list[Match]) -> bool:
+    """Whether an angle is half a turn off in a change: of small ones a sign says the same."""
+    return any(abs(a.zero - b.zero) == np.pi for a, b in zip(new, found, strict=True))
+
+
+def _against(new: list[Match], found: list[Match]) -> float:
+    """Weight against a change of a unit that the column's name tells, beside other changes."""
+    pairs = zip(new, found, strict=True)
+    return GAINED * any(a.unit != b.unit for a, b in pairs if b.told and a.column == b.column)
+
+
+@dataclass(frozen=True)
+class Judge:
+    """Efforts of a log against those of a model."""
+
+    log: LogColumns
+    model: mujoco.MjModel
+    corner: float
+    locked: tuple[str, ...] = ()
+    cyclic: tuple[str, ...] = ()
+
+    def motion(self, found: list[Match]) -> Motion:
+        """Along the positions as they are matched, and the speeds of joints without one."""
+        positions = {}
+        for m in found:
+            if m.spot.quantity is Quantity.POSITION:
+                positions[m.spot.name] = m.factor * self.log.column(m.column) + m.zero
+            elif m.spot.quantity is Quantity.SPEED and m.spot.name in self.cyclic:
+                speed = m.factor * self.log.column(m.column)
+                time = np.arange(len(speed), dtype=float) * self.log.period
+                positions[m.spot.name] = turned_by(speed, time)
+        return motion_of(self.model, positions, self.log.period, self.corner)
+
+    def corrected(self, found: list[Match]) -> tuple[list[Match], list[str], Mounted | None]:
+        """With the changes of positions that explain more, the best first, and words for them.
+
+        Where another gravity explains more than any of them, nothing is changed.
+        """
+        said: list[str] = []
+        best = self.score(found)
+        for _ in range(2 * len(found)):
+            driven = {m.spot.joint for m in self.driving(found)}
+            ways = changes(found, driven, self.model, self.reach(found))
+            tried = [(self.score(new), new, words) for new, words in ways]
+            better = [one for one in tried if one[0] >= best + GAINED]
+            turned = any(_is_turned(new, found) for _, new, _ in better)
+            ranked = [
+                (one[0] - _against(one[1], found) - (turned and _is_flipped(one[1], found)), one)
+                for one in better
+            ]
+            ranked.sort(key=lambda one: -one[0])
+            sound = (one for one in ranked if self.sound(one[1][1], found))
+            first = next(sound, None)
+            other = None if said else self.mounted(found)
+            ahead = other.score - max(best + GAINED, first[0] if first else 0.0) if other else -1.0
+            if other and ahead > ALIKE * (first is not None):
+                return found, [other.words], other
+            if first is None:
+                break
+            alike = [one[2] for rank, one in sound if rank > first[0] - ALIKE]
+            alike += [other.words] if other and ahead > -ALIKE else []
+            best, found, words = first[1]
+            said.append(f"{words}; or else: {'; or '.join(alike)}" if alike else words)
+        return found, said, None
+
+    def mounted(self, found: list[Match]) -> Mounted | None:
+        """Another gravity that explains more of columns as they are meant now."""
+        return mounted(self.model, lambda model: replace(self, model=model).score(found))
+
+    def reach(self, found: list[Match]) -> dict[str, float]:
+        """Column of a position -> its largest number."""
+        positions = (m.column for m in found if m.spot.quantity is Quantity.POSITION)
+        return {name: float(np.max(np.abs(self.log.column(name)))) for name in positions}
+
+    def sound(self, new: list[Match], found: list[Match]) -> bool:
+        """Whether a change makes the model right about its joints: most of each effort, either way.
+
+        In 3 s of slow motion columns are alike: a swap against the names of six torques explained
+        more of them beside friction, by slopes of -0.2 and -29. Of three joints and more most are
+        enough: a wrist's torque is all friction, whatever the unit of the angles.
+        """
+        old, motion = set(found), self.motion(new)
+        changed = {m.spot.joint or m.spot.name for m in new if m not in old}
+        now = {m.column: self.fit(m, motion) for m in self.driving(new) if m.spot.joint in changed}
+        before = self.motion(found)
+        was = {m.column: self.fit(m, before) for m in self.driving(found) if m.column in now}
+        if now and all(fit.share > CLEAR and was[c].share < MOST for c, fit in now.items()):
+            return True
+        right = [fit.right for fit in now.values()]
+        return not right or sum(right) > MAJORITY * len(right)
+
+    def score(self, found: list[Match]) -> float:
+        """Shares explained at all joints, less what factors, signs and speeds have against it."""
+        motion, total = self.motion(found), -differs(self.log, found, self.corner)
+        driven = set()
+        for match in self.driving(found):
+            fit, dof = self.fit(match, motion), self.dof(match)
+            driven.add(dof)
+            total += fit.share - TURN * (fit.sign < 0) - LOADED * fit.against
+            total += SOUND * (fit.usable and fit.slope > 0.0 and not fit.free)
+            if not match.electrical and fit.gain > STRONG and fit.slope:
+                total -= OFF * min(abs(float(np.log10(abs(fit.slope)))), 3.0)
+        still = {int(self.model.joint(name).dofadr[0]) for name in self.locked}
+        for dof in set(range(self.model.nv)) - driven - self.pushed(found) - still:
+            steady = motion.steady[:, dof]
+            inertia, weight = motion.effort[:, dof] - steady, float(np.std(steady))
+            if weight > 0.0 and 1.0 / ODD < float(np.std(inertia)) / weight < ODD:
+                alike = float(np.corrcoef(-inertia, steady)[0, 1])
+                total += max(alike, 0.0) ** 2
+        return total
+
+    def driving(self, found: list[Match]) -> list[Match]:
+        """Efforts that act on one joint; what a servo is told is none."""
+        efforts = (m for m in found if m.spot.quantity is Quantity.EFFORT and m.spot.joint)
+        return [m for m in efforts if not is_servo(self.model, self.model.actuator(m.spot.name).id)]
+
+    def pushed(self, found: list[Match]) -> set[int]:
+        """Degrees of freedom of joints that are driven by efforts which no column tells."""
+        told = {m.spot.name for m in self.driving(found)}
+        motors = (i for i in range(self.model.nu) if self.model.actuator(i).name not in told)
+        joints = {driven_joint(self.model, i) for i in motors}
+        return {int(self.model.joint(name).dofadr[0]) for name in joints if name}
+
+    def dof(self, match: Match) -> int:
+        """That an effort acts on."""
+        return int(self.model.joint(match.spot.joint).dofadr[0])
+
+    def needed(self, match: Match, motion: Motion) -> FloatArray:
+        """Command (m,) that the model needs of a motor along a motion."""
+        return np.asarray(motion.effort[:, self.dof(match)] / self.gain(match))
+
+    def gain(self, match: Match) -> float:
+        """Effort at the joint for a command of 1."""
+        actuator = self.model.actuator(match.spot.name)
+        return float(actuator.gear[0] * actuator.gainprm[0]) or 1.0
+
+    def smooth(self, match: Match) -> FloatArray:
+        """A recorded effort (n,) in SI, low-passed as the motion."""
+        column = smoothed(self.log.column(match.column), self.log.period, self.corner)
+        return np.asarray(match.factor * column)
+
+    def recorded(self, match: Match, motion: Motion) -> FloatArray:
+        """A recorded effort (m,) in SI, at the motion's rows."""
+        return np.asarray(self.smooth(match)[motion.rows])
+
+    def late(self, found: list[Match], motion: Motion) -> list[str]:
+        """Efforts that do not come with the motion."""
+        efforts = [
+            Pushed(
+                self.smooth(m),
+                self.needed(m, motion),
+                motion.speed[:, self.dof(m)],
+                m.electrical,
+            )
+            for m in self.driving(found)
+        ]
+        return words_of_lag(efforts, motion.rows, self.log.period)
+
+    def fit(self, match: Match, motion: Motion) -> EffortFit:
+        """Of a recorded effort, in its unit's SI, beside friction."""
+        y, need = self.recorded(match, motion), self.needed(match, motion)
+        return EffortFit.of(y, need, motion.speed[:, self.dof(match)], match.electrical)
+
+    def along(self, found: list[Match], motion: Motion) -> Iterator[tuple[Match, FloatArray]]:
+        """Each effort that acts on one joint, with what it is there (m,)."""
+        for match in self.driving(found):
+            yield match, self.gain(match) * self.recorded(match, motion)
+
+    def power(self, found: list[Match], motion: Motion) -> float:
+        """Mean of what all efforts give to their joints [W]: what friction takes, so above 0."""
+        rows = (motion.speed[:, self.dof(m)] * effort for m, effort in self.along(found, motion))
+        return sum(float(np.mean(row)) for row in rows)
+
+    def rough(self, found: list[Match], motion: Motion) -> list[str]:
+        """Joints at which the model has more friction than what was measured."""
+        measured = (pair for pair in self.along(found, motion) if not pair[0].electrical)
+        along = {m.spot.joint: (effort, motion.speed[:, self.dof(m)]) for m, effort in measured}
+        return too_much_friction(self.model, along)
+
+    def efforts(self, found: list[Match], motion: Motion) -> tuple[list[Match], list[str]]:
+        """With signs and constants of efforts as the motion needs them."""
+        found, said = list(found), []
+        for i, match in enumerate(found):
+            if match not in self.driving(found):
+                continue
+            fit = self.fit(match, motion)
+            if match.electrical and (fit.gain > TELLS or self.log.is_coarse(match.column)):
+                found[i], words = self.constant(match, fit, motion, found)
+                said += words
+                continue
+            if match.fitted:
+                told = f"{match.column} is electrical: {match.constant}"
+                said.append(f"{told}; put the motor's constant there")
+            strong = fit.gain > STRONG and not fit.usable
+            turns = fit.sign < 0 and (fit.by_slope or self.power(found, motion) <= 0.0)
+            if fit.sign < 0 and not (turns or strong):
+                said.append(
+                    f"{match.column} brakes its joint more than it drives it (work {fit.work:.0%}):"
+                    " look whether its sign is right; in a motion of several joints it may be"
+                )
+            elif turns:
+                found[i] = replace(match, scale=-match.scale)
+                why = f"slope {fit.slope:.2f}" if fit.usable else f"work {fit.work:.0%}"
+                said.append(
+                    f"{match.column} has the wrong sign for this model ({why}): it is turned; or"
+                    " the position of its joint counts the other way"
+                )
+            said += self.odd(match, fit)
+        return found, said
+
+    def constant(
+        self, match: Match, fit: EffortFit, motion: Motion, found: list[Match]
+    ) -> tuple[Match, list[str]]:
+        """An electrical column with the constant that fits the model, or its own command."""
+        if fit.gain <= STRONG and self.log.is_coarse(match.column):
+            coarse = "moves by a few steps of its resolution: no constant is read off it"
+            return match, [f"{match.column} {coarse}"]
+        scale = 1.0 / fit.slope
+        if match.spot.unit == "1" and 1.0 / FAR < abs(scale) / match.prefix < FAR:
+            own = float(np.copysign(match.prefix, scale))
+            return replace(match, scale=own), [
+                f"{match.column} is taken as the command of {match.spot.label} as the model"
+                f" has it{', turned' * (scale < 0.0)}; by the model's inertia and weight"
+                f" {scale / own:.3g} times it would fit best"
+            ]
+        unit = f"{match.spot.unit} per {match.unit}"
+        how = ", turned (or its joint's position counts the other way)" * (scale < 0.0)
+        how += self.by_inertia(match, motion)
+        new = replace(match, scale=float(f"{scale:.3g}"))
+        said = [
+            f"{match.column} is electrical: {abs(scale):.3g} {unit} makes it fit this model{how};"
+            " put the motor's constant there"
+        ]
+        others = [new if m is match else m for m in found]
+        return new, [*said, *other_angle(self.log, others, match.spot.joint, scale, unit)]
+
+    def odd(self, match: Match, fit: EffortFit) -> list[str]:
+        """That an effort is of another size than the model's, if it is; of friction no size is."""
+        strong = fit.gain > STRONG and not fit.usable
+        times = abs(fit.slope) if strong else fit.size
+        if not (strong or not 1.0 / ODD < times < ODD) or fit.free:
+            return []
+        if not is_usual(self.log.period):
+            return []
+        if not strong and times > ODD and fit.rubs:
+            little = "and the model needs next to nothing there: nothing tells its unit"
+            return [f"{match.column} is friction, {fit.share:.0%} of it, {little}"]
+        turned = ", turned," * (strong and fit.slope < 0.0)
+        return [
+            f"{match.column} is {times:.3g} times{turned} what the model needs: another unit,"
+            f"{' swapped columns,' * (not 1.0 / FOREIGN < times < FOREIGN)} a gear or a wrong mass?"
+            f"{LITTLE * (not strong and times > ODD)}"
+        ]
+
+    def by_inertia(self, match: Match, motion: Motion) -> str:
+        """That nothing but inertia tells a constant, where the model bears no load there."""
+        dof = self.dof(match)
+        steady, whole = (float(np.std(x[:, dof])) for x in (motion.steady, motion.effort))
+        if steady > MOST * whole:
+            return ""
+        return ", by its inertia alone, and is too small by what the rotor adds to that"
+
+    def lifting(self, found: list[Match], motion: Motion) -> list[tuple[int, FloatArray]]:
+        """Degree of freedom and effort (m,) of each drive whose unit or constant is known."""
+        known = (m for m in found if not m.fitted or abs(m.scale) != 1.0)
+        return [(self.dof(m), effort) for m, effort in self.along(list(known), motion)]
+
+    def explained(self, found: list[Match], motion: Motion) -> dict[str, float]:
+        """Share of the power of each effort that the model as it is explains."""
+        shares = {}
+        for match in self.driving(found):
+            y = self.recorded(match, motion)
+            rest = y - self.needed(match, motion)
+            power = float(np.sum((y - y.mean()) ** 2)) or 1.0
+            shares[match.column] = max(1.0 - float(np.sum((rest - rest.mean()) ** 2)) / power, 0.0)
+        return shares

@@ -1,0 +1,51 @@
+"""lifted: what the last bodies of arms can have carried, by the efforts of a log."""
+
+from __future__ import annotations
+
+import copy
+from collections.abc import Callable, Iterable
+
+import mujoco
+import numpy as np
+
+from ves_twin.core.types import FloatArray
+from ves_twin.machines.mjcf.draft.estimates import typical
+from ves_twin.machines.mjcf.draft.motion import Motion
+from ves_twin.machines.mjcf.rig.places import carries
+
+
+def lifted(
+    model: mujoco.MjModel,
+    motion: Callable[[mujoco.MjModel], Motion],
+    efforts: Iterable[tuple[int, FloatArray]],
+) -> dict[str, float]:
+    """Mass [kg] at the centre of the last bodies whose weight would take all of an effort.
+
+    Of the joints that bear it the one that could bear least; a tool that a model lacks is no
+    heavier, whatever the mass of the flange in the model (a UR10e: 0.2 kg, and 2 kg on it).
+
+    Args:
+        model: of the machine.
+        motion: of a model, along the log.
+        efforts: degree of freedom and effort [N or N m] (m,) of each drive.
+
+    Returns:
+        Body -> mass; without bodies that no effort lifts.
+    """
+    loads = list(efforts)
+    here, found = motion(model), {}
+    for body in range(1, model.nbody):
+        name = model.body(body).name
+        if not name or not carries(model, body) or not model.body_mass[body] > 0.0:
+            continue
+        heavier = copy.copy(model)
+        heavier.body_mass[body] += 1.0
+        per_kg = motion(heavier).steady - here.steady
+        most = [
+            typical(effort) / size
+            for dof, effort in loads
+            if (size := float(np.percentile(np.abs(per_kg[:, dof]), 95.0))) > 0.0
+        ]
+        if most and np.isfinite(min(most)):
+            found[name] = min(most)
+    return found
