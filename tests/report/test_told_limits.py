@@ -142,10 +142,10 @@ def test_a_simulation_that_falls_out_of_step_is_told_and_what_was_done_instead()
 
 
 @pytest.mark.parametrize(
-    ("count", "said"), [(1, "part 0 ("), (4, "part 2 and part 3 ("), (9, "part 3 and 5 more (")]
+    ("count", "said"), [(1, "part 0;"), (4, "part 2 and part 3;"), (9, "part 3 and 5 more;")]
 )
-def test_what_there_was_no_time_for_is_told_in_one_short_line(count, said):
+def test_what_was_left_out_to_save_time_is_told_in_one_short_line(count, said):
     told = rests_on(verdict(left_out=tuple(f"part {n}" for n in range(count))).basis)
     assert said in told
     assert told.count("part") == min(count, 4)
-    assert "--minutes, or Ctrl-C" in told
+    assert "--minutes gives more" in told

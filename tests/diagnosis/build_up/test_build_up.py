@@ -119,7 +119,7 @@ def test_a_diagnosis_without_time_ends_with_a_verdict_and_says_what_it_left_out(
     unhurried = diagnose(PLANT, [measured(1)], settings=FOUR)
     assert FEWER not in unhurried.basis.left_out
     assert verdict.statistics.effect_threshold > 0.0
-    assert any("No time was left for" in text for text in basis_sentences(verdict))
+    assert any("Left out to save time:" in text for text in basis_sentences(verdict))
 
 
 @pytest.mark.parametrize(

@@ -206,12 +206,12 @@ def _pieces(basis: Basis) -> tuple[str, ...]:
 
 
 def _left_out(basis: Basis) -> tuple[str, ...]:
-    """What there was no time for."""
+    """What was left out to save time, as it would have taken too much of it."""
     if not basis.left_out:
         return ()
     few, count = list(basis.left_out[:FEW]), len(basis.left_out) - FEW
     named = _listed([*few, *([f"{count} more"] if count > 0 else [])])
-    return (f"No time was left for {named} (--minutes, or Ctrl-C).",)
+    return (f"Left out to save time: {named}; --minutes gives more.",)
 
 
 def _repeats(basis: Basis) -> tuple[str, ...]:
