@@ -699,7 +699,7 @@ def test_flaws_that_repeat_unfold_behind_the_first_of_each_sort(friction):
     assert "duty stays" in told
     assert "<details>" in told.rpartition("recording 2: 5 rows repeat")[2]
     assert rest.partition("</details>")[0].count("rows repeat") == 58
-    assert "failed: repeats, saturation." in page
+    assert "did not pass: repeats, saturation." in page
 
 
 def test_a_step_that_puts_a_channel_off_is_told_with_a_finer_one(proven):

@@ -4,7 +4,7 @@ import threading
 
 import pytest
 
-from ves_twin.simulator.beside import Beside
+from ves_twin.simulator.beside import Beside, _Job
 
 
 def test_a_job_waits_for_the_one_before():
@@ -28,6 +28,14 @@ def test_what_a_job_raises_reaches_its_owner_once_and_the_next_is_not_begun():
         beside.start(lambda: done.append("not begun"))
     beside.wait()
     assert done == []
+
+
+def test_a_job_that_a_fork_left_without_its_thread_is_done_by_who_waits():
+    beside, done = Beside(), []
+    beside._job = _Job(lambda: done.append("rows"))
+    beside._job.join = lambda: None  # as in the child of a fork: the thread is gone
+    beside.wait()
+    assert done == ["rows"]
 
 
 def test_nothing_to_wait_for_is_no_error():

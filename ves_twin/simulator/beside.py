@@ -19,8 +19,9 @@ class Beside:
             Exception: what the job before raised; this one is then not begun.
         """
         self.wait()
-        self._job = _Job(work)
-        self._job.start()
+        job = _Job(work)
+        job.start()
+        self._job = job
 
     def wait(self) -> None:
         """Return when no job is under way.
@@ -32,6 +33,8 @@ class Beside:
             return
         job = self._job
         job.join()
+        if not job.done:  # in a process that was forked meanwhile: no thread goes with it
+            job.run()
         self._job = None  # only now: an interrupt while waiting leaves the job to be waited for
         if job.error is not None:
             raise job.error
@@ -44,9 +47,11 @@ class _Job(Thread):
         super().__init__(name="rows")
         self._work = work
         self.error: BaseException | None = None
+        self.done = False
 
     def run(self) -> None:
         try:
             self._work()
         except BaseException as error:  # raised again where the owner waits
             self.error = error
+        self.done = True

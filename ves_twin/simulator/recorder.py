@@ -197,11 +197,12 @@ class Recorder:
         self._first_rows[:cycles_left] -= count
         at.rows, at.cycles = left, cycles_left  # first, so that an interrupt writes no row twice
         self._flushed = monotonic()
-        if not isinstance(self.sink, NoSink):
-            self._beside.start(lambda: self._complete(rows, time, ticks, points))
+        sink = self.sink
+        if not isinstance(sink, NoSink):
+            self._beside.start(lambda: self._complete(sink, rows, time, ticks, points))
 
     def _complete(
-        self, rows: FloatArray, time: FloatArray, ticks: IntArray, points: FloatArray
+        self, sink: Sink, rows: FloatArray, time: FloatArray, ticks: IntArray, points: FloatArray
     ) -> None:
         """Add the computed signals to rows and hand these to the sink."""
         self._add_platform_pose(rows)
@@ -209,7 +210,7 @@ class Recorder:
             self._add_reference(rows, time, name, reference, ticks, points)
         if len(time):
             signals = {name: rows[:, SLICES[name]] for name in self.names}
-            self.sink.write(time, self._faults.logged(time, signals))
+            sink.write(time, self._faults.logged(time, signals))
 
     def collect(self) -> tuple[FloatArray, dict[str, FloatArray]]:
         """All rows that are kept in memory: time [s] (n,) and every signal (n, width).

@@ -129,9 +129,8 @@ def record(
             sim.recorder.sink = stream
             try:
                 _run(sim, progress)
-            finally:
-                if sim.outcome is None:
-                    sim.recorder.flush()
+            finally:  # rows are handed over beside: also after an interrupt in the last of it
+                sim.recorder.flush(unfinished=sim.outcome is not None)
             path = stream.finish(recording_info(sim))
         summary = _summary(sim, path, ready - begin, perf_counter() - ready)
         write_whole(held.path / SUMMARY_NAME, summary.to_json() + "\n")

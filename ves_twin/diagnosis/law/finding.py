@@ -118,12 +118,10 @@ def _gated(gain: Gain | None, causes: Mapping[str, float]) -> str:
         return "the rms errors on held-out recordings grow with it"
     over_causes = {name: (rms, gain.errors[name][1]) for name, rms in causes.items() if rms > 0.0}
     grown = [np.log(after / before) for before, after in over_causes.values()]
-    if grown and (
-        np.mean(grown) > NO_WORSE
-        or max(grown) > NONE_WORSE
-        or replace(gain, errors=over_causes).grown
-    ):
+    if grown and (np.mean(grown) > NO_WORSE or replace(gain, errors=over_causes).grown):
         return "the proved causes alone leave smaller rms errors on held-out recordings"
+    if grown and max(grown) > NONE_WORSE:
+        return "one channel is predicted worse with it than by the proved causes alone"
     if gain.share < GATE or gain.low is None or gain.low <= 0.0:
         return f"it takes only {100.0 * gain.share:.0f} % of the held-out excess away"
     return ""

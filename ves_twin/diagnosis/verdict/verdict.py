@@ -213,7 +213,7 @@ class Verdict:
     of it. `tuned` are the plant's commissioning numbers at the fit. `lookalikes` say what a named
     cause could be taken for, and up to which size, and `smallest_findable` which sizes would have
     shown, both beside noise and tolerances alone; `twins` are cosines of all pairs. `quality` has
-    the checks that a recording failed; `alone` what each recording says by itself, where all
+    the checks that a recording did not pass; `alone` what each recording says by itself, where all
     together have no explanation. `proved` are the causes that held-out data
     prove one by one, out of `put_to_proof`, with the false-discovery rate that this keeps and the
     largest p that it allows; `unproved` has those of the same choice that were not, with their p;

@@ -88,7 +88,7 @@ def _validation(verdict: Verdict) -> Factor:
 def _input(verdict: Verdict) -> Factor:
     failed = list(dict.fromkeys(check.name for check in verdict.quality))
     if failed:
-        said = f"Checks of the recordings that failed: {', '.join(failed)}."
+        said = f"Checks of the recordings that did not pass: {', '.join(failed)}."
         return Factor("input pedigree", Pedigree.OPEN, said)
     lost = ", ".join(verdict.unseen)
     said = "No check of the recordings failed." + (f" Not recorded: {lost}." if lost else "")

@@ -13,7 +13,7 @@ RESTS = "The recordings have flaws that the verdict may rest on:"
 
 
 def flaws(checks: Sequence[Check]) -> tuple[list[str], list[str]]:
-    """Messages of checks that failed: the first ones of each sort, and all others."""
+    """Messages of checks that did not pass: the first ones of each sort, and all others."""
     sorts: dict[str, list[str]] = {}
     for check in checks:
         sorts.setdefault(check.name, []).append(check.message)

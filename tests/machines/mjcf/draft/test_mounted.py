@@ -58,3 +58,27 @@ def test_the_gravity_that_scores_best_is_told(along):
 def test_no_other_gravity_is_told_where_the_model_has_the_best():
     model = mujoco.MjModel.from_xml_string(ARM)
     assert mounted(model, lambda other: -float(other.opt.gravity[2])) is None
+
+
+def test_positions_that_all_count_the_other_way_are_no_ceiling(arm, write):
+    columns = torques("floor")
+    turned = {name: -values if name.startswith("q") else values for name, values in columns.items()}
+    found, rig = drafted(arm, write(turned))
+    assert found.gravity == ""
+    assert not any("gravity" in words for words in found.look)
+    assert {name for name, scale in scales(rig).items() if scale < 0.0} >= {
+        "lift.position",
+        "bend.position",
+    }
+
+
+def test_a_spring_that_a_level_machine_has_and_its_model_lacks_is_no_gravity(arm, write):
+    level = ARM.replace('axis="0 1 0"', 'axis="0 0 1"')
+    arm.write_text(level)
+    sprung = mujoco.MjModel.from_xml_string(level)
+    sprung.jnt_stiffness[:] = [3.0, 2.0, 1.0]
+    time, q, _, torque = moved(sprung, 2)
+    columns = {"t": time} | {f"q{i + 1}": q[i] for i in range(3)}
+    found, _ = drafted(arm, write(columns | {f"tau{i + 1}": torque[i] for i in range(3)}))
+    assert found.gravity == ""
+    assert not any("gravity" in words for words in found.look)

@@ -45,7 +45,12 @@ def robot() -> mujoco.MjModel:
 
 @pytest.mark.parametrize(
     ("position", "current", "first"),
-    [("actual_q_{}", "actual_current_{}", 0), ("q{}", "i{}", 1), ("q_{}", "current_{}", 1)],
+    [
+        ("actual_q_{}", "actual_current_{}", 0),
+        ("q{}", "i{}", 1),
+        ("q_{}", "current_{}", 1),
+        ("joint_{}", "current_joint_{}", 1),
+    ],
 )
 def test_numbers_of_six_columns_are_those_of_six_joints(tmp_path, position, current, first):
     heads = [name.format(n + first) for name in (position, current) for n in range(6)]

@@ -30,6 +30,9 @@ DRIVES = 0.6
 """Share of the most work from which on it decides alone: an effort that is mostly friction pushes
 its joint, whatever a model says that lacks it. A pendulum that is swung up has 0.75."""
 
+SPEED = 0.999
+"""Share that friction alone explains of a column which is a speed, and no effort."""
+
 FAR = 3.0
 """Factor between an effort and the model's from which on it is told."""
 
@@ -66,7 +69,7 @@ class EffortFit:
     @property
     def rubs(self) -> bool:
         """Whether friction explains most of the effort, and the model little of it."""
-        return self.gain < STRONG and self.share - self.gain > MOST
+        return self.gain < STRONG and MOST < self.share - self.gain < SPEED
 
     @property
     def usable(self) -> bool:

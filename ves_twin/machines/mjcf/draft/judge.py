@@ -66,6 +66,9 @@ was before: it is right, however little the model itself needs there (wrists of 
 FOREIGN = 1e5
 """Times from which on a column is likely of another quantity: no usual unit is as far off."""
 
+NEAR = 1.5
+"""Factor within which efforts fit a model under another gravity: its masses are about right."""
+
 LITTLE = " Where the model needs next to nothing (a balanced wrist), friction does that, too"
 """What is said of an effort that is large and not like that of the model."""
 
@@ -111,8 +114,18 @@ class Judge:
     def corrected(self, found: list[Match]) -> tuple[list[Match], list[str], Mounted | None]:
         """With the changes of positions that explain more, the best first, and words for them.
 
-        Where another gravity explains more than any of them, nothing is changed.
+        Where another gravity explains more than all of them, nothing is changed.
         """
+        best, new, said = self._changed(found)
+        other = self.mounted(found)
+        if other is None or other.score < self.score(found) + GAINED or other.score < best - ALIKE:
+            return new, said, None
+        if other.score > best + ALIKE or not said:
+            return found, [other.words], other
+        return new, [*said[:-1], f"{said[-1]}; or else: {other.words}"], None
+
+    def _changed(self, found: list[Match]) -> tuple[float, list[Match], list[str]]:
+        """The score that changes of positions come to, columns with them, words for each."""
         said: list[str] = []
         best = self.score(found)
         for _ in range(2 * len(found)):
@@ -128,21 +141,30 @@ class Judge:
             ranked.sort(key=lambda one: -one[0])
             sound = (one for one in ranked if self.sound(one[1][1], found))
             first = next(sound, None)
-            other = None if said else self.mounted(found)
-            ahead = other.score - max(best + GAINED, first[0] if first else 0.0) if other else -1.0
-            if other and ahead > ALIKE * (first is not None):
-                return found, [other.words], other
             if first is None:
                 break
             alike = [one[2] for rank, one in sound if rank > first[0] - ALIKE]
-            alike += [other.words] if other and ahead > -ALIKE else []
             best, found, words = first[1]
             said.append(f"{words}; or else: {'; or '.join(alike)}" if alike else words)
-        return found, said, None
+        return best, found, said
 
     def mounted(self, found: list[Match]) -> Mounted | None:
-        """Another gravity that explains more of columns as they are meant now."""
-        return mounted(self.model, lambda model: replace(self, model=model).score(found))
+        """Another gravity with which the model is right about columns as they are meant now.
+
+        Efforts that tell it must fit as they are: a spring that the model lacks, or efforts that
+        are turned, look like gravity at another scale.
+        """
+        other = mounted(self.model, lambda model: replace(self, model=model).score(found))
+        if other is None:
+            return None
+        judge = replace(self, model=other.model)
+        motion = judge.motion(found)
+        fits = [judge.fit(m, motion) for m in judge.driving(found)]
+        telling = [fit for fit in fits if fit.gain > STRONG]
+        near = all(
+            fit.slope > 0.0 if fit.free else 1.0 / NEAR < fit.slope < NEAR for fit in telling
+        )
+        return other if telling and near else None
 
     def reach(self, found: list[Match]) -> dict[str, float]:
         """Column of a position -> its largest number."""
@@ -338,9 +360,9 @@ class Judge:
         return ", by its inertia alone, and is too small by what the rotor adds to that"
 
     def lifting(self, found: list[Match], motion: Motion) -> list[tuple[int, FloatArray]]:
-        """Degree of freedom and effort (m,) of each drive whose unit or constant is known."""
-        known = (m for m in found if not m.fitted or abs(m.scale) != 1.0)
-        return [(self.dof(m), effort) for m, effort in self.along(list(known), motion)]
+        """Degree of freedom and effort (m,) of each drive that the model is about right about."""
+        known = [m for m in self.driving(found) if self.fit(m, motion).usable]
+        return [(self.dof(m), effort) for m, effort in self.along(known, motion)]
 
     def explained(self, found: list[Match], motion: Motion) -> dict[str, float]:
         """Share of the power of each effort that the model as it is explains."""

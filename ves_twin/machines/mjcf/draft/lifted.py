@@ -13,6 +13,9 @@ from ves_twin.machines.mjcf.draft.estimates import typical
 from ves_twin.machines.mjcf.draft.motion import Motion
 from ves_twin.machines.mjcf.rig.places import carries
 
+LEAST = 1e-3
+"""Effort a kilogram [N m/kg or N/kg] below which a joint bears none of a weight: round-off."""
+
 
 def lifted(
     model: mujoco.MjModel,
@@ -32,20 +35,27 @@ def lifted(
     Returns:
         Body -> mass; without bodies that no effort lifts.
     """
-    loads = list(efforts)
-    here, found = motion(model), {}
+    loads, found = list(efforts), {}
+    here = _weight(model, motion)
     for body in range(1, model.nbody):
         name = model.body(body).name
         if not name or not carries(model, body) or not model.body_mass[body] > 0.0:
             continue
         heavier = copy.copy(model)
         heavier.body_mass[body] += 1.0
-        per_kg = motion(heavier).steady - here.steady
+        per_kg = _weight(heavier, motion) - here
         most = [
             typical(effort) / size
             for dof, effort in loads
-            if (size := float(np.percentile(np.abs(per_kg[:, dof]), 95.0))) > 0.0
+            if (size := float(np.percentile(np.abs(per_kg[:, dof]), 95.0))) > LEAST
         ]
         if most and np.isfinite(min(most)):
             found[name] = min(most)
     return found
+
+
+def _weight(model: mujoco.MjModel, motion: Callable[[mujoco.MjModel], Motion]) -> FloatArray:
+    """What gravity alone asks of the joints (m, nv): Coriolis terms are the same without it."""
+    level = copy.copy(model)
+    level.opt.gravity[:] = 0.0
+    return np.asarray(motion(model).steady - motion(level).steady)

@@ -47,25 +47,31 @@ def mounted(model: mujoco.MjModel, score: Callable[[mujoco.MjModel], float]) -> 
     Returns:
         The best; None where no gravity but the model's explains anything more.
     """
-    now = np.array(model.opt.gravity)
+    off = bool(model.opt.disableflags & int(mujoco.mjtDisableBit.mjDSBL_GRAVITY))
+    now = np.array(model.opt.gravity) * (not off)
     size = float(np.linalg.norm(now)) or STANDARD
     along = [sign * size * axis for axis in np.eye(3) for sign in (1.0, -1.0)]
     other = [one for one in (*along, np.zeros(3)) if not np.allclose(one, now, atol=1e-3 * size)]
+    other = [one + 0.0 for one in other]  # no -0
     found = [(score(_with_gravity(model, one)), n) for n, one in enumerate(other)]
     best, n = max(found)
     if best <= score(model):
         return None
     gravity = other[n]
     numbers = " ".join(f"{value:g}" for value in gravity)
+    asked = "is the machine mounted so?"
+    if not np.any(gravity):
+        asked = "does it move level, or are the efforts compensated for weight?"
     words = (
-        f"the numbers fit the model with gravity {_spoken(gravity)}, not {_spoken(now)}: is the"
-        f' machine mounted so? Then write <option gravity="{numbers}"/> into the model'
+        f"the numbers fit the model with gravity {_spoken(gravity)}, not {_spoken(now)}: {asked}"
+        f' Then write <option gravity="{numbers}"/> into the model'
     )
     return Mounted(best, words, numbers, _with_gravity(model, gravity))
 
 
 def _with_gravity(model: mujoco.MjModel, gravity: np.ndarray) -> mujoco.MjModel:
     other = copy.copy(model)
+    other.opt.disableflags &= ~int(mujoco.mjtDisableBit.mjDSBL_GRAVITY)
     other.opt.gravity[:] = gravity
     return other
 

@@ -89,6 +89,9 @@ UNIT, KIND, WORD, NUMBER, ONLY = 2.0, 2.0, 2.0, 2.0, 1.0
 SERVED = ("1", "m", "rad")
 """Units of the commands of what is no motor."""
 
+SORTS = frozenset({"joint", "axis", "motor", "actuator"})
+"""Words of names that are of every one of a kind."""
+
 AXES, AXIS = frozenset("xyz"), 1.0
 """Letters of axes in the names of joints, and the weight of one that is shared."""
 
@@ -156,7 +159,8 @@ def implied_unit(column: str) -> str:
     if "rpm" in words:
         return "rpm"
     own = {word for word in words_of(bare_name(column)) if not word.isdigit()}
-    if {"i", "q"} <= own or own == {"i"}:
+    numbered = any(word.isdigit() for word in words_of(bare_name(column)))
+    if {"i", "q"} <= own or (own == {"i"} and numbered):  # i alone counts rows
         return "A"
     told = [IMPLIED[word] for word in sorted(words) if word in IMPLIED]
     others = KIND_WORDS[Quantity.POSITION] | KIND_WORDS[Quantity.SPEED] | set(MECHANICAL.split())
@@ -220,7 +224,7 @@ def called(words: Collection[str], spot: Spot) -> bool:
 def _number(words: frozenset[str], spot: Spot) -> int:
     """The one that a column of a spot has: that of its name where they share the name."""
     own = own_number(spot.name)
-    shared = words & {w for w in words_of(spot.name) if not w.isdigit()}
+    shared = words & {w for w in words_of(spot.name) if not w.isdigit()} - SORTS
     return own if own is not None and shared else spot.number
 
 
