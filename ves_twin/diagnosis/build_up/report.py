@@ -48,12 +48,12 @@ def report_of(halves: Halves, proof: Proof, ends: tuple[FloatArray, FloatArray])
     left = ends[1]
     laws = laws_left(bench, *ends)
     others = stand_ins(proof)
-    ranked = sorted(proof.proved, key=lambda n: proof.differences[n].p)
     trials = regression.trials
     together = inseparable(proof, others)
     shared = {name for one in together for name in one.names}
     lost = _unfollowed(bench.held, halves.measured, left)
-    proved = [_proved(bench, proof, n, others[n], laws, left, lost) for n in ranked]
+    proved = [_proved(bench, proof, n, others[n], laws, left, lost) for n in proof.proved]
+    proved.sort(key=lambda one: (-one.share, one.p))
     return BuildUp(
         proved=tuple(replace(p, firm=p.firm and p.label not in shared) for p in proved),
         tested=proof.tested,

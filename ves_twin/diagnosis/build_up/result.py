@@ -82,6 +82,13 @@ class Proved:
         return f"{self.effect}@{self.target}"
 
     @property
+    def share(self) -> float:
+        """Largest share that it takes of a channel's rms error on the held-out half."""
+        return max(
+            (1.0 - after / before for before, after in self.takes.values() if before), default=0.0
+        )
+
+    @property
     def sublinear(self) -> bool:
         """Whether it is one of SUBLINEAR with a negative size: the shape of another friction."""
         first = next(iter(self.parameters.values()), None)
@@ -134,7 +141,7 @@ class BuildUp:
     """Everything that building up found.
 
     Attributes:
-        proved: extensions, the surest first.
+        proved: extensions, first what takes the largest share of a channel's error.
         tested: how many were put to proof.
         false_discovery_rate: that the proof keeps over those.
         p_limit: largest p that this rate allows those that are proved.

@@ -69,6 +69,9 @@ FOREIGN = 1e5
 NEAR = 1.5
 """Factor within which efforts fit a model under another gravity: its masses are about right."""
 
+TOOL = 10.0
+"""Factor within which efforts are those of a model that lacks a tool, in its own unit."""
+
 LITTLE = " Where the model needs next to nothing (a balanced wrist), friction does that, too"
 """What is said of an effort that is large and not like that of the model."""
 
@@ -361,7 +364,12 @@ class Judge:
 
     def lifting(self, found: list[Match], motion: Motion) -> list[tuple[int, FloatArray]]:
         """Degree of freedom and effort (m,) of each drive that the model is about right about."""
-        known = [m for m in self.driving(found) if self.fit(m, motion).usable]
+        fits = ((m, self.fit(m, motion)) for m in self.driving(found))
+        known = [
+            m
+            for m, fit in fits
+            if fit.gain > TELLS and (fit.free or 1.0 / TOOL < abs(fit.slope) < TOOL)
+        ]
         return [(self.dof(m), effort) for m, effort in self.along(known, motion)]
 
     def explained(self, found: list[Match], motion: Motion) -> dict[str, float]:
