@@ -8,14 +8,14 @@ from dataclasses import dataclass, field, replace
 import mujoco
 import numpy as np
 
-from ves_twin.core.errors import InvalidInputError
 from ves_twin.machines.mjcf.draft.check import Checked
 from ves_twin.machines.mjcf.draft.closed_chain import closed_chain
 from ves_twin.machines.mjcf.draft.estimates import noise_of, rest_of, travel
 from ves_twin.machines.mjcf.draft.log_columns import LogColumns
 from ves_twin.machines.mjcf.draft.match import Match, Matches
 from ves_twin.machines.mjcf.draft.motion import band_of
-from ves_twin.machines.mjcf.draft.names import is_effort
+from ves_twin.machines.mjcf.draft.names import is_command, is_effort
+from ves_twin.machines.mjcf.draft.refuse import refuse
 from ves_twin.machines.mjcf.draft.spots import ON_JOINT, Quantity, is_motor, single_joints
 from ves_twin.machines.mjcf.parts.chain import chain
 from ves_twin.machines.mjcf.rig.description import CORNER, Mode
@@ -32,8 +32,6 @@ ENOUGH = 115
 
 LOST = 0.1
 """Share of an effort's power above the band of a diagnosis that is told."""
-
-FRAME_POSITION = int(mujoco.mjtSensor.mjSENS_FRAMEPOS)
 
 FIRST = 10
 """Rows that tell where a log begins."""
@@ -107,7 +105,7 @@ def chosen(
     if shaken and len(shaken) == len(check.found) and _is_free(log, matches, model):
         return _let_go(log, check, positions)
     if not (efforts or shaken) or len(efforts) + len(shaken) == len(check.found):
-        _refuse(log, matches, check, model)
+        refuse(log, matches, check, model)
     noise = _noise(log, check, positions)
     if shaken:
         return _of_base(log, check, model, noise, shaken)
@@ -209,7 +207,8 @@ def _noise(
     rest, found = rest_of(moved, log.period), {}
     for m in check.found:
         values = log.as_logged(m.column) if rest is None else log.column(m.column)
-        sd, how = noise_of(values, log.period, rest)
+        put_out = m.spot.quantity is Quantity.EFFORT and is_command(m.column)
+        sd, how = noise_of(values, log.period, rest, put_out)
         found[m.column] = (abs(m.factor) * sd, how)
     return found
 
@@ -373,26 +372,3 @@ def _with_position(own: tuple[float, str], induced: float) -> tuple[float, str]:
     sd, how = own
     more = "; most of it is the position's, differentiated twice" if induced > sd else ""
     return float(np.hypot(sd, induced)), how + more
-
-
-def _refuse(log: LogColumns, matches: Matches, check: Checked, model: mujoco.MjModel) -> None:
-    """Say what is missing."""
-    efforts = [m for m in check.found if m.spot.quantity is Quantity.EFFORT]
-    there = ", ".join(f"{m.column}{' as an effort' * (m in efforts)}" for m in check.found)
-    left = ", ".join([*matches.left, *matches.setpoints]) or "none"
-    motors = ", ".join(model.actuator(i).name for i in range(model.nu))
-    joints = ", ".join(model.joint(i).name for i in single_joints(model))
-    lacks_effort = not efforts
-    expected = f"an effort of {motors}" if lacks_effort else f"a position or speed of {joints}"
-    placed = any(m.spot.quantity in (Quantity.POSITION, Quantity.SPEED) for m in check.found)
-    if lacks_effort and not placed and model.nu:
-        expected = f"{expected}, and a position or speed of {joints}"
-    came = f"columns matched: {there or 'none'}; not matched: {left}"
-    if not model.nu:
-        came = f"a model without actuators; {came}"
-        expected = f"actuators, or a position of {joints} and what follows from it"
-    sensors = (model.sensor(i) for i in range(model.nsensor))
-    name = next((s.name for s in sensors if int(s.type[0]) == FRAME_POSITION), "")
-    if name and not placed:
-        expected += f"; of {name} alone the file is written by hand, with a [start] of {joints}"
-    raise InvalidInputError(f"{log.file} does not fit the model", came, expected)

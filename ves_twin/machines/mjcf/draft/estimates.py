@@ -20,14 +20,25 @@ TYPICAL = 95.0
 """Percentile of a size that is typical: peaks are left to single rows."""
 
 
-def noise_of(values: FloatArray, period: float, rest: slice | None) -> tuple[float, str]:
+def noise_of(
+    values: FloatArray, period: float, rest: slice | None, command: bool = False
+) -> tuple[float, str]:
     """Sd of one row, as of white noise, and how it was told.
 
     At rest the scatter about a straight line; else the power in the highest octave as if it were
-    that of all, no less than rounding to the smallest step makes, step / sqrt(12).
+    that of all, no less than rounding to the smallest step makes, step / sqrt(12). A command has
+    rounding alone: what is fast in it was put out so.
+
+    Args:
+        values: of a column.
+        period: of its rows [s].
+        rest: rows in which nothing moves, if there are any.
+        command: whether a controller put the column out.
     """
     steps = np.abs(np.diff(np.unique(values)))
     rounding = float(np.min(steps)) / np.sqrt(12.0) if len(steps) else 0.0
+    if command and rounding > 0.0:
+        return rounding, "rounding: a command has no other"
     if rest is not None and float(np.ptp(values[rest])) > 0.0:
         return max(float(np.std(detrend(values[rest]))), rounding), "scatter at rest"
     frequency, power = spectrum(values, period)

@@ -60,6 +60,9 @@ ASKED = (
 SETPOINT = frozenset(ASKED.split())
 MEASURED = frozenset({"meas", "measured", "act", "actual", "fb", "feedback", "ist", "istwert"})
 
+PLAIN_COMMANDS = frozenset(["pwm", "duty", "ctrl", "control", "input", "u", "stellgroesse"])
+"""Words of what a controller puts out, beside those of what it asks for."""
+
 ELECTRICAL = frozenset({"V", "mV", "A", "mA", "%", "counts", "W", "1"})
 """Units of what drives an actuator when it is no effort: a constant stands between."""
 
@@ -137,6 +140,8 @@ def likeness(column: str, unit: str, spot: Spot, only: bool, zero: bool) -> Like
     wish = is_setpoint(column) and not MEASURED & words
     if _ruled_out(words, wish, spot) or not _unit_fits(spelled(unit), spot):
         return None
+    if spelled(unit) == "counts" and not KIND_WORDS[Quantity.EFFORT] & words:
+        return None  # an encoder has counts, too
     foreign = spelled(unit) in ELECTRICAL and spot.unit not in {"1", spelled(unit)}
     evidence = [(CONSTANT if foreign else UNIT, f"unit {unit}")] if unit else []
     evidence += _of_kind(words, bool(unit), wish, spot) + _of_words(words, spot)
@@ -231,6 +236,13 @@ def _number(words: frozenset[str], spot: Spot) -> int:
 def is_setpoint(column: str) -> bool:
     """Whether a column's name says that it was asked for rather than measured."""
     return bool(SETPOINT & set(words_of(bare_name(column))))
+
+
+def is_command(column: str) -> bool:
+    """Whether a name says that a controller put it out: nothing senses it, so it has no noise."""
+    words = frozenset(words_of(bare_name(column)))
+    sensed = words & {*MEASURED, *IMPLIED, *MECHANICAL.split()}
+    return bool(words & SETPOINT) or (bool(words & PLAIN_COMMANDS) and not sensed)
 
 
 def is_effort(column: str, unit: str) -> bool:

@@ -1,0 +1,50 @@
+"""Noise that a draft reads off a log: sensors scatter, commands are rounded and nothing else."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from drafted import drafted
+
+from ves_twin.machines.mjcf.draft.estimates import noise_of
+from ves_twin.machines.mjcf.draft.names import is_command
+
+BANG = np.where(np.sin(2.0 * np.arange(800) ** 1.3) > 0.0, 4000.0, -4000.0)
+"""A controller's output that jumps from row to row, in counts."""
+
+
+@pytest.mark.parametrize("name", ["motor_pwm", "duty1", "tau_cmd", "u", "ctrl_2", "i_ref"])
+def test_what_a_controller_put_out_is_a_command(name):
+    assert is_command(name)
+
+
+@pytest.mark.parametrize("name", ["tau1", "motor_current", "iq", "u_meas", "pwm_torque", "force"])
+def test_what_a_sensor_reads_is_none(name):
+    assert not is_command(name)
+
+
+def test_a_command_has_the_noise_of_its_rounding_however_fast_it_jumps():
+    values = np.round(BANG + np.arange(800) % 7)
+    sd, how = noise_of(values, 0.02, None, command=True)
+    assert sd == pytest.approx(1.0 / np.sqrt(12.0))
+    assert how.startswith("rounding")
+    assert noise_of(values, 0.02, None)[0] > 1000.0 * sd
+
+
+def test_a_command_that_never_changes_tells_no_rounding():
+    assert noise_of(np.ones(100), 0.02, None, command=True) == (0.0, "highest octave")
+
+
+def test_a_draft_does_not_take_a_restless_command_for_a_noisy_one(swing, write):
+    """The position's own noise, differentiated twice, is in both."""
+    path, columns = swing
+    rng = np.random.default_rng(4)
+    jumps = np.round(columns["tau"] + 0.3 * rng.choice((-1.0, 1.0), 1500), 3)
+    smooth = columns["q"].copy()
+    smooth[4:-4] = np.convolve(columns["q"], np.ones(9) / 9.0, "valid")
+    rigs = [
+        drafted(path, write({"t": columns["t"], name: jumps, "q": smooth}))[1]
+        for name in ("iq1", "pwm1")
+    ]
+    sensed, put_out = (rig.description.signals["drive.effort"].noise for rig in rigs)
+    assert 0.0 < 3.0 * put_out < sensed

@@ -1,0 +1,58 @@
+"""refuse: why no machine can be drafted from a log, in one line."""
+
+from __future__ import annotations
+
+from typing import NoReturn
+
+import mujoco
+
+from ves_twin.core.errors import InvalidInputError
+from ves_twin.machines.mjcf.draft.check import Checked
+from ves_twin.machines.mjcf.draft.log_columns import LogColumns
+from ves_twin.machines.mjcf.draft.match import Matches
+from ves_twin.machines.mjcf.draft.spots import Quantity, single_joints, words_of
+
+FRAME_POSITION = int(mujoco.mjtSensor.mjSENS_FRAMEPOS)
+
+COUNTED = frozenset({"counts", "count", "cnt", "ticks", "pulses", "encoder", "enc"})
+"""Words of what an encoder counts."""
+
+
+def refuse(log: LogColumns, matches: Matches, check: Checked, model: mujoco.MjModel) -> NoReturn:
+    """Say what is missing.
+
+    Args:
+        log: the columns.
+        matches: as they were found.
+        check: as the model corrected them.
+        model: of the machine.
+
+    Raises:
+        InvalidInputError: always.
+    """
+    efforts = [m for m in check.found if m.spot.quantity is Quantity.EFFORT]
+    there = ", ".join(f"{m.column}{' as an effort' * (m in efforts)}" for m in check.found)
+    left = ", ".join([*matches.left, *matches.setpoints]) or "none"
+    motors = ", ".join(model.actuator(i).name for i in range(model.nu))
+    joints = ", ".join(model.joint(i).name for i in single_joints(model))
+    lacks_effort = not efforts
+    expected = f"an effort of {motors}" if lacks_effort else f"a position or speed of {joints}"
+    placed = any(m.spot.quantity in (Quantity.POSITION, Quantity.SPEED) for m in check.found)
+    if lacks_effort and not placed and model.nu:
+        expected = f"{expected}, and a position or speed of {joints}"
+    came = f"columns matched: {there or 'none'}; not matched: {left}"
+    if not model.nu:
+        came = f"a model without actuators; {came}"
+        expected = f"actuators, or a position of {joints} and what follows from it"
+    sensors = (model.sensor(i) for i in range(model.nsensor))
+    name = next((s.name for s in sensors if int(s.type[0]) == FRAME_POSITION), "")
+    if name and not placed:
+        expected += f"; of {name} alone the file is written by hand, with a [start] of {joints}"
+    counted = [column for column in matches.left if _is_counted(column, log)]
+    if counted and not (lacks_effort or placed):
+        expected += f"; {', '.join(counted)} as m or rad: the model does not tell what a count is"
+    raise InvalidInputError(f"{log.file} does not fit the model", came, expected)
+
+
+def _is_counted(column: str, log: LogColumns) -> bool:
+    return log.units.get(column) == "counts" or bool(COUNTED & set(words_of(column)))
