@@ -101,6 +101,13 @@ def causes(offer) -> set[str]:
     return {offer.halves.regression.trials[n].cause.effect for n in offer.proof.proved}
 
 
+def spread(offers) -> float:
+    """Largest over smallest p of the same cause, the worst of all causes; all are proved by all."""
+    every = [[test.p for test in offer.proof.differences.values()] for offer in offers]
+    assert {len(some) for some in every} == {len(offers[0].proof.proved)}
+    return float(np.max(np.max(every, axis=0) / np.min(every, axis=0)))
+
+
 def test_what_a_dead_band_hides_is_found_beside_it(forward):
     builder = builder_of(forward)
     found = builder.best()
@@ -253,7 +260,21 @@ def test_an_offer_that_the_count_of_all_leaves_nothing_gives_way_to_the_next(for
 
     monkeypatch.setattr(Builder, "_counted", less)
     monkeypatch.setattr(Builder, "few", lambda *_: [other])
+    monkeypatch.setattr(Builder, "_about_its_fit", lambda _, offer: offer)
     assert builder.best() is other
+
+
+def test_offers_of_the_same_causes_from_different_points_end_in_the_same_proof(forward):
+    """Rounding decided which of two was preferred, and with it what was firm (an excavator)."""
+    builder = builder_of(forward)
+    origin = builder.fitted.runs.origin
+    halves = builder.halves(origin, ())
+    trials = halves.regression.trials
+    (gain,) = (n for n, t in enumerate(trials) if t.cause.effect == "actuator_gain")
+    bands = [n for n, t in enumerate(trials) if t.cause.effect == "actuator_deadband"]
+    offers = [builder.offer(halves, origin, [gain, band], frozenset()) for band in bands]
+    assert spread(offers) > 100.0
+    assert spread([builder._about_its_fit(offer) for offer in offers]) < 1.05
 
 
 def test_many_causes_never_end_worse_than_the_best_pair(forward, monkeypatch):

@@ -16,6 +16,7 @@ from ves_twin.diagnosis.build_up.in_full import in_full
 from ves_twin.diagnosis.build_up.next_of_kin import next_of_kin
 from ves_twin.diagnosis.build_up.offer import Offer, preferred
 from ves_twin.diagnosis.build_up.plain_selector import PlainSelector
+from ves_twin.diagnosis.build_up.proof import Proof
 from ves_twin.diagnosis.build_up.select import Selector
 from ves_twin.diagnosis.build_up.trials import Library, Trial
 from ves_twin.diagnosis.build_up.weighed import weighed
@@ -195,11 +196,8 @@ class Builder:
         labels = frozenset(halves.regression.trials[n].cause.label for n in chosen)
         more = len(known - labels)
         proof = next_of_kin(weighed(halves.regression, halves.held, chosen, more))
-        apart = proof.judges.apart
-        evidence = self.evidence(proof.bench.fit.residual, memory=False, apart=apart)
-        fit = in_full(halves.regression, proof.proved, point, evidence)
         tried = (halves.regression.trials[n].cause.label for n in (*proof.proved, *proof.dropped))
-        return Offer.of(halves, point, proof, fit, known.union(tried))
+        return self._fitted(halves, point, proof, known.union(tried))
 
     def again(self, offer: Offer) -> list[Offer]:
         """What comes of choosing beside what is proved, without causes that were rejected.
@@ -293,7 +291,48 @@ class Builder:
         # one of each set of causes: others of it differ by where their columns are taken
         by_causes = {one.proved: one for one in (*every, *few)} | {found.proved: found}
         rest = [one for one in by_causes.values() if one is not found]
-        return preferred([self._counted(one, known) for one in (found, *rest)])
+        return self._about_its_fit(preferred([self._counted(one, known) for one in (found, *rest)]))
+
+    def _about_its_fit(self, offer: Offer) -> Offer:
+        """Judged once more, linear about its own full fit, where that has moved the columns.
+
+        Offers of the same causes are linear about different points, and which of them predicts
+        better may hang on rounding: their p, and with them what is firm, would hang on it, too (an
+        excavator's stick, p of a delay 0.008 and 0.0006).
+        """
+        proof, regression = offer.proof, offer.halves.regression
+        if not proof.proved or not self._moved(offer):
+            return offer
+        if self.fitted.runs.budget.skips("a proof about the full fit of what is proved"):
+            return offer
+        trials = regression.trials
+        present = present_in([trials[n] for n in proof.proved], offer.fit)
+        halves = self.halves(offer.fit.shift, present)
+        if not halves.sound:
+            return offer
+        chosen = _places(halves, [*present, *(trials[n] for n in proof.dropped)])
+        more = len(offer.known) - len(chosen)
+        again = weighed(halves.regression, halves.held, chosen, more)
+        if not again.proved:
+            return offer
+        return self._fitted(halves, offer.fit.shift, again, offer.known)
+
+    def _moved(self, offer: Offer) -> bool:
+        """Whether what a full fit leaves is not what its columns say."""
+        proof, regression = offer.proof, offer.halves.regression
+        evidence = self.evidence(proof.bench.fit.residual, memory=False, apart=proof.judges.apart)
+        left = np.asarray(bare_residual(evidence, offer.fit), float)
+        linear = regression.solve(proof.proved, evidence.whitening).residual
+        off, whole = regression.half.rms(left - linear), regression.half.rms(linear)
+        return bool(np.any(off > MOVED * whole))
+
+    def _fitted(
+        self, halves: Halves, point: FloatArray, proof: Proof, known: frozenset[str]
+    ) -> Offer:
+        """What is proved, fitted in full."""
+        evidence = self.evidence(proof.bench.fit.residual, memory=False, apart=proof.judges.apart)
+        fit = in_full(halves.regression, proof.proved, point, evidence)
+        return Offer.of(halves, point, proof, fit, known)
 
     def _counted(self, offer: Offer, known: frozenset[str]) -> Offer:
         """By the count of all causes that were put to proof; what that leaves fitted anew."""
@@ -305,9 +344,7 @@ class Builder:
         again = weighed(regression, offer.halves.held, chosen, more)
         if set(again.proved) == set(proof.proved):
             return replace(offer, proof=again, known=known)
-        whitening = self.evidence(again.bench.fit.residual, memory=False, apart=again.judges.apart)
-        fit = in_full(regression, again.proved, offer.point, whitening)
-        return Offer.of(offer.halves, offer.point, again, fit, known)
+        return self._fitted(offer.halves, offer.point, again, known)
 
 
 def _places(halves: Halves, present: Sequence[Trial]) -> list[int]:

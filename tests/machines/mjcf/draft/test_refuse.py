@@ -20,5 +20,5 @@ def test_of_an_encoder_s_counts_the_line_says_what_is_asked_for(swing, write, na
 def test_of_a_column_of_no_known_kind_no_unit_is_proposed(swing, write):
     path, columns = swing
     log = write({"t": columns["t"], "tau": columns["tau"], "temperature": columns["q"]})
-    with pytest.raises(InvalidInputError, match="expected a position or speed of joint$"):
+    with pytest.raises(InvalidInputError, match=r"expected a position or speed of joint$"):
         drafted(path, log)
