@@ -58,7 +58,6 @@ def test_letters_that_the_locale_lacks_harm_no_command(tmp_path):
         ["export", "versé", "--out", "versé/é.csv"],
         ["export", "versé", "--out", "versé/é.parquet"],
         ["sweep", "position_sine", *SHORT, "--vary", "seed=1", "--workers=1", "--out", "versé/s"],
-        ["reproduce", "fig-5-3", "--out", "figé"],
     ]
     together = [word for words in commands for word in (*words, ";")]
     done = subprocess.run(

@@ -40,6 +40,7 @@ def look(
     return limits, first, pull_limit(bank, SETTINGS.alpha)
 
 
+@pytest.mark.nightly
 def test_where_rigs_in_order_fall_out_of_step_a_record_is_judged_by_noise(forward):
     limits, first, pull = look(forward, 0.45, HIDDEN)
     assert limits.in_order is not None

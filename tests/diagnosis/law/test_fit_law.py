@@ -249,7 +249,7 @@ def test_columns_known_without_a_law_serve_for_what_it_is_worth_on_other_recordi
         assert_allclose(getattr(known, name), getattr(exact, name), rtol=BENT)
 
 
-@pytest.mark.slow
+@pytest.mark.nightly
 def test_a_search_says_what_it_is_doing_until_its_end():
     evidence, alone = hidden("speed@joint", square, 700)  # its stages, not what it finds
     told: list[str] = []
