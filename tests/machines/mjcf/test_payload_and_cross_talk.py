@@ -207,3 +207,17 @@ def test_the_last_body_of_an_arm_may_weigh_what_a_tool_weighs(joint, body, large
     effect = BodyMass(body)
     (mass,) = effect.magnitudes_at(place_of(effect, None, model))
     assert mass.largest == pytest.approx(largest)
+
+
+def test_the_largest_payload_of_a_file_is_its_mass_and_says_nothing_of_its_place(tmp_path):
+    """A payload covers what mass and inertia of its body would say: "*" adds neither."""
+    more = '[[effects]]\nkind = "payload"\non = ["two"]\nlargest = "9 kg"\n'
+    more += '[[effects]]\nkind = "*"\non = ["*"]\n'
+    rig = arm(tmp_path, {}, more)
+    high = {p.name: p.high for p in rig.parameters}
+    assert high["payload@two:mass"] == 9.0
+    assert [high[f"payload@two:{axis}"] for axis in "xyz"] == [0.5] * 3
+    on_two = {h.effect for h in rig.hypotheses if h.target == "two"}
+    assert "payload" in on_two
+    assert not on_two & {"body_mass", "body_inertia"}
+    assert {"body_mass", "body_inertia"} <= {h.effect for h in rig.hypotheses if h.target == "one"}

@@ -313,9 +313,8 @@ class Builder:
         chosen = _places(halves, [*present, *(trials[n] for n in proof.dropped)])
         more = len(offer.known) - len(chosen)
         again = weighed(halves.regression, halves.held, chosen, more)
-        if not again.proved:
-            return offer
-        return self._fitted(halves, offer.fit.shift, again, offer.known)
+        told = self._fitted(halves, offer.fit.shift, again, offer.known)
+        return told if told.proved == offer.proved else preferred([offer, told])
 
     def _moved(self, offer: Offer) -> bool:
         """Whether what a full fit leaves is not what its columns say."""

@@ -132,8 +132,8 @@ def _check_length(runs: Runs) -> None:
             length = float(np.ptp(programme.time)) + (fewest + 1 - len(time)) * grid.step
             span = "" if programme.poses else f", so {length:.2f} s"
             expected = (
-                f"at least {fewest}{span}: a longer recording, stretch (--alternate) or piece"
-                f" (drive.horizon){_finer(programme)}"
+                f"at least {fewest}{span}: a longer recording, stretch (--alternate; without it"
+                f" every second tenth is held out) or piece (drive.horizon){_finer(programme)}"
             )
             raise InvalidInputError(what, len(time), expected)
 

@@ -46,3 +46,22 @@ def test_one_or_two_joints_are_not_enough():
     assert words_of_lag(pushed[:2], rows, 0.01) == []
     (words,) = words_of_lag(pushed, rows, 0.01)
     assert "lag the positions by 0.1 s" in words
+
+
+def test_one_joint_of_five_that_is_all_friction_does_not_hide_a_lag_of_the_others():
+    """Of a wrist's friction a lag tells little, and its fit may get worse."""
+    time, rows = 0.01 * np.arange(2000), np.arange(50, 1950)
+    tones = (1.0, 1.7, 2.9, 4.1)
+    need = [sum(np.sin(w * k * time + k) for k in tones) for w in (1.0, 1.3, 1.6, 1.9)]
+    speeds = [np.gradient(one, 0.01) for one in need]
+    pairs = [(np.roll(x, 10), x) for x in need]
+    scatter = np.random.default_rng(2).standard_normal(2000)
+    rubbing = (0.3 * speeds[0] + 0.1 * scatter, 0.1 * need[0])
+    pushed = [
+        Pushed(y, x[rows], v[rows], False)
+        for (y, x), v in zip([*pairs, rubbing], [*speeds, speeds[0]], strict=True)
+    ]
+    (words,) = words_of_lag(pushed, rows, 0.01)
+    assert "lag the positions by 0.1 s" in words
+    two = [pushed[0], pushed[4], pushed[4]]
+    assert words_of_lag(two, rows, 0.01) == []

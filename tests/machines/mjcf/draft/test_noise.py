@@ -5,8 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from drafted import drafted
+from scipy.signal import butter, sosfiltfilt
 
-from ves_twin.machines.mjcf.draft.estimates import noise_of
+from ves_twin.machines.mjcf.draft.estimates import ASSUMED, noise_of
 from ves_twin.machines.mjcf.draft.names import is_command
 
 BANG = np.where(np.sin(2.0 * np.arange(800) ** 1.3) > 0.0, 4000.0, -4000.0)
@@ -48,3 +49,23 @@ def test_a_draft_does_not_take_a_restless_command_for_a_noisy_one(swing, write):
     ]
     sensed, put_out = (rig.description.signals["drive.effort"].noise for rig in rigs)
     assert 0.0 < 3.0 * put_out < sensed
+
+
+def low_passed(columns, corner):
+    """Columns behind a filter that goes forth and back."""
+    sections = butter(5, 2.0 * corner * 0.005, output="sos")
+    return {n: v if n == "t" else sosfiltfilt(sections, v) for n, v in columns.items()}
+
+
+def test_of_low_passed_efforts_the_noise_is_assumed_and_told(arm, columns, write):
+    """What a filter took away nobody can read off: a millionth of a torque was the noise."""
+    found, rig = drafted(arm, write(low_passed(columns, 2.0)))
+    noise = [rig.description.signals[f"m{k}.effort"].noise for k in (1, 2, 3)]
+    size = [float(np.std(low_passed(columns, 2.0)[f"tau{k}"])) for k in (1, 2, 3)]
+    assert np.all(np.array(noise) >= 0.99 * ASSUMED * np.array(size))
+    assert any(words.startswith("tau1, tau2, tau3: low-passed") for words in found.look)
+
+
+def test_of_efforts_as_a_sensor_reads_them_it_is_read_off(arm, columns, write):
+    found, _ = drafted(arm, write(columns))
+    assert not any("low-passed" in words for words in found.look)

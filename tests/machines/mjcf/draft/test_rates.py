@@ -175,3 +175,14 @@ def test_a_column_of_revolutions_a_minute_is_a_speed(swing, write):
     log = {{"dq": "rpm"}.get(n, n): v for n, v in columns.items()}
     _, rig = drafted(path, write(log | {"rpm": log["rpm"] * 30.0 / np.pi}))
     assert scales(rig)["joint.speed"] == pytest.approx(np.pi / 30.0)
+
+
+def test_viscous_friction_of_one_is_no_speed_in_an_effort_s_column(arm, columns, write):
+    """A measured wrist, 0.98 N m s/rad; its log has no column of a speed."""
+    rubbing = columns["dq3"] + 0.4 * np.std(columns["dq3"]) * np.sin(3.0 * columns["t"])
+    log = {n: v for n, v in columns.items() if not n.startswith("dq")} | {"tau3": rubbing}
+    found, _ = drafted(arm, write(log))
+    assert not any("swapped" in words for words in found.look)
+    log["tau3"] = np.gradient(columns["q3"], columns["t"])
+    found, _ = drafted(arm, write(log))
+    assert any("tau3 is the rate of q3" in words for words in found.look)

@@ -9,7 +9,7 @@ import mujoco
 
 from ves_twin.machines.mjcf.draft.angles import counted
 from ves_twin.machines.mjcf.draft.judge import Judge
-from ves_twin.machines.mjcf.draft.lifted import lifted
+from ves_twin.machines.mjcf.draft.lifted import Load, lifted
 from ves_twin.machines.mjcf.draft.locked import locked_joints, words_of_locked
 from ves_twin.machines.mjcf.draft.log_columns import LogColumns
 from ves_twin.machines.mjcf.draft.lost import words_of_dropouts
@@ -37,7 +37,7 @@ class Checked:
         dofs: joint -> its degree of freedom.
         locked: joints that are taken as standing still.
         times: joint -> times what the model needs there that the log has, where it tells it.
-        lifts: last body of an arm -> mass [kg] that its drives can have lifted there.
+        lifts: last body of an arm -> what it can carry.
         rubs: columns of efforts that friction explains, and the model does not.
         gravity: that the model should have, as its file has it; empty where it is right.
     """
@@ -50,7 +50,7 @@ class Checked:
     dofs: Mapping[str, int]
     locked: tuple[str, ...] = ()
     times: Mapping[str, float] = field(default_factory=dict)
-    lifts: Mapping[str, float] = field(default_factory=dict)
+    lifts: Mapping[str, Load] = field(default_factory=dict)
     rubs: tuple[str, ...] = ()
     gravity: str = ""
 
@@ -75,7 +75,7 @@ def checked(log: LogColumns, matches: Matches, model: mujoco.MjModel) -> Checked
     found, said = in_degrees_by_stops(log, found, model)
     findings += said
     motion, explained, scales = None, {}, dict[Match, float]()
-    lifts, rubs, gravity = dict[str, float](), tuple[str, ...](), ""
+    lifts, rubs, gravity = dict[str, Load](), tuple[str, ...](), ""
     findings += words_of_locked(locked)
     before = len(findings)
     if absent or not (positions or cyclic):

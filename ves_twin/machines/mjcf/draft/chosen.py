@@ -207,8 +207,9 @@ def _noise(
     rest, found = rest_of(moved, log.period), {}
     for m in check.found:
         values = log.as_logged(m.column) if rest is None else log.column(m.column)
-        put_out = m.spot.quantity is Quantity.EFFORT and is_command(m.column)
-        sd, how = noise_of(values, log.period, rest, put_out)
+        effort = m.spot.quantity is Quantity.EFFORT
+        put_out = effort and is_command(m.column)
+        sd, how = noise_of(values, log.period, rest, put_out, effort and not put_out)
         found[m.column] = (abs(m.factor) * sd, how)
     return found
 

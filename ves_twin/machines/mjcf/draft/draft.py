@@ -22,6 +22,7 @@ from ves_twin.machines.mjcf.draft.check import Checked, checked
 from ves_twin.machines.mjcf.draft.chosen import Chosen, chosen
 from ves_twin.machines.mjcf.draft.commanded import as_commanded
 from ves_twin.machines.mjcf.draft.draft_text import compared, draft_text, signal_name, used
+from ves_twin.machines.mjcf.draft.estimates import LOW_PASSED
 from ves_twin.machines.mjcf.draft.given_model import GivenModel
 from ves_twin.machines.mjcf.draft.log_columns import LogColumns
 from ves_twin.machines.mjcf.draft.match import matched
@@ -161,7 +162,8 @@ def draft(model: Path, logs: Sequence[Path], out: Path, rate: float | None = Non
         turned = other_way(now.rig, _first_part(now.rig, logs[0]))
     coarse = [] if turned else now.coarse
     short = _short(now.rig, part)
-    look = (*given.notes, *log.notes, *check.findings, *silent, *turned, *coarse, *short)
+    smooth = _smooth(now.mode)
+    look = (*given.notes, *log.notes, *check.findings, *silent, *turned, *coarse, *smooth, *short)
     words, stretch = f"{now.mode.mode}: {now.mode.why}", _stretch(now.mode, log)
     guesses = _guesses(check, now.mode)
     told = {name: max(share, 0.0) for name, share in now.explained.items()}
@@ -229,6 +231,17 @@ def _stretch(mode: Chosen, log: LogColumns) -> float:
     """Length of stretches to hold out [s]; a last one of half a length is one, too."""
     length = max(STRETCH, float(np.ceil(ROWS / mode.rate)))
     return length if log.period * (log.rows - 1) > 1.5 * length else 0.0
+
+
+def _smooth(mode: Chosen) -> list[str]:
+    """That efforts were low-passed, if they were, where motion is given and noise weighs them."""
+    found = [column for column, (_, how) in mode.noise.items() if how.startswith(LOW_PASSED)]
+    if not found or mode.mode is not Mode.MOTION:
+        return []
+    return [
+        f"{', '.join(found)}: low-passed, which took the noise away: half a per cent of the size is"
+        " assumed, write what you know; were the positions filtered alike?"
+    ]
 
 
 def _short(rig: Rig, part: Recording) -> list[str]:

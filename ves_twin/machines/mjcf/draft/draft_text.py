@@ -98,22 +98,29 @@ def draft_text(
 
 
 def _effects(check: Checked, model: mujoco.MjModel) -> str:
-    """Every kind; a body's mass in a wider range where its joint asks for more than that."""
-    heavy = {}
+    """Every kind; a body's mass in a wider range where its joint asks for more than that.
+
+    On the last body of an arm a load, where the efforts ask for more than it has: as a mass of that
+    body a tool puts off the masses of those before it (a measured arm, 0.5 kg at 5 cm).
+    """
+    heavy, loaded = dict[str, float](), dict[str, float]()
     for joint, times in check.times.items():
         body = int(model.joint(joint).bodyid[0])
         known = model.body(body).name and model.body_mass[body] > 0.0
         if times > HEAVY and known and not carries(model, body):
             heavy[model.body(body).name] = 2.0 * (times - 1.0) * float(model.body_mass[body])
-    for name, most in check.lifts.items():
-        if most > LOAD * float(model.body(name).mass[0]):
-            heavy[name] = most
+    for name, load in check.lifts.items():
+        if load.heavier:
+            loaded[name] = load.most
+        elif load.most > LOAD * float(model.body(name).mass[0]):
+            heavy[name] = load.most
     own = [
-        f'{{ kind = "body_mass", on = [{_quoted(body)}], largest = "{two_digits(most):g} kg" }}, '
-        for body, most in heavy.items()
+        f'{{ kind = "{kind}", on = [{_quoted(body)}], largest = "{two_digits(most):g} kg" }}, '
+        for kind, some in (("payload", loaded), ("body_mass", heavy))
+        for body, most in some.items()
     ]
     why = "every one that the model has a place for"
-    why += f"; {', '.join(heavy)}: by the efforts in the log" * bool(heavy)
+    why += f"; {', '.join([*loaded, *heavy])}: by the efforts in the log" * bool(own)
     return f'effects = [{"".join(own)}{{ kind = "*", on = ["*"] }}]   # {why}'
 
 

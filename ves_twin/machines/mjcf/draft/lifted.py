@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import copy
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass
 
 import mujoco
 import numpy as np
@@ -17,12 +18,25 @@ LEAST = 1e-3
 """Effort a kilogram [N m/kg or N/kg] below which a joint bears none of a weight: round-off."""
 
 
+@dataclass(frozen=True)
+class Load:
+    """What a last body can carry.
+
+    Attributes:
+        most: mass [kg] at its centre whose weight would take all of an effort.
+        heavier: whether the efforts ask for more than the body has in the model, beside friction.
+    """
+
+    most: float
+    heavier: bool
+
+
 def lifted(
     model: mujoco.MjModel,
     motion: Callable[[mujoco.MjModel], Motion],
     efforts: Iterable[tuple[int, FloatArray]],
-) -> dict[str, float]:
-    """Mass [kg] at the centre of the last bodies whose weight would take all of an effort.
+) -> dict[str, Load]:
+    """What the last bodies can carry by an effort that their weight would take all of.
 
     Of the joints that bear it the one that could bear least; a tool that a model lacks is no
     heavier, whatever the mass of the flange in the model (a UR10e: 0.2 kg, and 2 kg on it).
@@ -33,9 +47,10 @@ def lifted(
         efforts: degree of freedom and effort [N or N m] (m,) of each drive.
 
     Returns:
-        Body -> mass; without bodies that no effort lifts.
+        Body -> its load; without bodies that no effort lifts.
     """
-    loads, found = list(efforts), {}
+    loads, found = list(efforts), dict[str, Load]()
+    now = motion(model)
     here = _weight(model, motion)
     for body in range(1, model.nbody):
         name = model.body(body).name
@@ -50,8 +65,23 @@ def lifted(
             if (size := float(np.percentile(np.abs(per_kg[:, dof]), 95.0))) > LEAST
         ]
         if most and np.isfinite(min(most)):
-            found[name] = min(most)
+            whole = motion(heavier).effort - now.effort
+            found[name] = Load(min(most), _extra(now, whole, loads) > 0.0)
     return found
+
+
+def _extra(now: Motion, per_kg: FloatArray, loads: Sequence[tuple[int, FloatArray]]) -> float:
+    """Mass [kg] that efforts ask for beyond the model, beside friction of each joint."""
+    ask, weight = 0.0, 0.0
+    for dof, effort in loads:
+        speed = now.speed[:, dof]
+        slow = 0.05 * float(np.std(speed)) or 1.0
+        friction = np.stack([speed, np.tanh(speed / slow), np.ones_like(speed)], axis=1)
+        rows = np.column_stack([effort - now.effort[:, dof], per_kg[:, dof]])
+        left, more = (rows - friction @ np.linalg.lstsq(friction, rows, rcond=None)[0]).T
+        power = float(left @ left) or 1.0
+        ask, weight = ask + float(more @ left) / power, weight + float(more @ more) / power
+    return ask / weight if weight else 0.0
 
 
 def _weight(model: mujoco.MjModel, motion: Callable[[mujoco.MjModel], Motion]) -> FloatArray:

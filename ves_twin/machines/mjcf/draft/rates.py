@@ -21,6 +21,9 @@ FOLLOWS = 0.5
 SAME, ITSELF = 0.2, 0.05
 """Shares by which a factor may be off to be taken for a unit's, or for one."""
 
+EXACT = 1e-3
+"""The same of a correlation that no friction has: an arm's wrist had 0.961."""
+
 DECADE, APART = 0.1, 0.2
 """Weight of a decade between a speed and the rate of its position, and of no likeness at all."""
 
@@ -130,14 +133,20 @@ def _clock(slopes: Sequence[float]) -> list[str]:
 
 
 def _swapped(log: LogColumns, found: Sequence[Match], corner: float) -> list[str]:
-    """That an effort is the rate of its joint's position."""
+    """That an effort is the rate of its joint's position.
+
+    Where nothing is taken for that rate, viscous friction of 1 in SI looks like it: only what is
+    the rate to rounding is told then.
+    """
     positions, said = _of(found, Quantity.POSITION), []
+    speeds = _of(found, Quantity.SPEED)
     for match in found:
         own = positions.get(match.spot.joint) if match.spot.joint else None
         if match.spot.quantity is not Quantity.EFFORT or own is None:
             continue
         alike, slope = ratio(log, match, own, corner)
-        if abs(alike) > 1.0 - ITSELF and abs(abs(slope) - 1.0) < ITSELF:
+        off = ITSELF if match.spot.joint in speeds else EXACT
+        if abs(alike) > 1.0 - off and abs(abs(slope) - 1.0) < ITSELF:
             said.append(
                 f"{match.column} is the rate of {own.column}: are effort and speed swapped?"
             )

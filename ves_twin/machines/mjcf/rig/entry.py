@@ -71,6 +71,14 @@ class Entry:
         return min(max(low, least), nominal), high
 
     @staticmethod
+    def told_of(m: Magnitude, first: Magnitude, allowed: Allowed) -> Allowed:
+        """What the file says of a size: of a payload the mass, and nothing of its place."""
+        if m.unit == first.unit:
+            return allowed
+        plain = {"sd": 0.0, **dict.fromkeys(("smallest", "largest", "low", "high"))}
+        return allowed.model_copy(update=plain)
+
+    @staticmethod
     def sized(
         m: Magnitude, allowed: Allowed, setting: Setting | None, what: str, own: float
     ) -> Magnitude:

@@ -140,7 +140,8 @@ class Rig:
         settings = {self._key(s): s for s in self.description.parameters}
         for entry in self.entries:
             for m, nominal in zip(entry.magnitudes, entry.nominal, strict=True):
-                told = settings.get(entry.key) or entry.allowed
+                allowed = Entry.told_of(m, entry.magnitudes[0], entry.allowed)
+                told = settings.get(entry.key) or allowed
                 low, high = entry.bounds(m, nominal, told)
                 name = entry.name(m)
                 one = entry.per_recording
@@ -272,9 +273,10 @@ class Rig:
             raise InvalidInputError(came, told, f"{expected} and value")
         build_anywhere(effect.kind, target, told)
         own = effect.present(self.model) if effect.attribute else 0.0
+        plain, what = effect.magnitudes_at(place), f"{effect.kind}@{target}"
+        told_of = (Entry.told_of(m, plain[0], allowed) for m in plain)
         magnitudes = tuple(
-            Entry.sized(m, allowed, setting, f"{effect.kind}@{target}", own)
-            for m in effect.magnitudes_at(place)
+            Entry.sized(m, told, setting, what, own) for m, told in zip(plain, told_of, strict=True)
         )
         if effect.attribute:
             nominal: tuple[float, ...] = (own,)

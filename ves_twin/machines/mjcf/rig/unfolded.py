@@ -16,7 +16,7 @@ from ves_twin.effects.actuators import (
     ActuatorSaturation,
     DriveCrossTalk,
 )
-from ves_twin.effects.bodies import BodyInertia, BodyPlace, MassCentre, Payload
+from ves_twin.effects.bodies import BodyInertia, BodyMass, BodyPlace, MassCentre, Payload
 from ves_twin.effects.clock import CLOCK
 from ves_twin.effects.effect import Effect
 from ves_twin.effects.element import Element
@@ -34,6 +34,9 @@ ALL = "*"
 
 OF_TURNING = (MassCentre.kind, BodyInertia.kind, Payload.kind)
 """Kinds that a body which only slides does not show."""
+
+OF_LOADS = (BodyMass.kind, BodyInertia.kind)
+"""Kinds that a "*" does not mean on a body that may carry a payload: it has them as its limits."""
 
 FEW = 2
 """Numbers of a kind that a "*" means."""
@@ -119,6 +122,8 @@ def _effects(told: RigDescription, model: mujoco.MjModel) -> Iterator[Allowed]:
     """Entries of their own as they are, then what "*" adds to them."""
     own = [a for a in told.effects if ALL not in (a.kind, *a.on)]
     taken = {(kind_anywhere(a.kind).kind, target) for a in own for target in a.on}
+    loaded = {target for kind, target in taken if kind == Payload.kind}
+    taken |= {(kind, target) for kind in OF_LOADS for target in loaded}
     yield from own
     for one in told.effects:
         if ALL not in (one.kind, *one.on):
