@@ -216,7 +216,7 @@ def _channels(
                 leader=(leader, inputs[leader]) if leader in inputs else None,
             )
             result = compare_column(
-                what, time, measured[name][:, i], expected[name][:, i], companions, inputs, load
+                what, time, measured[name][:, i], expected[name][:, i], companions, load
             )
             if result is None:
                 short.append(column)

@@ -105,6 +105,19 @@ def test_coherence_names_the_column_that_a_residual_follows():
     assert nothing.value < 2.0 * nothing.chance
 
 
+def test_what_follows_a_rate_is_told_as_that_though_other_columns_share_its_tones():
+    """Friction of one joint of an arm, all driven by the same few harmonics of ten seconds."""
+    time, rng = np.linspace(0.0, 1.0, ROWS), np.random.default_rng(8)
+    tones = np.array([f(2.0 * np.pi * k * time) for k in range(1, 6) for f in (np.sin, np.cos)])
+    drive = (rng.standard_normal((4, 10)) / np.repeat(np.arange(1, 6), 2) @ tones).T
+    slope = np.gradient(drive[:, 1])
+    residual = 3.0 + slope / np.std(slope) + 0.2 * rng.standard_normal(ROWS)
+    found = Companions(("a", "b", "c", "d"), drive).of(residual)
+    assert found.column == "the rate of b"
+    assert found.told
+    assert found.value == pytest.approx(1.0 / 1.04, abs=0.02)
+
+
 def test_a_standstill_tells_size_and_colour_and_a_silent_column_keeps_the_declared():
     rng = np.random.default_rng(7)
     noise = measured_noise(

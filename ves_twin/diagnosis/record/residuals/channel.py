@@ -147,7 +147,6 @@ def compare_column(
     measured: FloatArray,
     expected: FloatArray,
     companions: Companions,
-    drive: dict[str, FloatArray],
     load: FloatArray | None,
 ) -> ChannelComparison | None:
     """Compare one column.
@@ -158,7 +157,6 @@ def compare_column(
         measured: rows (n,), NaN where missing.
         expected: rows (n,), of a simulation or of another recording.
         companions: spectra of the drive.
-        drive: its columns by name, for those that no command leads.
         load: size of the force on the sensor (n,).
 
     Returns:
@@ -179,7 +177,7 @@ def compare_column(
     coherence = companions.of(filled) if moves else None
     leader = column.leader
     if leader is None and coherence is not None and coherence.told:
-        leader = (coherence.column, drive[coherence.column])
+        leader = (coherence.column, companions.rows(coherence.column))
     moved = float(np.var(measured[good]))
     at = np.arange(len(time))
     whole = np.interp(at, at[good], measured[good])

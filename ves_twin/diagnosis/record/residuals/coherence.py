@@ -1,4 +1,4 @@
-"""Companions: how much of a residual goes along with each column of the drive."""
+"""Companions: how much of a residual goes along with each column of the drive, or its rate."""
 
 from __future__ import annotations
 
@@ -14,18 +14,25 @@ CLEAR = 1.5
 PIECES = 15
 """Overlapping pieces of a record: half of each with the next."""
 
+SHIFTS = range(3, PIECES - 3)
+"""Half pieces by which a record is shifted to tell what chance gives."""
+
 SHORTEST = 16
 """Rows of a piece below which a spectrum means nothing."""
+
+RATE = "the rate of "
+"""Before the name of a column whose rate it is: a slow column is a curve within a piece, which
+passes for any other, and friction follows its rate (an arm's wrist: 56 % with another joint)."""
 
 
 @dataclass(frozen=True)
 class Coherence:
-    """Share of a residual's power that one column of the drive explains linearly.
+    """Share of a residual's power that one column of the drive, or its rate, explains linearly.
 
     Attributes:
         value: largest over the columns of the drive, weighted by the residual's power.
         chance: largest that the same figure reaches with pieces paired wrongly.
-        column: the column of the drive.
+        column: the column of the drive, after RATE if it is its rate.
     """
 
     value: float
@@ -39,7 +46,7 @@ class Coherence:
 
 
 class Companions:
-    """Spectra of the pieces of every drive column that moves.
+    """Spectra of the pieces of every drive column that moves, and of its rate.
 
     Args:
         names: columns of the drive.
@@ -48,22 +55,29 @@ class Companions:
 
     def __init__(self, names: tuple[str, ...], drive: FloatArray) -> None:
         moving = np.ptp(drive, axis=0) > 0.0
-        self._names = tuple(np.array(names)[moving])
+        own = tuple(np.array(names)[moving].tolist())
+        self._names = (*own, *(RATE + name for name in own))
         self._length = 2 * (len(drive) // (PIECES + 1))
         self._told = bool(moving.any()) and self._length >= SHORTEST
-        self._pieces = (
-            self._spectra(drive[:, moving]) if self._told else np.zeros((0, 0, 0), complex)
-        )
+        every = _with_rates(drive[:, moving])
+        self._pieces = self._spectra(every) if self._told else np.zeros((0, 0, 0), complex)
+        self._every: dict[str, FloatArray] = dict(zip(self._names, every.T, strict=True))
+        about = every - every.mean(axis=0)
+        self._whole = about / np.maximum(np.linalg.norm(about, axis=0), 1e-300)
+
+    def rows(self, name: str) -> FloatArray:
+        """Of a column that a coherence names (n,)."""
+        return self._every[name]
 
     def of(self, residual: FloatArray) -> Coherence | None:
         """The drive column that a residual (n,) goes along with most; None if nothing moves."""
         if not self._told:
             return None
         pieces = self._spectra(residual[:, None])
-        values = self._shares(pieces, 0)
+        values = self._together(residual, pieces, 0)
         best = int(np.argmax(values))
-        chance = max(float(self._shares(pieces, k).max()) for k in range(3, PIECES - 3))
-        return Coherence(float(values[best]), chance, str(self._names[best]))
+        chance = max(float(self._together(residual, pieces, k).max()) for k in SHIFTS)
+        return Coherence(float(values[best]), chance, self._names[best])
 
     def _spectra(self, rows: FloatArray) -> ComplexArray:
         """Of each piece, its line removed (pieces, f, columns)."""
@@ -77,6 +91,12 @@ class Companions:
             parts.append(np.fft.rfft(piece * window, axis=0)[1:])
         return np.asarray(parts)
 
+    def _together(self, residual: FloatArray, pieces: ComplexArray, turn: int) -> FloatArray:
+        """What each column explains: as a filter of it within pieces, or by a factor in all."""
+        rows = np.roll(residual - residual.mean(), turn * self._length // 2)
+        factor = np.square(rows @ self._whole / max(float(np.linalg.norm(rows)), 1e-300))
+        return np.asarray(np.maximum(self._shares(pieces, turn), factor))
+
     def _shares(self, residual: ComplexArray, turn: int) -> FloatArray:
         drive = np.roll(self._pieces, turn, axis=0)
         cross = np.abs(np.mean(residual * drive.conj(), axis=0)) ** 2
@@ -84,3 +104,8 @@ class Companions:
         fed = np.mean(np.abs(drive) ** 2, axis=0)
         explained = cross / np.maximum(fed, 1e-9 * fed.max(axis=0))
         return np.asarray(explained.sum(axis=0) / max(float(power.sum()), 1e-300))
+
+
+def _with_rates(drive: FloatArray) -> FloatArray:
+    """Columns (n, k), and their changes from row to row behind them (n, 2 k)."""
+    return np.column_stack([drive, np.gradient(drive, axis=0)])
