@@ -32,7 +32,7 @@ from ves_twin.report.diagnosis.credibility import Pedigree, credibility
 from ves_twin.report.diagnosis.limits import limit_sentences
 from ves_twin.report.diagnosis.page import diagnosis_page
 from ves_twin.report.diagnosis.pictures import answer_figure
-from ves_twin.report.diagnosis.proved import near_sentence
+from ves_twin.report.diagnosis.proved import FEW, inseparable_lines, near_sentence
 from ves_twin.report.diagnosis.words import interval_words, spoken
 from ves_twin.report.rerun.diagnosis import (
     diagnosis_blueprint,
@@ -460,6 +460,17 @@ def test_a_proved_extension_that_is_not_firm_acts_like_its_name_and_its_stand_in
     page = diagnosis_page(verdict)
     assert "acts like it, or like lag at plant" in page
     assert "Firm: friction at plant" in headline(proof_of(proven, firm=True))
+
+
+def test_the_terminal_tells_a_few_combinations_that_are_not_separated_and_each_once(proven):
+    verdict = proof_of(proven, firm=False)
+    (one,) = verdict.inseparable
+    assert inseparable_lines(replace(verdict, inseparable=(one, one))) == inseparable_lines(verdict)
+    assert "only a combination of them is known" in inseparable_lines(verdict)[0]
+    many = tuple(replace(one, ratio=10.0 + k) for k in range(FEW + 3))
+    lines = inseparable_lines(replace(verdict, inseparable=many))
+    assert len(lines) == FEW + 1
+    assert lines[-1] == "3 more combinations are in report.html"
 
 
 def test_where_more_is_wrong_sizes_of_noise_alone_are_not_promised(proven):

@@ -194,7 +194,7 @@ def _text(found: Diagnosis, folder: Path) -> str:
     from ves_twin.report.diagnosis.law import law_sentences
     from ves_twin.report.diagnosis.out_of_step import out_of_step_sentence
     from ves_twin.report.diagnosis.proved import (
-        inseparable_sentences,
+        inseparable_lines,
         near_sentence,
         proof_sentence,
         proved_line,
@@ -224,7 +224,7 @@ def _text(found: Diagnosis, folder: Path) -> str:
     if verdict.put_to_proof is not None:
         lines += ["", f"  {proof_sentence(verdict)}", *map(proved_line, verdict.proved)]
         lines += [f"  {near_sentence(verdict)}"] if near_sentence(verdict) else []
-        lines += [f"  not separated: {text}" for text in inseparable_sentences(verdict)]
+        lines += [f"  {text}" for text in inseparable_lines(verdict)]
     width = _width(verdict)
     head = f"  {'channel':<{width}}    before     tuned     after"
     lines += ["", f"{head}   (rms, in the channel's unit;"]

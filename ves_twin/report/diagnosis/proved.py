@@ -17,6 +17,9 @@ NEAR = 3.0
 """Factor between a p and its limit up to which one stretch of time may turn it: the median of the
 largest change where one of 11 to 40 blocks is left out (drawn, p of 0.001 to 0.02)."""
 
+FEW = 4
+"""Combinations that the terminal tells; the page has all."""
+
 UNKNOWN = 100.0
 """Times that shares are known worse than their combination, from which on nothing is known."""
 
@@ -126,11 +129,20 @@ def _interval(size: Size) -> str:
 
 def inseparable_sentences(verdict: Verdict) -> list[str]:
     """Each combination by the names that take part in it."""
-    return [
+    told = (
         f"{', '.join(map(spoken, one.names))}: only a combination of them is known,"
         f" {_shares(one.ratio)}."
         for one in verdict.inseparable
-    ]
+    )
+    return list(dict.fromkeys(told))
+
+
+def inseparable_lines(verdict: Verdict) -> list[str]:
+    """The first FEW of them for the terminal, and where the rest stands."""
+    every = inseparable_sentences(verdict)
+    lines = [f"not separated: {text}" for text in every[:FEW]]
+    more = len(every) - len(lines)
+    return [*lines, f"{more} more combinations are in report.html"] if more else lines
 
 
 def _shares(ratio: float) -> str:
