@@ -743,3 +743,11 @@ def test_an_unknown_that_leaves_little_tells_what_noise_would_accept_it(proven):
     assert "At most 8 % of a channel's spread is left" in told(0.08)
     assert f"declare twice what is left as noise in the machine's file ({name}: 0.16" in told(0.08)
     assert "noise" not in told(0.3)
+
+
+def test_a_limit_above_the_rate_says_why_it_is_that_high(proven):
+    """0.2 beside *at most 5 % are false* reads as a contradiction."""
+    missed = replace(proof_of(proven, firm=True), unproved={"lag@plant": 0.05})
+    assert "at most. Near" in near_sentence(missed)
+    high = replace(missed, p_limit=0.2, unproved={"lag@plant": 0.3})
+    assert "0.2 at most (that high since most of them are plainly there)" in near_sentence(high)

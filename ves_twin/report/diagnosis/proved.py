@@ -76,8 +76,10 @@ def near_sentence(verdict: Verdict) -> str:
     ]
     if not said:
         return worth
+    rate = verdict.false_discovery_rate
+    many = " (that high since most of them are plainly there)" if rate and limit > rate else ""
     return (
-        f"Accepted is a p of {limit:.2g} at most. Near it: {', '.join(said)}. Other recordings of"
+        f"Accepted is a p of {limit:.2g} at most{many}. Near it: {', '.join(said)}. Other recordings of"
         f" the same machine may turn that; longer ones settle it. {worth}".rstrip()
     )
 
