@@ -36,6 +36,8 @@ def new_text(found: NewMachine, model: Path, logs: Sequence[Path]) -> str:
     if draft.gravity:
         file = found.model or model.name
         first = f"see to the gravity in {file}, and draft again from it; then "
+    if draft.short:
+        first = "see to the rows that a diagnosis lacks (look); then "
     lines += [f"  next      {first}ves-twin diagnose {given}{held} --plant {found.path}"]
     return "\n".join(lines)
 

@@ -73,13 +73,15 @@ def _signal(recording: Recording, name: str) -> list[Check]:
         checks.append(unknown("stuck", f"{resting} never change, nor were they asked to", name))
     else:
         checks.append(passed("stuck", f"{name}: every column changes", name))
-    full = [labels[i] for i in range(values.shape[1]) if _saturated(values[:, i])]
+    moves = _is_motion(recording, name)
+    full = [labels[i] for i in range(values.shape[1]) if _saturated(values[:, i], moves)]
     if full:
-        text = f"{', '.join(full)} stay at their end value as a range that is too small would"
+        verb = "stays at its end value" if len(full) == 1 else "stay at their end values"
+        text = f"{', '.join(full)} {verb} as a range that is too small would"
         checks.append(failed("saturation", text, *full))
     else:
         checks.append(passed("saturation", f"{name}: no column stays at an end value", name))
-    if not _is_motion(recording, name):
+    if not moves:
         return checks
     lost = {label: dropouts(values[:, i]) for i, label in enumerate(labels)}
     gone = {label: found for label, found in lost.items() if found}
@@ -112,11 +114,16 @@ def _asked_to_move(recording: Recording, name: str) -> NDArray[np.bool_]:
     return np.asarray(np.ptp(recording[command], axis=0) > 0.0)
 
 
-def _saturated(values: FloatArray) -> bool:
+def _saturated(values: FloatArray, moves: bool) -> bool:
     """Whether a column runs into its end value at full speed and stays there, often enough.
 
     A joint that comes to rest arrives slowly; a range that is too small stops it in motion. What
-    is switched (a valve: off, on, the other way) is always at an end value.
+    is switched (a valve: off, on, the other way) is always at an end value. What tells no motion
+    may be off: a voltage that ends at exactly nothing has reached no end of a range.
+
+    Args:
+        values: of the column (n,).
+        moves: whether it tells places or speeds.
     """
     if len(np.unique(values)) <= SWITCHED or len(values) <= RUN:
         return False
@@ -124,7 +131,8 @@ def _saturated(values: FloatArray) -> bool:
     if not np.any(travels > 0.0):
         return False
     fast = float(np.percentile(travels[travels > 0.0], 90.0))
-    for end in (values.max(), values.min()):
+    ends = [end for end in (values.max(), values.min()) if moves or end != 0.0]
+    for end in ends:
         at = values == end
         edges = np.flatnonzero(np.diff(np.concatenate([[0], at.astype(int), [0]])))
         starts, lengths = edges[::2], edges[1::2] - edges[::2]

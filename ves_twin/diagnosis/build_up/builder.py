@@ -353,8 +353,8 @@ def _places(halves: Halves, present: Sequence[Trial]) -> list[int]:
 def present_in(trials: Sequence[Trial], fit: Fit) -> tuple[Trial, ...]:
     """The same causes at the sizes of a fit; those that came to nothing are gone.
 
-    A linear one keeps its range: a link's inertia at its end, which takes nothing away, was proved
-    at fifty times that.
+    None is held to its range any more: beside causes whose columns are still to move one may pass
+    its end on the way (the place of a double pendulum's lower link, whose mass centre did).
     """
     found, start = [], 0
     for trial in trials:
@@ -362,5 +362,5 @@ def present_in(trials: Sequence[Trial], fit: Fit) -> tuple[Trial, ...]:
         sizes = tuple(fit.sizes[start : start + count].tolist())
         start += count
         if any(sizes):
-            found.append(replace(trial, sizes=sizes, positive=True))
+            found.append(replace(trial, sizes=sizes, positive=True, bent=True))
     return tuple(found)

@@ -169,7 +169,6 @@ class Regression:
             if not trial.bent:
                 at = runs.indices(trial.cause)
                 unit = np.array(trial.sizes) * prior
-                unit[unit == 0.0] = 1e-300  # one of several sizes that came to nothing
                 ends = np.sort(np.stack([runs.low[at], runs.high[at]]) / unit, axis=0)
             found.append((np.zeros(trial.width) if trial.positive else ends[0], ends[1]))
         return found

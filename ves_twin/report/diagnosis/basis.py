@@ -113,7 +113,7 @@ def _lost_words(verdict: Verdict) -> str:
 
 def rms_words(gain: Gain) -> str:
     """What happens to the rms error on held-out recordings, where it falls most and least."""
-    falls = {name: 1.0 - after / before for name, (before, after) in gain.errors.items() if before}
+    falls = {name: 1.0 - after / before for name, (before, after) in gain.over.items() if before}
     ends = sorted(falls, key=lambda name: falls[name])
     told = [_moved(falls[name], name) for name in dict.fromkeys((*ends[-1:], *ends[:1]))]
     words = " and ".join(told) or "stays"

@@ -79,8 +79,8 @@ def near_sentence(verdict: Verdict) -> str:
     rate = verdict.false_discovery_rate
     many = " (that high since most of them are plainly there)" if rate and limit > rate else ""
     return (
-        f"Accepted is a p of {limit:.2g} at most{many}. Near it: {', '.join(said)}. Other recordings of"
-        f" the same machine may turn that; longer ones settle it. {worth}".rstrip()
+        f"Accepted is a p of {limit:.2g} at most{many}. Near it: {', '.join(said)}. Other"
+        f" recordings of the same machine may turn that; longer ones settle it. {worth}".rstrip()
     )
 
 

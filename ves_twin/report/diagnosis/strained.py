@@ -92,8 +92,11 @@ def strained_sentence(verdict: Verdict) -> str:
     limit = verdict.statistics.naming_limit
     if best is None or best.pull is None or limit is None or best.pull <= limit:
         return ""
-    told = [_told(name, one) for name, one in moved(verdict)[:STRANGEST]]
-    return f" Tolerances are strained, by up to {best.pull:.0f} sd: {', '.join(told)}."
+    listed = moved(verdict)[:STRANGEST]
+    pulls = [abs(one.pull) for _, one in listed if one.pull is not None]
+    most = max(pulls, default=best.pull)
+    told = [_told(name, one) for name, one in listed]
+    return f" Tolerances are strained, by up to {most:.0f} sd: {', '.join(told)}."
 
 
 def moved_words(one: Estimate) -> str:

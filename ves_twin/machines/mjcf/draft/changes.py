@@ -139,6 +139,8 @@ def _before_gears(
         gear = gears.get(match.spot.name, 1.0)
         if gear in (0.0, 1.0) or abs(match.scale) != 1.0:
             continue
+        if match.told and match.spot.unit == "m":  # a motor's angle has no unit of length
+            continue
         words = f"numbers fit the model as those of the motor, before its gear of {gear:g}"
         new = replace(match, scale=match.scale / gear)
         yield _with(found, {match: new}), f"{match.column}: {words}"

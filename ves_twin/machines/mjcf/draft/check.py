@@ -20,7 +20,7 @@ from ves_twin.machines.mjcf.draft.rates import rated
 from ves_twin.machines.mjcf.draft.scaled import scales_of, words_of_scale
 from ves_twin.machines.mjcf.draft.servos import followed
 from ves_twin.machines.mjcf.draft.spots import Quantity
-from ves_twin.machines.mjcf.draft.stops import beyond, in_degrees_by_stops
+from ves_twin.machines.mjcf.draft.stops import beyond, beyond_control, in_degrees_by_stops
 from ves_twin.machines.mjcf.parts.cyclic import is_cyclic
 
 
@@ -107,7 +107,8 @@ def checked(log: LogColumns, matches: Matches, model: mujoco.MjModel) -> Checked
         motion = plain.motion(found)
         explained = plain.explained(found, motion)
     lost = words_of_dropouts(log, found)
-    findings[before:before] = [*lost, *counted(log, found), *beyond(log, found, model)]
+    far = [*beyond(log, found, model), *beyond_control(log, found, model)]
+    findings[before:before] = [*lost, *counted(log, found), *far]
     found, said = rated(log, found, corner, model)
     dofs = {name: int(model.joint(name).dofadr[0]) for name in every if name}
     times = {match.spot.joint: scale for match, scale in scales.items()}

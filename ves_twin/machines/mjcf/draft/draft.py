@@ -94,6 +94,7 @@ class Draft:
             is too short for two.
         rubs: columns of efforts that friction explains, and the model does not.
         gravity: that the model should have, as its file has it; empty where it is right.
+        short: whether a diagnosis would find the log, or a piece of it, too short.
     """
 
     text: str
@@ -106,6 +107,7 @@ class Draft:
     stretch: float
     rubs: tuple[str, ...] = ()
     gravity: str = ""
+    short: bool = False
 
 
 def draft(model: Path, logs: Sequence[Path], out: Path, rate: float | None = None) -> Draft:
@@ -164,12 +166,12 @@ def draft(model: Path, logs: Sequence[Path], out: Path, rate: float | None = Non
     short = _short(now.rig, part)
     smooth = _smooth(now.mode)
     look = (*given.notes, *log.notes, *check.findings, *silent, *turned, *coarse, *smooth, *short)
-    words, stretch = f"{now.mode.mode}: {now.mode.why}", _stretch(now.mode, log)
+    words = f"{now.mode.mode}: {now.mode.why}"
+    stretch = 0.0 if short else _stretch(now, part, log)
     guesses = _guesses(check, now.mode)
     told = {name: max(share, 0.0) for name, share in now.explained.items()}
-    return Draft(
-        now.text, given.text, guesses, left, look, words, told, stretch, check.rubs, check.gravity
-    )
+    beside = (stretch, check.rubs, check.gravity, bool(short))
+    return Draft(now.text, given.text, guesses, left, look, words, told, *beside)
 
 
 @dataclass(frozen=True)
@@ -227,10 +229,20 @@ def _percent(version: _Version) -> str:
     return f"{max(version.explained[version.least], 0.0):.0%}"
 
 
-def _stretch(mode: Chosen, log: LogColumns) -> float:
-    """Length of stretches to hold out [s]; a last one of half a length is one, too."""
-    length = max(STRETCH, float(np.ceil(ROWS / mode.rate)))
-    return length if log.period * (log.rows - 1) > 1.5 * length else 0.0
+def _stretch(now: _Version, part: Recording, log: LogColumns) -> float:
+    """Length of stretches to hold out [s]; a last one of half a length is one, too.
+
+    None where `diagnose` would find one of them too short.
+    """
+    length = max(STRETCH, float(np.ceil(ROWS / now.mode.rate)))
+    if log.period * (log.rows - 1) <= 1.5 * length or now.mode.horizon:
+        return 0.0
+    one = Recording(
+        part.time[rows := part.time - part.time[0] < length],
+        {name: values[rows] for name, values in part.signals.items()},
+        part.info,
+    )
+    return 0.0 if _short(now.rig, one) else length
 
 
 def _smooth(mode: Chosen) -> list[str]:
@@ -245,11 +257,11 @@ def _smooth(mode: Chosen) -> list[str]:
 
 
 def _short(rig: Rig, part: Recording) -> list[str]:
-    """That a log is too short for a diagnosis, if it is."""
+    """That a log, or a piece of it, is too short for a diagnosis, if it is."""
     if len(part.time) < FEWEST:  # a clock in another unit, which is told
         return []
     try:
-        check_lengths(MjcfForward.of(rig), [part], rig.description.rate)
+        check_lengths(MjcfForward.of(rig), pieces(rig, part), rig.description.rate)
     except InvalidInputError as short:
         return [f"too short for a diagnosis: {short}"]
     return []

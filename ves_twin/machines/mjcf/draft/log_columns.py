@@ -196,7 +196,11 @@ def _sorted(
     values = {n: np.asarray(np.interp(even, own, v)) for n, v in used.items() if n not in constant}
     if not values or len(even) < FEWEST:
         came = f"constant: {', '.join(constant) or 'none'}; with gaps: {', '.join(empty) or 'none'}"
-        raise InvalidInputError(f"columns of {path.name}", came, "columns of numbers that change")
+        expected = "columns of numbers that change"
+        if empty and not np.any(np.all([full[n] for n in empty], axis=0)):
+            expected += f"; no row holds {', '.join(empty)} together: signals of several clocks, as"
+            expected += " a player of messages exports them, are read once they are on one clock"
+        raise InvalidInputError(f"columns of {path.name}", came, expected)
     told = tuple(constant), tuple(empty), tuple(notes)
     return LogColumns(path.name, clock, scale, period, values, units, *told, window, used)
 

@@ -1,4 +1,4 @@
-"""beyond, in_degrees_by_stops: positions held against the stops of their joints."""
+"""beyond, in_degrees_by_stops: positions and commands held against what the model lets them be."""
 
 from __future__ import annotations
 
@@ -30,6 +30,26 @@ def beyond(log: LogColumns, found: list[Match], model: mujoco.MjModel) -> Iterat
                 f"{match.column} goes from {lowest:.3g} to {highest:.3g} {match.spot.unit}, joint"
                 f" {match.spot.name} from {low:.3g} to {high:.3g}: another unit, or a motor before"
                 " its gear?"
+            )
+
+
+def beyond_control(log: LogColumns, found: list[Match], model: mujoco.MjModel) -> Iterator[str]:
+    """Commands beyond the range that their actuator clips them to: MuJoCo cuts them silently."""
+    for match in found:
+        if match.spot.quantity is not Quantity.EFFORT or match.fitted:
+            continue
+        actuator = model.actuator(match.spot.name)
+        low, high = map(float, actuator.ctrlrange)
+        if not int(actuator.ctrllimited[0]):
+            continue
+        gain = abs(float(actuator.gear[0] * actuator.gainprm[0])) or 1.0
+        command = match.factor / (gain if match.spot.unit in ("N", "N*m") else 1.0)
+        values = command * log.column(match.column)
+        lowest, highest = float(np.min(values)), float(np.max(values))
+        if max(low - lowest, highest - high) > NEAR * (high - low):
+            yield (
+                f"{match.column} goes from {lowest:.3g} to {highest:.3g}, {match.spot.label} takes"
+                f" {low:.3g} to {high:.3g} (ctrlrange) and clips the rest: another unit?"
             )
 
 
