@@ -178,3 +178,13 @@ def test_a_diagnosis_of_a_log_that_does_not_fit_drafts_nothing(bench, capsys):
 def test_a_model_and_a_plant_are_not_both_asked_for(bench, capsys):
     assert main(["diagnose", "log.csv", "--model", "cart.xml", "--plant", "pendulum"]) == 2
     assert "--model" in capsys.readouterr().err
+
+
+def test_of_a_log_that_is_too_short_the_next_step_is_not_a_command_that_refuses(bench, capsys):
+    (bench / "short.csv").write_text(log_of(0.9))
+    assert main(["new", "cart.xml", "short.csv", "--out", "short.toml"]) == 0
+    told = capsys.readouterr().out
+    assert "look      too short for a diagnosis" in told
+    assert "next      see to the rows that a diagnosis lacks (look); then ves-twin diagnose" in told
+    assert main(["new", "cart.xml", "log.csv", "--out", "long.toml"]) == 0
+    assert "see to the rows" not in capsys.readouterr().out

@@ -449,6 +449,8 @@ def test_a_tolerance_that_gives_way_to_a_fault_is_told_with_what_was_proved(prov
     assert f"by up to {limit + 10.0:.0f} sd: inertia at hub 0.0003 (model 0.0001)" in headline(
         other
     )
+    listed = {"inertia@hub:value": Estimate(3e-4, 2e-4, 4e-4, "1", 1e-4, pull=-7.1)}
+    assert "by up to 7 sd: inertia at hub" in headline(replace(other, tuned=listed))
 
 
 def test_a_proved_extension_that_is_not_firm_acts_like_its_name_and_its_stand_ins(proven):

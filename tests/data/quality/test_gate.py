@@ -104,6 +104,18 @@ def test_a_valve_that_is_switched_on_and_off_is_not_saturated(healthy):
     assert "saturation" not in found(damaged(healthy, "sensor.wrench", switch))
 
 
+def test_a_force_that_is_off_has_reached_no_end_of_a_range(healthy):
+    """A crane's voltage that was ramped down to nothing, and stayed there."""
+
+    def clip(values, end):
+        values[:, 3] = np.maximum(values[:, 3] - np.median(values[:, 3]), 0.0) + end
+
+    for end, told in ((0.0, False), (1.0, True)):
+        flaws = found(damaged(healthy, "sensor.wrench", lambda values, end=end: clip(values, end)))
+        assert ("saturation" in flaws) is told
+    assert "stays at its end value as" in flaws["saturation"]
+
+
 def test_swapped_legs_are_named(healthy):
     def swap(values):
         values[:, [1, 4]] = values[:, [4, 1]]

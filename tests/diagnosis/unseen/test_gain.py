@@ -23,6 +23,7 @@ from ves_twin.diagnosis.unseen.gain import (
     held_out_gain,
 )
 from ves_twin.diagnosis.unseen.held_out import HeldOut
+from ves_twin.report.diagnosis.basis import rms_words
 
 TRUE = {"plant.gain": 1.03, "plant.slope": 0.04, "friction.size": 0.06}
 SINGLE = 1e-3
@@ -185,6 +186,24 @@ PASSING = Gain(0.5, 0.4, 0.6, 4.0, 2.0, {"out": (1.0, 0.5)}, 3.0)
 def test_what_a_gain_must_show(changed, passed, carries_on):
     gain = replace(PASSING, **changed)
     assert (gain.passed, gain.carries_on) == (passed, carries_on)
+
+
+def test_errors_count_over_the_model_as_given_where_its_tuning_predicts_worse():
+    """A crane: 0.18 m as given, 0.54 m tuned, 0.077 m with a friction; the sway grew by a tenth."""
+    errors = {"rail": (0.544, 0.0765), "sway": (0.107, 0.0855)}
+    gain = replace(PASSING, errors=errors, given={"rail": 0.181, "sway": 0.0774})
+    assert gain.over == {"rail": (0.181, 0.0765), "sway": (0.0774, 0.0855)}
+    better = replace(gain, given={"rail": 0.6, "sway": 0.2})
+    assert better.over == replace(gain, given={}).over == errors
+    words = rms_words(gain)
+    assert "falls by 58 % (rail)" in words
+    assert "grows by 10 % (sway)" in words
+
+
+def test_a_model_that_is_worse_than_the_one_that_was_given_does_not_pass():
+    worse = replace(PASSING, errors={"out": (3.0, 1.3)}, given={"out": 1.0})
+    assert not worse.passed
+    assert replace(worse, given={}).passed
 
 
 def test_columns_that_are_known_at_nominal_serve_where_they_do_not_bend(fitted, held_out):

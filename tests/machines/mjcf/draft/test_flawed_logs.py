@@ -9,6 +9,8 @@ import pytest
 from drafted import changed, drafted
 from three_joints import ARM
 
+from ves_twin.core.errors import InvalidInputError
+
 
 def test_rows_that_are_missing_altogether_break_a_log_and_the_longest_stretch_is_used(
     arm, columns, write
@@ -69,3 +71,15 @@ def test_rows_that_come_in_pairs_are_no_gaps(arm, columns, write):
     found, rig = drafted(arm, write({name: rows[pairs] for name, rows in columns.items()}))
     assert rig.description.window.start == 0.0
     assert any("uneven" in words for words in found.look)
+
+
+def test_signals_of_several_clocks_are_refused_with_what_to_do(arm, columns, write):
+    """Messages of a bus, a row each, as a player exports them."""
+    names = [name for name in columns if name != "t"]
+    rows = np.full((len(columns["t"]), len(names)), np.nan)
+    for k in range(len(rows)):
+        rows[k, k % len(names)] = columns[names[k % len(names)]][k]
+    log = write({"t": columns["t"]} | dict(zip(names, rows.T, strict=True)))
+    log.write_text(log.read_text().replace("nan", ""))
+    with pytest.raises(InvalidInputError, match=r"no row holds .* together: signals of several"):
+        drafted(arm, log)

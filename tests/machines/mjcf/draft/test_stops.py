@@ -2,10 +2,15 @@
 
 from __future__ import annotations
 
+import mujoco
 import numpy as np
 import pytest
 from drafted import drafted
 from three_joints import ARM
+
+from ves_twin.machines.mjcf.draft.changes import _before_gears
+from ves_twin.machines.mjcf.draft.match import Match
+from ves_twin.machines.mjcf.draft.spots import Quantity, Spot
 
 DEGREES = 180.0 / np.pi
 REACH = {"turn": 1.6, "lift": 1.2, "bend": 1.6}
@@ -48,3 +53,42 @@ def test_angles_within_their_stops_stay_what_they_are(stopped, write, columns):
     words, scales = look(stopped, write, columns, 1.0)
     assert "stops of the joints" not in words
     assert scales == {1.0}
+
+
+CLIPPED = """
+<mujoco>
+  <worldbody><body><joint name="rail" type="slide"/><geom size="0.1" mass="2"/></body></worldbody>
+  <actuator><motor name="drive" joint="rail" gear="50" ctrllimited="true" ctrlrange="-12 12"/>
+  </actuator>
+</mujoco>
+"""
+
+
+def of_the_rail(tmp_path, write, **columns):
+    """What a draft of a carriage says, and its file."""
+    path = tmp_path / "rail.xml"
+    path.write_text(CLIPPED)
+    time = 0.01 * np.arange(1000)
+    pull = 8.0 * np.sign(np.sin(1.3 * time)) * np.sin(0.4 * time) ** 2
+    speed = np.cumsum(25.0 * pull) * 0.01
+    log = {"t": time, "x_m": np.cumsum(speed - speed.mean()) * 0.01, "drive_duty": pull}
+    return drafted(path, write(log | {n: f(log) for n, f in columns.items()}))
+
+
+def test_commands_that_the_model_would_clip_are_told(tmp_path, write):
+    """Counts of a PWM for volts: MuJoCo holds them at the end of ctrlrange, and says nothing."""
+    found, _ = of_the_rail(tmp_path, write, drive_duty=lambda log: 1e3 * log["drive_duty"])
+    assert any("drive takes -12 to 12 (ctrlrange) and clips the rest" in w for w in found.look)
+    found, _ = of_the_rail(tmp_path, write)
+    assert not any("ctrlrange" in words for words in found.look)
+
+
+@pytest.mark.parametrize(("unit", "told", "offered"), [("m", True, 0), ("m", False, 1)])
+def test_a_length_is_no_angle_of_a_motor_before_its_gear(unit, told, offered):
+    """The gear of a motor on a slide may be its constant, N per V: 3418 of a crane."""
+    spot = Spot(Quantity.POSITION, "rail", "m", frozenset({"rail"}), 1)
+    match = Match("x", spot, unit, told, 1.0, (), ())
+    model = mujoco.MjModel.from_xml_string(CLIPPED)
+    changes = [*_before_gears([match], [match], model)]
+    assert len(changes) == offered
+    assert all(new.scale == 0.02 for (new,), _ in changes)
