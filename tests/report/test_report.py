@@ -26,14 +26,14 @@ from ves_twin.diagnosis.settings import Settings
 from ves_twin.diagnosis.unseen.gain import Gain
 from ves_twin.diagnosis.verdict.refusal import refusal
 from ves_twin.diagnosis.verdict.verdict import ChannelError, Estimate, Kind
-from ves_twin.report.diagnosis.answer import headline, next_step, tone
+from ves_twin.report.diagnosis.answer import headline, next_step, suspect_words, tone
 from ves_twin.report.diagnosis.basis import basis_sentences, gain_words, taken_words
 from ves_twin.report.diagnosis.credibility import Pedigree, credibility
 from ves_twin.report.diagnosis.limits import limit_sentences
 from ves_twin.report.diagnosis.page import diagnosis_page
 from ves_twin.report.diagnosis.pictures import answer_figure
 from ves_twin.report.diagnosis.proved import FEW, inseparable_lines, near_sentence
-from ves_twin.report.diagnosis.words import interval_words, spoken
+from ves_twin.report.diagnosis.words import interval_words, size_words, spoken
 from ves_twin.report.rerun.diagnosis import (
     diagnosis_blueprint,
     onset_of,
@@ -186,6 +186,10 @@ def test_an_unknown_shows_the_nearest_and_does_not_accept_it(settings):
     assert "no cause in the library explains" in top
     assert "Nearest, and not accepted" in second_screen(page)
     assert "nearest cause" in top
+    assert suspect_words(verdict).startswith("Nearest, and not accepted: ")
+    assert suspect_words(replace(verdict, suspect="")) == ""
+    near = verdict.nearest[0]
+    assert size_words(next(iter(near.parameters.values()))) in suspect_words(verdict)
 
 
 def test_what_predicts_held_out_data_worse_than_the_given_model_is_no_candidate(settings):

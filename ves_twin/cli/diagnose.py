@@ -187,7 +187,12 @@ def _plant_sentence(found: Diagnosis) -> str:
 
 
 def _text(found: Diagnosis, folder: Path) -> str:
-    from ves_twin.report.diagnosis.answer import confidence_sentence, next_step, verdict_sentence
+    from ves_twin.report.diagnosis.answer import (
+        confidence_sentence,
+        next_step,
+        suspect_words,
+        verdict_sentence,
+    )
     from ves_twin.report.diagnosis.basis import gain_words, rests_on
     from ves_twin.report.diagnosis.coarse_step import coarse_sentence
     from ves_twin.report.diagnosis.flaws import flaw_lines
@@ -207,6 +212,7 @@ def _text(found: Diagnosis, folder: Path) -> str:
     lines = [
         f"verdict   {verdict.verdict.value}: {verdict_sentence(verdict)}",
         *(f"          {text}" for text in ambiguity_sentences(verdict)),
+        *(f"          {text}" for text in filter(None, [suspect_words(verdict)])),
         f"how sure  {confidence_sentence(verdict)}",
         f"next      {next_step(verdict)}",
         f"rests on  {rests_on(verdict.basis)}",

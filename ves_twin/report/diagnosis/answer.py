@@ -299,8 +299,7 @@ def nearest_sentence(verdict: Verdict) -> str:
         return ""
     said = ""
     if verdict.suspect:
-        names = " with ".join(map(spoken, verdict.suspect.split(" with ")))
-        said = f"Nearest, and not accepted: {names}. "
+        said = f"{suspect_words(verdict)} "
         if verdict.gain is not None and verdict.gain.share is not None and verdict.gain.passed:
             said += f"With it {gain_words(verdict)}. More is missing. "
         if verdict.gain is not None and verdict.gain.worse:
@@ -310,6 +309,15 @@ def nearest_sentence(verdict: Verdict) -> str:
         top = left.loud[0]
         said += f"What is left is loudest in {top.channel} at {ends_words(top)}."
     return said
+
+
+def suspect_words(verdict: Verdict) -> str:
+    """The causes that come nearest where none is named, with their size; empty without any."""
+    if verdict.verdict is not Kind.UNKNOWN or not verdict.suspect or verdict.lawful:
+        return ""
+    names = " with ".join(map(spoken, verdict.suspect.split(" with ")))
+    sized = " with ".join(map(_sized, verdict.nearest))
+    return f"Nearest, and not accepted: {sized or names}."
 
 
 def strangers(verdict: Verdict) -> list[str]:
