@@ -37,7 +37,7 @@ def new_text(found: NewMachine, model: Path, logs: Sequence[Path]) -> str:
         file = found.model or model.name
         first = f"see to the gravity in {file}, and draft again from it; then "
     if draft.short:
-        first = "see to the rows that a diagnosis lacks (look); then "
+        first = f"see to the rows that a diagnosis lacks (look); then {first}"
     lines += [f"  next      {first}ves-twin diagnose {given}{held} --plant {found.path}"]
     return "\n".join(lines)
 

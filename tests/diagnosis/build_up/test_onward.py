@@ -260,7 +260,7 @@ def test_an_offer_that_the_count_of_all_leaves_nothing_gives_way_to_the_next(for
 
     monkeypatch.setattr(Builder, "_counted", less)
     monkeypatch.setattr(Builder, "few", lambda *_: [other])
-    monkeypatch.setattr(Builder, "_about_its_fit", lambda _, offer: offer)
+    monkeypatch.setattr(Builder, "about_its_fit", lambda _, offer: offer)
     assert builder.best() is other
 
 
@@ -274,7 +274,7 @@ def test_offers_of_the_same_causes_from_different_points_end_in_the_same_proof(f
     bands = [n for n, t in enumerate(trials) if t.cause.effect == "actuator_deadband"]
     offers = [builder.offer(halves, origin, [gain, band], frozenset()) for band in bands]
     assert spread(offers) > 100.0
-    assert spread([builder._about_its_fit(offer) for offer in offers]) < 1.05
+    assert spread([builder.about_its_fit(offer) for offer in offers]) < 1.05
 
 
 def test_many_causes_never_end_worse_than_the_best_pair(forward, monkeypatch):

@@ -195,9 +195,13 @@ def test_errors_count_over_the_model_as_given_where_its_tuning_predicts_worse():
     assert gain.over == {"rail": (0.181, 0.0765), "sway": (0.0774, 0.0855)}
     better = replace(gain, given={"rail": 0.6, "sway": 0.2})
     assert better.over == replace(gain, given={}).over == errors
+    assert replace(gain, given={"rail": np.nan, "sway": 0.1}).over == errors
+    assert replace(gain, given={"rail": 0.1}).over == errors
     words = rms_words(gain)
     assert "falls by 58 % (rail)" in words
-    assert "grows by 10 % (sway)" in words
+    assert "grows by 10 % (sway), over the model as given" in words
+    assert not gain.fallen
+    assert gain.worse == ("sway",)
 
 
 def test_a_model_that_is_worse_than_the_one_that_was_given_does_not_pass():

@@ -291,10 +291,12 @@ class Builder:
         # one of each set of causes: others of it differ by where their columns are taken
         by_causes = {one.proved: one for one in (*every, *few)} | {found.proved: found}
         rest = [one for one in by_causes.values() if one is not found]
-        return self._about_its_fit(preferred([self._counted(one, known) for one in (found, *rest)]))
+        return builder.about_its_fit(
+            preferred([self._counted(one, known) for one in (found, *rest)])
+        )
 
-    def _about_its_fit(self, offer: Offer) -> Offer:
-        """Judged once more, linear about its own full fit, where that has moved the columns.
+    def about_its_fit(self, offer: Offer) -> Offer:
+        """An offer judged once more, linear about its own full fit, where that moved the columns.
 
         Offers of the same causes are linear about different points, and which of them predicts
         better may hang on rounding: their p, and with them what is firm, would hang on it, too (an

@@ -158,7 +158,7 @@ def trials_at(
     looked = [_probes(runs, c)[: 1 if told else 3] for c, told in zip(new, known, strict=True)]
     columns = columns_of(runs, point, [one for some in looked for one in some], progress)
     here = {trial.cause.label for trial in present}
-    rounding = float(np.finfo(np.float32).eps) * float(np.linalg.norm(runs.one(point)))
+    rounding = np.finfo(np.float32).eps * np.linalg.norm(runs.one(point), axis=0)
     trials: list[Trial] = []
     found: list[SingleArray] = []
     curved = [cause for cause in library.causes if cause.label in library.bent]
@@ -198,7 +198,7 @@ def _within(runs: Runs, cause: Hypothesis, sizes: FloatArray) -> tuple[float, ..
     return tuple(np.clip(sizes, runs.low[where], runs.high[where]).tolist())
 
 
-def _is_linear(probes: Sequence[Trial], shown: Sequence[SingleArray], rounding: float) -> bool:
+def _is_linear(probes: Sequence[Trial], shown: Sequence[SingleArray], rounding: FloatArray) -> bool:
     """Whether columns follow their sizes, and those of several parameters add up.
 
     To rounding: of a hand's inertia, 0.5 mN m of torques of 40 N m, columns were bent by that, and
@@ -209,6 +209,12 @@ def _is_linear(probes: Sequence[Trial], shown: Sequence[SingleArray], rounding: 
         return False
     ratio = np.array(large.sizes) / np.array(small.sizes)
     factor = ratio[:, None, None] if large.wide else ratio[0]
-    size = STRAIGHT * float(np.linalg.norm(one)) + rounding * float(np.max(ratio))
-    follows = np.linalg.norm(one - factor * two) <= size
-    return bool(follows and np.linalg.norm(np.sum(one, axis=0) - joint[0]) <= size)
+    size = STRAIGHT * float(np.linalg.norm(one))
+
+    def beyond(off: SingleArray, times: float) -> float:
+        """What is left of each channel beyond rounding, all of them together."""
+        left = np.linalg.norm(off.reshape(-1, off.shape[-1]), axis=0)
+        return float(np.linalg.norm(np.maximum(left - times * rounding, 0.0)))
+
+    follows = beyond(one - factor * two, float(np.max(ratio))) <= size
+    return follows and beyond(np.sum(one, axis=0) - joint[0], float(len(one))) <= size

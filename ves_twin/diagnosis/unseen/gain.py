@@ -85,8 +85,11 @@ class Gain:
         Tolerances that are bent for a missing cause may fit hardly anything: a crane's trolley was
         off by 0.18 m as given, by 0.54 m tuned, and a gain over that says nothing.
         """
-        known = [(self.given[n], b) for n, (b, _) in self.errors.items() if self.given.get(n)]
-        if len(known) < len(self.errors) or sum(np.log(g / b) for g, b in known if b) >= 0.0:
+        given = [self.given.get(name, 0.0) for name in self.errors]
+        tuned = [before for before, _ in self.errors.values()]
+        if not all(np.isfinite(x) and x > 0.0 for x in (*given, *tuned)):
+            return self.errors
+        if np.sum(np.log(given)) >= np.sum(np.log(tuned)):
             return self.errors
         return {name: (self.given[name], after) for name, (_, after) in self.errors.items()}
 
@@ -117,7 +120,7 @@ class Gain:
     @property
     def fallen(self) -> bool:
         """Whether the bare error of every channel falls or stays, and a tenth goes in the mean."""
-        ratios = [after / before for before, after in self.errors.values() if before > 0.0]
+        ratios = [after / before for before, after in self.over.values() if before > 0.0]
         return bool(ratios) and max(ratios) <= 1.0 and float(np.mean(ratios)) < FALLS
 
     @property
@@ -136,9 +139,9 @@ class Gain:
 
     @property
     def worse(self) -> tuple[str, ...]:
-        """Channels that the extended model predicts worse than the model as it was given."""
+        """Channels that the extended model predicts worse than the model without the extension."""
         limit = 1.0 + GROWN
-        return tuple(n for n, (before, after) in self.errors.items() if after > limit * before)
+        return tuple(n for n, (before, after) in self.over.items() if after > limit * before)
 
     @property
     def carries_on(self) -> bool:
@@ -146,7 +149,7 @@ class Gain:
 
         A drift carried on is so uncertain that z^2 alone would forgive it.
         """
-        grown = any(after > WORSE * before for before, after in self.errors.values())
+        grown = any(after > WORSE * before for before, after in self.over.values())
         return self.passed and not grown
 
 

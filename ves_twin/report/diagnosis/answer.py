@@ -312,8 +312,9 @@ def nearest_sentence(verdict: Verdict) -> str:
 
 
 def suspect_words(verdict: Verdict) -> str:
-    """The causes that come nearest where none is named, with their size; empty without any."""
-    if verdict.verdict is not Kind.UNKNOWN or not verdict.suspect or verdict.lawful:
+    """The causes that come nearest where none is named, a size with each that has one number."""
+    silent = verdict.leftover is None or verdict.lawful or disagree(verdict.alone)
+    if verdict.verdict is not Kind.UNKNOWN or not verdict.suspect or silent:
         return ""
     names = " with ".join(map(spoken, verdict.suspect.split(" with ")))
     sized = " with ".join(map(_sized, verdict.nearest))

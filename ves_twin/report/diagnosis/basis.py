@@ -119,7 +119,10 @@ def rms_words(gain: Gain) -> str:
     words = " and ".join(told) or "stays"
     if len(told) > 1 and all(one.startswith("falls ") for one in told):
         words = f"{told[0]} and {told[1].removeprefix('falls ')}"
-    return f"the rms error on held-out recordings {words}"
+    given = (
+        "" if gain.over is gain.errors else ", over the model as given, since its tuning is worse"
+    )
+    return f"the rms error on held-out recordings {words}{given}"
 
 
 def _moved(fall: float, name: str) -> str:

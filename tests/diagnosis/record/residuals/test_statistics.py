@@ -118,6 +118,22 @@ def test_what_follows_a_rate_is_told_as_that_though_other_columns_share_its_tone
     assert found.value == pytest.approx(1.0 / 1.04, abs=0.02)
 
 
+def test_a_drift_goes_along_with_no_slow_column():
+    """Two slow things are alike to half of their power, whatever they are."""
+    time, rng = np.linspace(0.0, 1.0, ROWS), np.random.default_rng(9)
+    told = 0
+    for _ in range(20):
+        walk = np.cumsum(rng.standard_normal((ROWS, 2)), axis=0)
+        found = Companions(("a", "b"), walk).of(time + 0.02 * rng.standard_normal(ROWS))
+        told += found.told
+    assert told <= 2
+
+
+def test_of_too_few_rows_or_columns_nothing_is_asked():
+    assert Companions(("a",), np.zeros((1, 1))).of(np.zeros(1)) is None
+    assert Companions((), np.zeros((ROWS, 0))).of(np.zeros(ROWS)) is None
+
+
 def test_a_standstill_tells_size_and_colour_and_a_silent_column_keeps_the_declared():
     rng = np.random.default_rng(7)
     noise = measured_noise(

@@ -19,7 +19,9 @@ def test_what_a_controller_put_out_is_a_command(name):
     assert is_command(name)
 
 
-@pytest.mark.parametrize("name", ["tau1", "motor_current", "iq", "u_meas", "pwm_torque", "force"])
+@pytest.mark.parametrize(
+    "name", ["tau1", "motor_current", "iq", "u_meas", "pwm_torque", "force", "tau_cmd_meas"]
+)
 def test_what_a_sensor_reads_is_none(name):
     assert not is_command(name)
 
@@ -30,6 +32,14 @@ def test_a_command_has_the_noise_of_its_rounding_however_fast_it_jumps():
     assert sd == pytest.approx(1.0 / np.sqrt(12.0))
     assert how.startswith("rounding")
     assert noise_of(values, 0.02, None)[0] > 1000.0 * sd
+
+
+def test_of_a_command_that_is_not_rounded_a_thousandth_is_taken():
+    """The smallest step between numbers of full length is no rounding."""
+    values = BANG + np.random.default_rng(1).standard_normal(800)
+    sd, how = noise_of(values, 0.02, None, command=True)
+    assert sd == pytest.approx(1e-3 * np.std(values))
+    assert how.startswith("a thousandth")
 
 
 def test_a_command_that_never_changes_tells_no_rounding():

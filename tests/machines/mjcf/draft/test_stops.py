@@ -75,10 +75,23 @@ def of_the_rail(tmp_path, write, **columns):
     return drafted(path, write(log | {n: f(log) for n, f in columns.items()}))
 
 
+@pytest.mark.parametrize("told", ["N", ""])
+def test_an_effort_is_held_against_no_range_of_commands(tmp_path, write, told):
+    """400 N of a motor with 50 N a unit are 8 units of 12."""
+    found, _ = of_the_rail(
+        tmp_path,
+        write,
+        **{f"drive_{told}" if told else "force": lambda log: 50 * log["drive_duty"]},
+    )
+    assert not any("ctrlrange" in words for words in found.look)
+
+
 def test_commands_that_the_model_would_clip_are_told(tmp_path, write):
     """Counts of a PWM for volts: MuJoCo holds them at the end of ctrlrange, and says nothing."""
     found, _ = of_the_rail(tmp_path, write, drive_duty=lambda log: 1e3 * log["drive_duty"])
-    assert any("drive takes -12 to 12 (ctrlrange) and clips the rest" in w for w in found.look)
+    assert any(
+        "drive takes -12 to 12 (ctrlrange), a simulation clips the rest" in w for w in found.look
+    )
     found, _ = of_the_rail(tmp_path, write)
     assert not any("ctrlrange" in words for words in found.look)
 

@@ -156,7 +156,7 @@ def compare_column(
         time: even clock [s] (n,).
         measured: rows (n,), NaN where missing.
         expected: rows (n,), of a simulation or of another recording.
-        companions: spectra of the drive.
+        companions: columns of the drive and their rates.
         load: size of the force on the sensor (n,).
 
     Returns:

@@ -30,8 +30,9 @@ class Coherence:
     """Share of a residual's power that one column of the drive, or its rate, explains linearly.
 
     Attributes:
-        value: largest over the columns of the drive, weighted by the residual's power.
-        chance: largest that the same figure reaches with pieces paired wrongly.
+        value: largest over these columns: of a filter within pieces, weighted by the residual's
+            power, or of a factor over the whole record, lines taken off.
+        chance: largest that the same figure reaches with the residual shifted in time.
         column: the column of the drive, after RATE if it is its rate.
     """
 
@@ -59,10 +60,11 @@ class Companions:
         self._names = (*own, *(RATE + name for name in own))
         self._length = 2 * (len(drive) // (PIECES + 1))
         self._told = bool(moving.any()) and self._length >= SHORTEST
-        every = _with_rates(drive[:, moving])
+        every = _with_rates(drive[:, moving]) if self._told else np.zeros((len(drive), 0))
+        self._names = self._names if self._told else ()
         self._pieces = self._spectra(every) if self._told else np.zeros((0, 0, 0), complex)
         self._every: dict[str, FloatArray] = dict(zip(self._names, every.T, strict=True))
-        about = every - every.mean(axis=0)
+        about = _without_line(every)
         self._whole = about / np.maximum(np.linalg.norm(about, axis=0), 1e-300)
 
     def rows(self, name: str) -> FloatArray:
@@ -93,7 +95,7 @@ class Companions:
 
     def _together(self, residual: FloatArray, pieces: ComplexArray, turn: int) -> FloatArray:
         """What each column explains: as a filter of it within pieces, or by a factor in all."""
-        rows = np.roll(residual - residual.mean(), turn * self._length // 2)
+        rows = np.roll(_without_line(residual), turn * self._length // 2)
         factor = np.square(rows @ self._whole / max(float(np.linalg.norm(rows)), 1e-300))
         return np.asarray(np.maximum(self._shares(pieces, turn), factor))
 
@@ -104,6 +106,12 @@ class Companions:
         fed = np.mean(np.abs(drive) ** 2, axis=0)
         explained = cross / np.maximum(fed, 1e-9 * fed.max(axis=0))
         return np.asarray(explained.sum(axis=0) / max(float(power.sum()), 1e-300))
+
+
+def _without_line(rows: FloatArray) -> FloatArray:
+    """Rows (n,) or (n, k) less their straight lines: a drift goes along with every slow column."""
+    line = np.vander(np.linspace(-1.0, 1.0, len(rows)), 2)
+    return np.asarray(rows - line @ np.linalg.lstsq(line, rows, rcond=None)[0])
 
 
 def _with_rates(drive: FloatArray) -> FloatArray:

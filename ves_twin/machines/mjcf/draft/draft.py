@@ -35,6 +35,7 @@ from ves_twin.machines.mjcf.draft.untold import untold
 from ves_twin.machines.mjcf.motion.forward import MjcfForward
 from ves_twin.machines.mjcf.motion.pieces import pieces
 from ves_twin.machines.mjcf.recordings.columns import read_rig_recording
+from ves_twin.machines.mjcf.recordings.interleaved_split import alternate
 from ves_twin.machines.mjcf.rig.description import KIND, Mode, RigDescription
 from ves_twin.machines.mjcf.rig.machine import Rig
 
@@ -91,7 +92,7 @@ class Draft:
         mode: what is fed in, and why.
         explained: column or signal -> share of its power that the model as it is explains.
         stretch: length of stretches to hold out [s], long enough for a diagnosis; 0 where the log
-            is too short for two.
+            is too short for two, or in pieces already.
         rubs: columns of efforts that friction explains, and the model does not.
         gravity: that the model should have, as its file has it; empty where it is right.
         short: whether a diagnosis would find the log, or a piece of it, too short.
@@ -232,17 +233,15 @@ def _percent(version: _Version) -> str:
 def _stretch(now: _Version, part: Recording, log: LogColumns) -> float:
     """Length of stretches to hold out [s]; a last one of half a length is one, too.
 
-    None where `diagnose` would find one of them too short.
+    0 where `diagnose` would find one of them too short, or the log is in pieces already.
     """
     length = max(STRETCH, float(np.ceil(ROWS / now.mode.rate)))
     if log.period * (log.rows - 1) <= 1.5 * length or now.mode.horizon:
         return 0.0
-    one = Recording(
-        part.time[rows := part.time - part.time[0] < length],
-        {name: values[rows] for name, values in part.signals.items()},
-        part.info,
-    )
-    return 0.0 if _short(now.rig, one) else length
+    if float(np.ptp(part.time)) <= 1.5 * length:  # of a long log a part alone was simulated
+        return length
+    fit, held = alternate(part, length)
+    return 0.0 if any(_short(now.rig, one) for one in (*fit, *held)) else length
 
 
 def _smooth(mode: Chosen) -> list[str]:
@@ -260,8 +259,9 @@ def _short(rig: Rig, part: Recording) -> list[str]:
     """That a log, or a piece of it, is too short for a diagnosis, if it is."""
     if len(part.time) < FEWEST:  # a clock in another unit, which is told
         return []
+    parts = pieces(rig, part)
     try:
-        check_lengths(MjcfForward.of(rig), pieces(rig, part), rig.description.rate)
+        check_lengths(MjcfForward.of(rig), parts, rig.description.rate)
     except InvalidInputError as short:
         return [f"too short for a diagnosis: {short}"]
     return []

@@ -25,6 +25,9 @@ SMOOTH, ASSUMED = 1e-3, 5e-3
 and what is assumed then. Drives of three measured arms have 1 to 10 %; torque sensors are of class
 0.1 to 0.5."""
 
+WHOLE = 0.02
+"""Steps by which differences of a column that is rounded may miss whole ones."""
+
 LOW_PASSED = "low-passed, so assumed: half a per cent of its size"
 """How such a noise was told."""
 
@@ -40,7 +43,8 @@ def noise_of(
 
     At rest the scatter about a straight line; else the power in the highest octave as if it were
     that of all, no less than rounding to the smallest step makes, step / sqrt(12). A command has
-    rounding alone: what is fast in it was put out so. A measured effort that has next to nothing
+    rounding alone, or a thousandth of its size where it is not rounded: what is fast in it was put
+    out so. A measured effort that has next to nothing
     in its highest octave was low-passed, and its noise with it: ASSUMED of its size.
 
     Args:
@@ -53,7 +57,10 @@ def noise_of(
     steps = np.abs(np.diff(np.unique(values)))
     rounding = float(np.min(steps)) / np.sqrt(12.0) if len(steps) else 0.0
     if command and rounding > 0.0:
-        return rounding, "rounding: a command has no other"
+        least = float(np.min(steps))
+        if np.max(np.abs(steps / least - np.round(steps / least))) < WHOLE:
+            return rounding, "rounding: a command has no other"
+        return SMOOTH * float(np.std(values)), "a thousandth of its size: a command has none"
     if rest is not None and float(np.ptp(values[rest])) > 0.0:
         return max(float(np.std(detrend(values[rest]))), rounding), "scatter at rest"
     frequency, power = spectrum(values, period)

@@ -1,4 +1,4 @@
-"""lifted: what the last bodies of arms can have carried, by the efforts of a log."""
+"""Load, lifted: what the last bodies of arms can have carried, by the efforts of a log."""
 
 from __future__ import annotations
 
@@ -18,13 +18,17 @@ LEAST = 1e-3
 """Effort a kilogram [N m/kg or N/kg] below which a joint bears none of a weight: round-off."""
 
 
+HEAVIER = 0.1
+"""Share of its own mass from which a body is heavier than the model has it: less is tolerance."""
+
+
 @dataclass(frozen=True)
 class Load:
     """What a last body can carry.
 
     Attributes:
         most: mass [kg] at its centre whose weight would take all of an effort.
-        heavier: whether the efforts ask for more than the body has in the model, beside friction.
+        heavier: whether the efforts ask for clearly more than it weighs in the model.
     """
 
     most: float
@@ -66,7 +70,8 @@ def lifted(
         ]
         if most and np.isfinite(min(most)):
             whole = motion(heavier).effort - now.effort
-            found[name] = Load(min(most), _extra(now, whole, loads) > 0.0)
+            extra = _extra(now, whole, loads)
+            found[name] = Load(min(most), extra > HEAVIER * float(model.body_mass[body]))
     return found
 
 

@@ -197,7 +197,8 @@ def _sorted(
     if not values or len(even) < FEWEST:
         came = f"constant: {', '.join(constant) or 'none'}; with gaps: {', '.join(empty) or 'none'}"
         expected = "columns of numbers that change"
-        if empty and not np.any(np.all([full[n] for n in empty], axis=0)):
+        some = len(empty) > 1 and all(np.any(full[n]) for n in empty)
+        if some and not np.any(np.all([full[n] for n in empty], axis=0)):
             expected += f"; no row holds {', '.join(empty)} together: signals of several clocks, as"
             expected += " a player of messages exports them, are read once they are on one clock"
         raise InvalidInputError(f"columns of {path.name}", came, expected)

@@ -140,7 +140,8 @@ def likeness(column: str, unit: str, spot: Spot, only: bool, zero: bool) -> Like
     wish = is_setpoint(column) and not MEASURED & words
     if _ruled_out(words, wish, spot) or not _unit_fits(spelled(unit), spot):
         return None
-    if spelled(unit) == "counts" and not KIND_WORDS[Quantity.EFFORT] & words:
+    placed = KIND_WORDS[Quantity.POSITION] & words - AXES
+    if spelled(unit) == "counts" and (placed or not KIND_WORDS[Quantity.EFFORT] & words):
         return None  # an encoder has counts, too
     foreign = spelled(unit) in ELECTRICAL and spot.unit not in {"1", spelled(unit)}
     evidence = [(CONSTANT if foreign else UNIT, f"unit {unit}")] if unit else []
@@ -242,7 +243,8 @@ def is_command(column: str) -> bool:
     """Whether a name says that a controller put it out: nothing senses it, so it has no noise."""
     words = frozenset(words_of(bare_name(column)))
     sensed = words & {*MEASURED, *IMPLIED, *MECHANICAL.split()}
-    return bool(words & SETPOINT) or (bool(words & PLAIN_COMMANDS) and not sensed)
+    asked = bool(words & SETPOINT) and not words & MEASURED
+    return asked or (bool(words & PLAIN_COMMANDS) and not sensed)
 
 
 def is_effort(column: str, unit: str) -> bool:

@@ -136,7 +136,7 @@ def _swapped(log: LogColumns, found: Sequence[Match], corner: float) -> list[str
     """That an effort is the rate of its joint's position.
 
     Where nothing is taken for that rate, viscous friction of 1 in SI looks like it: only what is
-    the rate to rounding is told then.
+    the rate to a thousandth is told then.
     """
     positions, said = _of(found, Quantity.POSITION), []
     speeds = _of(found, Quantity.SPEED)

@@ -1,4 +1,4 @@
-"""beyond, in_degrees_by_stops: positions and commands held against what the model lets them be."""
+"""beyond, beyond_control, in_degrees_by_stops: columns held against ranges of the model."""
 
 from __future__ import annotations
 
@@ -42,14 +42,14 @@ def beyond_control(log: LogColumns, found: list[Match], model: mujoco.MjModel) -
         low, high = map(float, actuator.ctrlrange)
         if not int(actuator.ctrllimited[0]):
             continue
-        gain = abs(float(actuator.gear[0] * actuator.gainprm[0])) or 1.0
-        command = match.factor / (gain if match.spot.unit in ("N", "N*m") else 1.0)
-        values = command * log.column(match.column)
+        if match.spot.unit == "1" and match.unit in ("N", "N*m"):  # an effort, and no command
+            continue
+        values = match.factor * log.column(match.column)
         lowest, highest = float(np.min(values)), float(np.max(values))
         if max(low - lowest, highest - high) > NEAR * (high - low):
             yield (
                 f"{match.column} goes from {lowest:.3g} to {highest:.3g}, {match.spot.label} takes"
-                f" {low:.3g} to {high:.3g} (ctrlrange) and clips the rest: another unit?"
+                f" {low:.3g} to {high:.3g} (ctrlrange), a simulation clips the rest: another unit?"
             )
 
 

@@ -72,8 +72,11 @@ class Entry:
 
     @staticmethod
     def told_of(m: Magnitude, first: Magnitude, allowed: Allowed) -> Allowed:
-        """What the file says of a size: of a payload the mass, and nothing of its place."""
-        if m.unit == first.unit:
+        """What the file says of a size: of a payload the mass, and nothing of its place.
+
+        A component in another unit than the first size keeps its own range.
+        """
+        if m.unit == first.unit or not m.component:
             return allowed
         plain = {"sd": 0.0, **dict.fromkeys(("smallest", "largest", "low", "high"))}
         return allowed.model_copy(update=plain)
