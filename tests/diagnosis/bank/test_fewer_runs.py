@@ -22,7 +22,7 @@ from ves_twin.diagnosis.record.evidence import Evidence
 from ves_twin.diagnosis.record.runs import Runs, silent
 from ves_twin.diagnosis.record.whitening import whitening_declared
 from ves_twin.diagnosis.settings import Settings
-from ves_twin.diagnosis.unseen.gain import _Carried, held_out_gain
+from ves_twin.diagnosis.unseen.held_out_gain import _Carried, held_out_gain
 
 FED = programme(1)
 LEVELS = Thresholds(15.0, 5.0, np.zeros(0), np.zeros(0))

@@ -36,7 +36,7 @@ from ves_twin.diagnosis.model.law_forward import LawForward, Variable
 from ves_twin.diagnosis.record.evidence import Evidence
 from ves_twin.diagnosis.record.preprocess import preprocess
 from ves_twin.diagnosis.record.whitening import whitening_declared
-from ves_twin.diagnosis.unseen.gain import held_out_gain
+from ves_twin.diagnosis.unseen.held_out_gain import held_out_gain
 from ves_twin.effects.law import Law, LawKind, LawShape
 from ves_twin.machines.mjcf.motion.forward import MjcfForward
 

@@ -14,15 +14,15 @@ from ves_twin.diagnosis.record.evidence import Evidence
 from ves_twin.diagnosis.record.preprocess import Dataset
 from ves_twin.diagnosis.record.runs import Runs
 from ves_twin.diagnosis.record.whitening import whitening_declared
-from ves_twin.diagnosis.unseen.gain import (
+from ves_twin.diagnosis.unseen.gain import Gain
+from ves_twin.diagnosis.unseen.held_out import HeldOut
+from ves_twin.diagnosis.unseen.held_out_gain import (
     BLOCK_SECONDS,
     DivergedError,
-    Gain,
     _starts,
     _stretches,
     held_out_gain,
 )
-from ves_twin.diagnosis.unseen.held_out import HeldOut
 from ves_twin.report.diagnosis.basis import rms_words
 
 TRUE = {"plant.gain": 1.03, "plant.slope": 0.04, "friction.size": 0.06}

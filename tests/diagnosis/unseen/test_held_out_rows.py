@@ -9,7 +9,7 @@ import pytest
 from toy import QUICK, SD, Toy, programme, record
 
 from ves_twin.diagnosis.diagnose import diagnose
-from ves_twin.diagnosis.unseen import gain
+from ves_twin.diagnosis.unseen import held_out_gain as gain
 
 
 def with_hole(first, last):

@@ -17,7 +17,8 @@ from ves_twin.diagnosis.record.evidence import Evidence
 from ves_twin.diagnosis.record.preprocess import FEWEST_POSES, FEWEST_ROWS, preprocess
 from ves_twin.diagnosis.record.whitening import whitening_of
 from ves_twin.diagnosis.settings import Settings
-from ves_twin.diagnosis.unseen.gain import DivergedError, Gain, held_out_gain
+from ves_twin.diagnosis.unseen.gain import Gain
+from ves_twin.diagnosis.unseen.held_out_gain import DivergedError, held_out_gain
 
 LEARNT = 0.7
 """Share of the time that is fitted; the rest is forecast."""

@@ -16,7 +16,8 @@ from ves_twin.diagnosis.record.preprocess import Dataset, preprocess
 from ves_twin.diagnosis.record.runs import Runs
 from ves_twin.diagnosis.record.whitening import Whitening, whitening_of
 from ves_twin.diagnosis.settings import Settings
-from ves_twin.diagnosis.unseen.gain import DivergedError, Gain, held_out_gain
+from ves_twin.diagnosis.unseen.gain import Gain
+from ves_twin.diagnosis.unseen.held_out_gain import DivergedError, held_out_gain
 
 
 @dataclass(frozen=True)
