@@ -12,10 +12,7 @@ from tempfile import TemporaryDirectory
 import numpy as np
 
 from ves_twin.core.errors import InvalidInputError
-from ves_twin.core.quantity import quantity
 from ves_twin.core.recording.recording import Recording
-from ves_twin.core.types import BoolArray, FloatArray
-from ves_twin.diagnosis.model.forward import Excitation
 from ves_twin.diagnosis.record.preprocess import check_lengths
 from ves_twin.machines.mjcf.draft.by_number import by_number
 from ves_twin.machines.mjcf.draft.check import Checked, checked
@@ -27,6 +24,7 @@ from ves_twin.machines.mjcf.draft.given_model import GivenModel
 from ves_twin.machines.mjcf.draft.log_columns import LogColumns
 from ves_twin.machines.mjcf.draft.match import matched
 from ves_twin.machines.mjcf.draft.other_way import other_way
+from ves_twin.machines.mjcf.draft.predicted import AWAY, FEWEST, predicted
 from ves_twin.machines.mjcf.draft.runs_away import runs_away
 from ves_twin.machines.mjcf.draft.shape import by_shape
 from ves_twin.machines.mjcf.draft.spots import spots_of
@@ -49,9 +47,6 @@ ROWS = 150
 STRETCH = 2.0
 """Usual length of a stretch that is held out [s]."""
 
-FEWEST = 30
-"""Rows from which on a prediction of them tells anything."""
-
 LONGEST = 60.0
 """Stretch of a log that is predicted to say how near the model is [s]."""
 
@@ -60,13 +55,6 @@ HORIZONS = (10.0, 5.0, 3.0, 2.0, 1.5, 1.0, 0.5)
 
 HELPS = 0.1
 """Share of a signal's power that a horizon must explain more for it to be taken."""
-
-AWAY = -1.0
-"""Share of a channel's power below which a simulation runs away: it is off by more than moves."""
-
-COARSE = 3.0
-"""Error of the model's step, in noise of one row, that is told: a rotary pendulum with 13 had
-intervals far too narrow about sizes that were off."""
 
 
 @dataclass(frozen=True)
@@ -138,7 +126,7 @@ def draft(model: Path, logs: Sequence[Path], out: Path, rate: float | None = Non
         rig = _rig(text, given, out)
         if mode.mode is Mode.MOTION:
             return _Version(mode, text, rig, dict(told.explained), [])
-        return _Version(mode, text, rig, *_predicted(rig, logs[0]))
+        return _Version(mode, text, rig, *predicted(rig, _first_part(rig, logs[0])))
 
     now = version(chosen(log, matches, check, given.model))
     part = _first_part(now.rig, logs[0])
@@ -163,6 +151,8 @@ def draft(model: Path, logs: Sequence[Path], out: Path, rate: float | None = Non
     turned: list[str] = []
     if now.mode.mode is Mode.CONTROL and simulated and now.explained[now.least] < HALF:
         turned = other_way(now.rig, _first_part(now.rig, logs[0]))
+        cut = None if turned else _shortest(now, version, 1.0 / log.period)
+        turned = other_way(cut, _first_part(cut, logs[0])) if cut else turned
     coarse = [] if turned else now.coarse
     short = _short(now.rig, part)
     smooth = _smooth(now.mode)
@@ -213,7 +203,7 @@ def _in_pieces(whole: _Version, version: Callable[[Chosen], _Version], native: f
     mode, share = whole.mode, whole.explained[whole.least]
     why = f"{mode.why}; over the whole log the model explains {_percent(whole)} of {whole.least}"
     best, found = share + HELPS, whole
-    for horizon in (h for h in HORIZONS if h * min(mode.rate, native) >= ROWS):
+    for horizon in _horizons(mode, native):
         try:
             cut = version(replace(mode, horizon=horizon, why=why))
         except InvalidInputError:  # a joint whose start no row tells
@@ -223,6 +213,25 @@ def _in_pieces(whole: _Version, version: Callable[[Chosen], _Version], native: f
         if found.explained[found.least] >= HALF:
             break
     return found
+
+
+def _horizons(mode: Chosen, native: float) -> list[float]:
+    """Pieces [s] that have enough rows, the longest first."""
+    return [h for h in HORIZONS if h * min(mode.rate, native) >= ROWS]
+
+
+def _shortest(whole: _Version, version: Callable[[Chosen], _Version], native: float) -> Rig | None:
+    """The machine in the shortest pieces, where a swing that runs away is told from its turned one.
+
+    None where it is in pieces already, or no row tells a joint's start.
+    """
+    usable = _horizons(whole.mode, native)
+    if whole.mode.horizon or not usable:
+        return None
+    try:
+        return version(replace(whole.mode, horizon=usable[-1])).rig
+    except InvalidInputError:
+        return None
 
 
 def _percent(version: _Version) -> str:
@@ -288,79 +297,6 @@ def _first_part(rig: Rig, log: Path) -> Recording:
     rows = recording.time - recording.time[0] <= LONGEST
     signals = {name: values[rows] for name, values in recording.signals.items()}
     return Recording(recording.time[rows], signals, recording.info)
-
-
-def _predicted(rig: Rig, log: Path) -> tuple[dict[str, float], list[str]]:
-    """Of the model, fed with the log's commands: what it explains, and what its step spoils.
-
-    Short pieces begin where the log is, and hardly leave it: a share counts against what the first
-    rows of each, gone on with straight on, leave as well as against the spread.
-
-    Returns:
-        Signal -> share of its power, below zero where it runs away; a sentence for channels that
-        do, or that the step puts far off.
-    """
-    short, forward = _first_part(rig, log), MjcfForward.of(rig)
-    if len(short.time) < FEWEST:  # a clock in another unit, which is told
-        return dict.fromkeys((channel.signal for channel in forward.channels), 0.0), []
-    fed = [Excitation.of(piece, forward.drive) for piece in pieces(rig, short)]
-    parts = [forward.simulate(one, {}) for one in fed]
-    found = np.concatenate(parts)
-    finer = np.concatenate([forward.simulate(one, {}, True) for one in fed])
-    speeds = np.array([channel.unit.endswith("/s") for channel in forward.channels])
-    coasting = np.concatenate([_coasting(part, speeds) for part in parts])
-    shares: dict[str, list[float]] = {}
-    coarse: dict[str, tuple[float, str]] = {}
-    lost: list[str] = []
-    channels = zip(found.T, finer.T, coasting.T, forward.channels, strict=True)
-    for column, half, straight, channel in channels:
-        off = 2.0 * float(np.sqrt(np.mean((half - column) ** 2)))  # to first order
-        y = short[channel.signal][: len(column), channel.column]
-        rest, power = y - column, float(np.sum((y - y.mean()) ** 2)) or 1.0
-        power = min(power, float(np.sum((y - straight) ** 2)) or power)
-        share = 1.0 - float(rest @ rest) / power if np.all(np.isfinite(rest)) else -np.inf
-        shares.setdefault(channel.signal, []).append(share)
-        if share < AWAY:
-            ends = (np.sqrt(np.mean(x * x)) for x in (rest, y - y.mean()))
-            far, moves = (quantity(float(x), channel.unit, 2) for x in ends)
-            runs = f"runs {far} away (rms) and moves by {moves}" if share > -np.inf else "diverges"
-            lost.append(f"simulated, {channel.name} {runs}")
-        elif off > COARSE * channel.sd > 0.0:
-            coarse[channel.name] = off / channel.sd, quantity(off, channel.unit, 2)
-    step = float(rig.model.opt.timestep)
-    why = "signs, units, zeros?"
-    if any(_undamped(rig, name) for name, found in shares.items() if min(found) < AWAY):
-        why = "has a joint no damping or friction in the model?"
-    words = [f"{'; '.join(lost)}: {why}"] if lost else []
-    return {name: min(found) for name, found in shares.items()}, [*words, *_coarse(coarse, step)]
-
-
-def _undamped(rig: Rig, signal: str) -> bool:
-    """Whether the joint that a signal tells of has neither damping nor friction in the model."""
-    joint = rig.description.compare[signal].joint if signal in rig.description.compare else ""
-    if not joint:
-        return False
-    at = rig.model.joint(joint).dofadr[0]
-    return not (rig.model.dof_damping[at] or rig.model.dof_frictionloss[at])
-
-
-def _coasting(rows: FloatArray, speeds: BoolArray) -> FloatArray:
-    """First rows of a simulation (n, c) gone on with straight on; of a speed the first row."""
-    rate = np.where(speeds, 0.0, rows[1] - rows[0])
-    return np.asarray(rows[0] + np.arange(len(rows))[:, None] * rate)
-
-
-def _coarse(found: dict[str, tuple[float, str]], step: float) -> list[str]:
-    """That a step [s] is coarse for channels, which it puts off by so many noises; the worst."""
-    if not found:
-        return []
-    worst = max(found, key=lambda name: found[name][0])
-    times, off = found[worst]
-    more = f", {len(found) - 1} more by more than {COARSE:g}" if len(found) > 1 else ""
-    return [
-        f"the model's step of {step:.3g} s puts {worst} {off} off (rms), {times:.2g} times its"
-        f" noise{more}: give the model a smaller timestep"
-    ]
 
 
 def _guesses(check: Checked, mode: Chosen) -> tuple[Guess, ...]:

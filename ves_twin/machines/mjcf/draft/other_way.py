@@ -7,10 +7,9 @@ from dataclasses import replace
 import numpy as np
 
 from ves_twin.core.recording.recording import Recording
-from ves_twin.diagnosis.model.forward import Excitation
+from ves_twin.machines.mjcf.draft.predicted import least_explained
 from ves_twin.machines.mjcf.draft.spots import HINGE
 from ves_twin.machines.mjcf.motion.forward import MjcfForward
-from ves_twin.machines.mjcf.motion.pieces import pieces
 from ves_twin.machines.mjcf.rig.machine import Rig
 
 BETTER = 0.3
@@ -63,28 +62,14 @@ def other_way(rig: Rig, recording: Recording) -> list[str]:
     tried += [(names, factor) for names in commands for factor in UNITS]
     one = len(MjcfForward.of(rig).channels) == 1
     of = "of it" if one else "of what it explains least of"
-    before, found = max(_share(rig, recording), 0.0), list[tuple[float, str]]()
+    within = f"in pieces of {told.drive.horizon:g} s " if told.drive.horizon else ""
+    before, found = max(least_explained(rig, recording), 0.0), list[tuple[float, str]]()
     for names, factor in tried:
         signals = {n: factor * v if n in names else v for n, v in recording.signals.items()}
-        share = _share(rig, replace(recording, signals=signals))
-        explains = f"the model explains {share:.0%} {of}, {before:.0%}"
+        share = least_explained(rig, replace(recording, signals=signals))
+        explains = f"{within}the model explains {share:.0%} {of}, {before:.0%}"
         other = f"times {factor:g}, {{}}: another unit, or a gear?"
         question = QUESTIONS.get(factor, other).format(f"{explains} as it is")
         found.append((share, f"{names[0]} {question}"))
     share, sentence = max(found)
     return [sentence] if share > before + BETTER else []
-
-
-def _share(rig: Rig, recording: Recording) -> float:
-    """Share of its power that the model explains of the signal that it explains least of."""
-    forward = MjcfForward.of(rig)
-    parts = pieces(rig, recording)
-    told = np.concatenate([forward.simulate(Excitation.of(p, forward.drive), {}) for p in parts])
-    if not np.all(np.isfinite(told)):
-        return -np.inf
-    shares = []
-    for column, channel in zip(told.T, forward.channels, strict=True):
-        y = np.concatenate([part[channel.signal][:, channel.column] for part in parts])
-        left, power = np.nansum((y - column) ** 2), np.nansum((y - np.nanmean(y)) ** 2)
-        shares.append(1.0 - float(left / power) if power > 0.0 else 0.0)
-    return min(shares)
