@@ -75,6 +75,9 @@ def test_what_causes_leave_is_a_law_of_two_joints_together(
     assert law.gain is not None
     assert law.gain.low is not None
     assert law.gain.low > 0.9
+    assert diagnosed[True].verdict.gain is not None
+    causes = {n: after for n, (_, after) in diagnosed[True].verdict.gain.errors.items()}
+    assert {n: before for n, (before, _) in law.gain.errors.items()} == pytest.approx(causes)
     speed = np.linspace(*law.seen[0], 200)
     found = np.interp(speed, law.knots[0], law.values)
     assert np.std(found - root_of_speed(speed)) < 0.1 * np.std(root_of_speed(speed))

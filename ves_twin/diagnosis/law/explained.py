@@ -117,10 +117,17 @@ def lawful_rest(
     there = replace(held, runs=replace(held.runs, forward=rest.evidence.runs.forward))
     tried = HeldOut(there, replace(whitening, runs=there.runs), settings)
     search, finding = _borne_out(rest, tried, progress, alone)
-    finding = replace(finding, part=True)
+    finding = replace(finding, part=True, gain=_over(finding.gain, alone))
     if not finding.claimed:
         return Lawful(finding, None)
     return Lawful(finding, _explained(built.found, search))
+
+
+def _over(gain: Gain | None, alone: Mapping[str, float]) -> Gain | None:
+    """A law's gain with errors over what the causes were proved to leave: tuning is another's."""
+    if gain is None or not alone:
+        return gain
+    return replace(gain, errors={n: (alone[n], after) for n, (_, after) in gain.errors.items()})
 
 
 def _borne_out(

@@ -11,7 +11,7 @@ from ves_twin.core.quantity import digits, quantity
 from ves_twin.core.types import FloatArray
 from ves_twin.diagnosis.law.result import LawFinding, LawRival
 from ves_twin.report.colours import AFTER, MEASURED
-from ves_twin.report.diagnosis.basis import taken_words
+from ves_twin.report.diagnosis.basis import rms_words, taken_words
 from ves_twin.report.figure import new_figure, svg
 from ves_twin.report.html import Html, bullets, folded, paragraph, table
 
@@ -80,7 +80,8 @@ def worth_sentence(law: LawFinding) -> str:
         return f"It is {odds}. No held-out recording has tried it."
     if gain.share is None:
         return f"It is {odds}. The held-out recordings show nothing that it could improve."
-    return f"It takes away {taken_words(gain)}, and is {odds}."
+    beside = f"; over the causes alone {rms_words(gain)}" if law.part and gain.errors else ""
+    return f"It takes away {taken_words(gain)}, and is {odds}{beside}."
 
 
 def equals(law: LawFinding) -> list[LawRival]:
