@@ -35,6 +35,8 @@ SHARES = {
 """Attribute -> share to which drawings and datasheets tell it, and where MuJoCo keeps it. Assumed:
 scales and density tell masses to some per cent, motors their constant; friction varies most."""
 
+OF_MODEL = "# shares of the model's values: yours? 100 % of one that is a guess"
+"""Remark on them: a damping that nobody measured, known to 20 %, hides a dry friction (a crane)."""
 
 BENT = 0.05
 """Share of a joint's typical speed that its first rows are off by where a force jumps in them: dry
@@ -76,7 +78,7 @@ def draft_text(
         f"clock = {_clock(log)}",
         *([f"window = {_window(log)}"] if log.window else []),
         _drive(mode, check.locked),
-        f"tolerances = {_tolerances(model, check)}   # shares of the model's values: yours?",
+        f"tolerances = {_tolerances(model, check)}   {OF_MODEL}",
         _effects(check, model),
         "",
         "[signals]",
