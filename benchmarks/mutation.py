@@ -78,16 +78,17 @@ ROOMS = (
         tuple(
             f"{DIAGNOSIS}/{name}.py"
             for name in (
-                "whitening", "search", "refine", "explain", "fits", "judge", "pairs", "gain",
-                "assess",
+                "record/whitening", "fit/search", "fit/refine", "fit/fits", "fit/assess",
+                "explain/explain", "explain/judge", "explain/pairs", "unseen/gain",
+                "unseen/held_out_gain", "build_up/proof", "build_up/weighed", "build_up/judges",
+                "build_up/paired", "build_up/next_of_kin", "build_up/idle", "build_up/offer",
             )
         ),
         tuple(
-            f"tests/diagnosis/test_{name}.py"
+            f"tests/diagnosis/{name}"
             for name in (
-                "whitening", "refine", "search", "search_steps", "gain", "assess", "explain",
-                "diagnose", "build_up", "bad_input", "differential", "grid", "plan", "forecast",
-                "lacking",
+                "record", "fit", "explain", "unseen", "build_up", "model", "test_diagnose.py",
+                "test_bad_input.py", "test_decide.py", "experiment/test_plan.py",
             )
         ),
         False,
