@@ -57,11 +57,10 @@ class Companions:
     def __init__(self, names: tuple[str, ...], drive: FloatArray) -> None:
         moving = np.ptp(drive, axis=0) > 0.0
         own = tuple(np.array(names)[moving].tolist())
-        self._names = (*own, *(RATE + name for name in own))
         self._length = 2 * (len(drive) // (PIECES + 1))
         self._told = bool(moving.any()) and self._length >= SHORTEST
         every = _with_rates(drive[:, moving]) if self._told else np.zeros((len(drive), 0))
-        self._names = self._names if self._told else ()
+        self._names = (*own, *(RATE + name for name in own)) if self._told else ()
         self._pieces = self._spectra(every) if self._told else np.zeros((0, 0, 0), complex)
         self._every: dict[str, FloatArray] = dict(zip(self._names, every.T, strict=True))
         about = _without_line(every)

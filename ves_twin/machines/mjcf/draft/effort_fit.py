@@ -107,8 +107,7 @@ class EffortFit:
             speed: of the joint (m,).
             free: whether any constant may stand between effort and column.
         """
-        slow = 0.05 * float(np.std(speed)) or 1.0
-        friction = np.stack([speed, np.tanh(speed / slow), np.ones_like(speed)], axis=1)
+        friction = friction_columns(speed)
         whole = np.column_stack([need, friction])
         power = float(np.sum((y - y.mean()) ** 2)) or 1.0
         slopes = np.linalg.lstsq(whole, y, rcond=None)[0]
@@ -124,3 +123,9 @@ class EffortFit:
         size = float(np.sqrt(np.mean(y**2) / max(float(np.mean(need**2)), 1e-300)))
         alone = 1.0 - min(float(np.var(y - need)), float(np.var(y + need))) * len(y) / power
         return EffortFit(float(slopes[0]), shares[0], gain, work, free, against, size, alone)
+
+
+def friction_columns(speed: FloatArray) -> FloatArray:
+    """What friction of any size makes of a speed (m,): viscous, dry, and a constant (m, 3)."""
+    slow = 0.05 * float(np.std(speed)) or 1.0
+    return np.stack([speed, np.tanh(speed / slow), np.ones_like(speed)], axis=1)

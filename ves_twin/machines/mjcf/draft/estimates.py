@@ -44,8 +44,8 @@ def noise_of(
     At rest the scatter about a straight line; else the power in the highest octave as if it were
     that of all, no less than rounding to the smallest step makes, step / sqrt(12). A command has
     rounding alone, or a thousandth of its size where it is not rounded: what is fast in it was put
-    out so. A measured effort that has next to nothing
-    in its highest octave was low-passed, and its noise with it: ASSUMED of its size.
+    out so. A measured effort that has next to nothing in its highest octave was low-passed, and its
+    noise with it: ASSUMED of its size.
 
     Args:
         values: of a column.

@@ -10,6 +10,7 @@ import mujoco
 import numpy as np
 
 from ves_twin.core.types import FloatArray
+from ves_twin.machines.mjcf.draft.effort_fit import friction_columns
 from ves_twin.machines.mjcf.draft.estimates import typical
 from ves_twin.machines.mjcf.draft.motion import Motion
 from ves_twin.machines.mjcf.rig.places import carries
@@ -79,9 +80,7 @@ def _extra(now: Motion, per_kg: FloatArray, loads: Sequence[tuple[int, FloatArra
     """Mass [kg] that efforts ask for beyond the model, beside friction of each joint."""
     ask, weight = 0.0, 0.0
     for dof, effort in loads:
-        speed = now.speed[:, dof]
-        slow = 0.05 * float(np.std(speed)) or 1.0
-        friction = np.stack([speed, np.tanh(speed / slow), np.ones_like(speed)], axis=1)
+        friction = friction_columns(now.speed[:, dof])
         rows = np.column_stack([effort - now.effort[:, dof], per_kg[:, dof]])
         left, more = (rows - friction @ np.linalg.lstsq(friction, rows, rcond=None)[0]).T
         power = float(left @ left) or 1.0
