@@ -50,6 +50,7 @@ class EffortFit:
         against: whether a steady load, as a weight, pulls the other way than the slope says.
         size: rms of the effort over that of what the model needs.
         alone: share of its power that the model explains by itself, the effort turned if need be.
+        pushes: whether the friction beside the model would drive the joint.
     """
 
     slope: float
@@ -60,6 +61,7 @@ class EffortFit:
     against: bool
     size: float
     alone: float
+    pushes: bool = False
 
     @property
     def right(self) -> bool:
@@ -70,6 +72,11 @@ class EffortFit:
     def rubs(self) -> bool:
         """Whether friction explains most of the effort, and the model little of it."""
         return self.gain < STRONG and MOST < self.share - self.gain < SPEED
+
+    @property
+    def strange(self) -> bool:
+        """Whether the model explains much, by no likely factor, beside friction that brakes."""
+        return self.gain > STRONG and not self.usable and not self.pushes
 
     @property
     def usable(self) -> bool:
@@ -121,8 +128,11 @@ class EffortFit:
         heavy = min(map(abs, loads)) > LOADED * float(np.sqrt(np.mean(y**2)))
         against = gain > TELLS and heavy and loads[0] * loads[1] < 0.0
         size = float(np.sqrt(np.mean(y**2) / max(float(np.mean(need**2)), 1e-300)))
+        rubbed = float(speed @ (friction[:, :2] @ slopes[1:3])) * np.sign(slopes[0])
         alone = 1.0 - min(float(np.var(y - need)), float(np.var(y + need))) * len(y) / power
-        return EffortFit(float(slopes[0]), shares[0], gain, work, free, against, size, alone)
+        pushes = bool(rubbed < -WORKS * most)
+        told = float(slopes[0]), shares[0], gain, work, free, against, size, alone, pushes
+        return EffortFit(*told)
 
 
 def friction_columns(speed: FloatArray) -> FloatArray:

@@ -179,13 +179,17 @@ class Judge:
 
         In 3 s of slow motion columns are alike: a swap against the names of six torques explained
         more of them beside friction, by slopes of -0.2 and -29. Of three joints and more most are
-        enough: a wrist's torque is all friction, whatever the unit of the angles.
+        enough: a wrist's torque is all friction, whatever the unit of the angles. No swap is where
+        friction would drive a joint then that it brakes as the columns are named.
         """
         old, motion = set(found), self.motion(new)
         changed = {m.spot.joint or m.spot.name for m in new if m not in old}
         now = {m.column: self.fit(m, motion) for m in self.driving(new) if m.spot.joint in changed}
         before = self.motion(found)
         was = {m.column: self.fit(m, before) for m in self.driving(found) if m.column in now}
+        swapped = any(a.column != b.column for a, b in zip(new, found, strict=True))
+        if swapped and any(fit.pushes and not was[c].pushes for c, fit in now.items()):
+            return False
         if now and all(fit.share > CLEAR and was[c].share < MOST for c, fit in now.items()):
             return True
         right = [fit.right for fit in now.values()]
@@ -293,9 +297,8 @@ class Judge:
             if match.fitted:
                 told = f"{match.column} is electrical: {match.constant}"
                 said.append(f"{told}; put the motor's constant there")
-            strong = fit.gain > STRONG and not fit.usable
             turns = fit.sign < 0 and (fit.by_slope or self.power(found, motion) <= 0.0)
-            if fit.sign < 0 and not (turns or strong):
+            if fit.sign < 0 and not (turns or fit.strange):
                 said.append(
                     f"{match.column} brakes its joint more than it drives it (work {fit.work:.0%}):"
                     " look whether its sign is right; in a motion of several joints it may be"
@@ -338,8 +341,7 @@ class Judge:
 
     def odd(self, match: Match, fit: EffortFit) -> list[str]:
         """That an effort is of another size than the model's, if it is; of friction no size is."""
-        strong = fit.gain > STRONG and not fit.usable
-        times = abs(fit.slope) if strong else fit.size
+        strong, times = fit.strange, abs(fit.slope) if fit.strange else fit.size
         if not (strong or not 1.0 / ODD < times < ODD) or fit.free:
             return []
         if not is_usual(self.log.period):
