@@ -123,7 +123,7 @@ def lawful_rest(
     return Lawful(finding, _explained(built.found, search))
 
 
-def _over(gain: Gain | None, alone: Mapping[str, float]) -> Gain | None:
+def _over(gain: Gain | None, alone: Mapping[str, float] | None) -> Gain | None:
     """A law's gain with errors over what the causes were proved to leave: tuning is another's."""
     if gain is None or not alone:
         return gain

@@ -17,6 +17,7 @@ from ves_twin.machines.mjcf.motion.inverse import efforts_along, smoothed
 from ves_twin.machines.mjcf.motion.work import Work
 from ves_twin.machines.mjcf.parts.cyclic import is_cyclic, turned_by
 from ves_twin.machines.mjcf.parts.inertials import inertials, point_mass, set_inertials
+from ves_twin.machines.mjcf.parts.servo import is_servo
 from ves_twin.machines.mjcf.plausible.reading import Reading
 from ves_twin.machines.mjcf.plausible.readings import Readings
 from ves_twin.machines.mjcf.rig.machine import Rig
@@ -62,7 +63,7 @@ class Seen:
 
     @staticmethod
     def of(rig: Rig, recording: Recording) -> Seen | None:
-        """None where a joint's position or every effort is missing."""
+        """None where a joint's position or every effort is missing: servos alone tell none."""
         told, model, forward = rig.description, rig.model, MjcfForward.of(rig)
         joints = [model.joint(i).name for i in range(model.njnt)]
         places = {j: forward.position_of(j) for j in joints if j not in told.drive.locked}
@@ -79,6 +80,7 @@ class Seen:
             a: (s, sign)
             for a, (s, sign) in sources.items()
             if s in recording.signals and driven_joint(model, a) in {*places, *wheels}
+            if not is_servo(model, model.actuator(a).id)  # a set-point is no effort
         }
         if not sources:
             return None
