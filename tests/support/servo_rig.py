@@ -28,6 +28,7 @@ MODEL = """
 TARGETS = {
     "servo_stiffness": ["servo"],
     "servo_damping": ["servo"],
+    "servo_strength": ["servo"],
     "actuator_lag": ["servo"],
 }
 

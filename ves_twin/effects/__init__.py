@@ -82,7 +82,7 @@ from ves_twin.effects.sensors import (
     SensorOffset,
     SensorWander,
 )
-from ves_twin.effects.servos import ActuatorLag, ServoDamping, ServoStiffness
+from ves_twin.effects.servos import ActuatorLag, ServoDamping, ServoStiffness, ServoStrength
 from ves_twin.effects.structure import AnchorPosition, BaseTilt, HoseStiffness, LegBending
 from ves_twin.effects.transducers import LengthOffset, LengthScale, TransducerDelay
 
@@ -162,6 +162,7 @@ __all__ = [
     "ServoDamping",
     "ServoGain",
     "ServoStiffness",
+    "ServoStrength",
     "StaleGravity",
     "StribeckFriction",
     "SupplyDroop",

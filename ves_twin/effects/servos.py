@@ -1,4 +1,4 @@
-"""Effects of a position servo of MuJoCo: stiffness kp, damping kv, and the lag of its command."""
+"""Effects of a position servo of MuJoCo: stiffness kp, damping kv, all of it, and its lag."""
 
 from __future__ import annotations
 
@@ -27,6 +27,9 @@ less."""
 SOFTEST = 0.001
 """Share of its kp that a servo has at least: none pushes away from where it is told to be, and one
 without any is no servo."""
+
+WEAKEST = 0.1
+"""Share of its strength that a servo has at least: a tenth is another servo."""
 
 
 def _of_servo(kind: str, place: Place) -> Place:
@@ -91,6 +94,41 @@ class ServoDamping(Effect):
     def magnitudes_at(cls, place: Place) -> tuple[Magnitude, ...]:
         """Damping with its range; raises InvalidInputError of another drive."""
         return super().magnitudes_at(_of_servo(cls.kind, place))
+
+
+@final
+@dataclass(frozen=True)
+class ServoStrength(Effect):
+    """A position servo gives more, or less, of all: kp, kv and its force limit x (1 + share).
+
+    Its effort is (1 + s)(kp (u - q) - kv v) within (1 + s) of its limits: another gear, motor or
+    supply than the model's, or a stall torque that was guessed.
+    """
+
+    share: float = 0.0
+
+    kind = "servo_strength"
+    sizes = (Size("share", "1"),)
+    proportional = False
+    anywhere = Anywhere(
+        Element.ACTUATOR, 3.0, 0.02, source="assumed: another gear, up to four times as strong"
+    )
+
+    @classmethod
+    def magnitudes_at(cls, place: Place) -> tuple[Magnitude, ...]:
+        """The share with its range; raises InvalidInputError of another drive."""
+        return super().magnitudes_at(_of_servo(cls.kind, place))
+
+    def least(self, nominal: float) -> float:
+        """All but a tenth of it gone."""
+        return WEAKEST - 1.0
+
+    def edit_model(self, model: mujoco.MjModel) -> None:
+        """Scale what it pulls and brakes with, and where that ends."""
+        at = model.actuator(self.target).id
+        for numbers in (model.actuator_gainprm, model.actuator_biasprm):
+            numbers[at, :3] *= 1.0 + self.share
+        model.actuator_forcerange[at] *= 1.0 + self.share
 
 
 @final

@@ -63,6 +63,7 @@ def test_a_loop_that_is_otherwise_is_named_with_its_size(machine: Rig, name: str
     [
         ("servo_stiffness", "a position servo that is fed"),
         ("servo_damping", "a position servo that is fed"),
+        ("servo_strength", "a position servo that is fed"),
         ("actuator_lag", "filter or filterexact"),
     ],
 )
@@ -109,3 +110,32 @@ def test_a_star_on_a_servo_means_its_loops_and_no_dead_band_about_an_angle_of_ze
     kinds = {entry.effect.kind for entry in machine.entries}
     assert {"servo_stiffness", "actuator_lag"} <= kinds
     assert not {"actuator_deadband", "actuator_gain", "servo_damping"} & kinds
+
+
+def test_a_servo_of_another_strength_pulls_brakes_and_ends_alike_stronger(tmp_path: Path):
+    """Under a load that a guessed stall torque does not lift, no stiffness does the same."""
+    head, _, tail = servo_rig.MODEL.partition("<general")
+    drive = '<position name="servo" joint="swing" kp="8" kv="0.3" forcerange="-0.25 0.25"/>'
+    weak, strong = (head + one + tail[tail.index("/>") + 2 :] for one in (drive, _times(drive)))
+    text = servo_rig.TOML.replace(servo_rig.EFFECTS, 'effects = [{ kind = "*", on = ["*"] }]')
+    told = servo_rig.rig(tmp_path, text, weak)
+    found = MjcfForward.of(told).simulate(
+        servo_rig.programme(), {"servo_strength@servo:share": 0.6}
+    )
+    other = MjcfForward.of(servo_rig.rig(tmp_path, text, strong))
+    assert np.allclose(found, other.simulate(servo_rig.programme(), {}), atol=1e-6)
+    stiffer = {"servo_stiffness@servo:stiffness": 4.8}
+    held = MjcfForward.of(servo_rig.rig(tmp_path, text, weak)).simulate(
+        servo_rig.programme(), stiffer
+    )
+    assert np.max(np.abs(found - held)) > 0.05
+
+
+def _times(drive: str) -> str:
+    return drive.replace('"8"', '"12.8"').replace('"0.3"', '"0.48"').replace("0.25", "0.4")
+
+
+def test_a_star_means_no_strength_of_a_servo_that_has_neither_limit_nor_brake(tmp_path: Path):
+    text = servo_rig.TOML.replace(servo_rig.EFFECTS, 'effects = [{ kind = "*", on = ["*"] }]')
+    bare = servo_rig.rig(tmp_path, text, servo_rig.MODEL.replace("0 -8 -0.3", "0 -8 0"))
+    assert "servo_strength" not in {entry.effect.kind for entry in bare.entries}

@@ -25,7 +25,7 @@ from ves_twin.effects.joints import JointCompliance
 from ves_twin.effects.presliding import DahlFriction, OneWayLoad
 from ves_twin.effects.registry import EFFECTS, attributes, build_anywhere, kind_anywhere
 from ves_twin.effects.ripple import Ripple
-from ves_twin.effects.servos import ServoDamping
+from ves_twin.effects.servos import ServoDamping, ServoStrength
 from ves_twin.machines.mjcf.parts.chain import chain
 from ves_twin.machines.mjcf.rig.description import Allowed, Mode, RigDescription, Setting
 from ves_twin.machines.mjcf.rig.places import anywhere, driven_joint, place_of
@@ -177,6 +177,8 @@ def _targets(kind: str, told: RigDescription, model: mujoco.MjModel) -> list[str
     if on.element is Element.ACTUATOR:
         fed = set(told.drive.actuators) if told.drive.mode is Mode.CONTROL else set(names)
         names = [name for name in names if name in fed]
+        if kind == ServoStrength.kind:  # without a limit or a brake of its own it is a stiffness
+            names = [name for name in names if _limited(name, model)]
         return _neighbours(names, model) if kind == DriveCrossTalk.kind else names
     led = bool(model.nu or told.drive.imposed or told.drive.mode is Mode.MOTION)
     if on.element is Element.LOG and led:
@@ -186,6 +188,12 @@ def _targets(kind: str, told: RigDescription, model: mujoco.MjModel) -> list[str
     if kind == BodyPlace.kind:
         names = [name for name in names if _turns(model, int(model.body(name).parentid[0]))]
     return [f"{name}.{axis}" for name in names for axis in "xyz"] if on.axis else names
+
+
+def _limited(name: str, model: mujoco.MjModel) -> bool:
+    """Whether a servo has a limit of force, or brakes."""
+    at = model.actuator(name).id
+    return bool(model.actuator_forcelimited[at]) or float(model.actuator_biasprm[at, 2]) != 0.0
 
 
 def _neighbours(names: list[str], model: mujoco.MjModel) -> list[str]:
