@@ -120,7 +120,7 @@ def rms_words(gain: Gain) -> str:
     if len(told) > 1 and all(one.startswith("falls ") for one in told):
         words = f"{told[0]} and {told[1].removeprefix('falls ')}"
     given = (
-        "" if gain.over is gain.errors else ", over the model as given, since its tuning is worse"
+        "" if gain.over is gain.errors else ", over the model as given where its tuning is worse"
     )
     return f"the rms error on held-out recordings {words}{given}"
 
