@@ -17,9 +17,9 @@ def out_of_step_sentence(verdict: Verdict) -> str:
         else "this record was judged by noise alone"
     )
     return (
-        "Simulations fall out of step here: machines in order, simulated with errors within the"
-        f" declared tolerances, leave up to {digits(most)} sigma in a band or stretch of time. That"
-        f" tells nothing, so {instead}."
+        "Simulations fall out of step here, or tolerances are wide for so little noise: machines in"
+        " order, simulated with errors within the declared tolerances, leave up to"
+        f" {digits(most)} sigma in a band or stretch of time. That tells nothing, so {instead}."
     )
 
 
@@ -28,7 +28,10 @@ def shorter(verdict: Verdict) -> str:
     if verdict.statistics.misfit_in_order is None or (verdict.basis.by_motion and verdict.proved):
         return ""
     if verdict.basis.pieces:
-        return "Take shorter pieces (drive.horizon in the machine's file), and diagnose again."
+        return (
+            "Take shorter pieces (drive.horizon in the machine's file), or declare tolerances as"
+            " narrow as you know the numbers, and diagnose again."
+        )
     return (
         "Where the log tells every joint's start, simulate pieces of it that begin from what was"
         " measured (drive.horizon in the machine's file, of 100 rows or more); else record a slower"
