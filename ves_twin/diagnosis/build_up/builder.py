@@ -307,6 +307,7 @@ class Builder:
             return offer
         if self.fitted.runs.budget.skips("a proof about the full fit of what is proved"):
             return offer
+        self.desk.progress(0.0, "proving once more what is proved, about its own fit")
         trials = regression.trials
         present = present_in([trials[n] for n in proof.proved], offer.fit)
         halves = self.halves(offer.fit.shift, present)
