@@ -90,6 +90,25 @@ def test_the_unit_of_time_is_read_or_guessed(tmp_path, head, scale, unit, guesse
     assert clock.rate == pytest.approx(100.0, rel=1e-6)
 
 
+@pytest.mark.parametrize("name", ["posa{}", "q{}", "pos_{} [rad]"])
+def test_a_joint_that_only_rises_is_no_clock(tmp_path, name):
+    time = np.arange(165) / 50.0
+    one, two = (name.format(n) for n in (1, 2))
+    rising = time - np.sin(2.0 * time) / 2.1
+    path = lab(tmp_path / "a.csv", rising, {two: np.sin(time)}, head=one)
+    found = inspect_log(open_log(path))
+    assert found.tables[0].clock is None
+    assert "no column of the file looks like a time" in draft_map(found)
+
+
+@pytest.mark.parametrize("name", ["t1", "column_1", "Zeitpunkt"])
+def test_a_clock_of_any_name_is_found_though_its_rows_jitter(tmp_path, name):
+    steps = 0.02 * (1.0 + 0.4 * np.random.default_rng(1).uniform(-1.0, 1.0, 500))
+    time = np.cumsum(steps)
+    path = lab(tmp_path / "a.csv", time, {"t2": np.sin(time), "column_2": time**2}, head=name)
+    assert inspect_log(open_log(path)).tables[0].clock.column == name
+
+
 def test_a_counter_of_rows_is_no_clock(tmp_path):
     path = lab(
         tmp_path / "a.csv", np.arange(50), {"x": np.random.default_rng(0).normal(size=50)}, "idx"

@@ -12,6 +12,12 @@ if TYPE_CHECKING:
 NOTHING = 0.05
 """Share of every column's power below which columns, or the model, may be other ones."""
 
+ONE = (
+    "the log is too short to be cut into stretches (--alternate); proof needs another recording"
+    " (--held-out)"
+)
+"""What is told of a log that makes one stretch."""
+
 
 def new_text(found: NewMachine, model: Path, logs: Sequence[Path]) -> str:
     """What was written, each column, what to look at, how near the model is, what to do next."""
@@ -38,6 +44,8 @@ def new_text(found: NewMachine, model: Path, logs: Sequence[Path]) -> str:
         first = f"see to the gravity in {file}, and draft again from it; then "
     if draft.short:
         first = f"see to the rows that a diagnosis lacks (look); then {first}"
+    if draft.one_only and not fitted:
+        lines.append(f"  held out  nothing: {ONE}")
     lines += [f"  next      {first}ves-twin diagnose {given}{held} --plant {found.path}"]
     return "\n".join(lines)
 

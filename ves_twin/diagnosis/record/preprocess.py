@@ -12,7 +12,7 @@ from ves_twin.core.recording.recording import Recording
 from ves_twin.core.types import BoolArray, FloatArray, SingleArray
 from ves_twin.core.workers import Workers
 from ves_twin.diagnosis.model.forward import Channel, Excitation, Forward, check_forward
-from ves_twin.diagnosis.model.grid import RATE
+from ves_twin.diagnosis.model.grid import RATE, AnalysisGrid
 from ves_twin.diagnosis.record.runs import Runs
 from ves_twin.diagnosis.record.whitening import FEWEST, ORDER, whole
 
@@ -119,6 +119,17 @@ def check_lengths(forward: Forward, recordings: Sequence[Recording], rate: float
     _check_length(Runs(forward, tuple(programmes), (), Workers()))
 
 
+def fewest_rows(period: float, rate: float = RATE) -> int:
+    """Rows of a recording that `preprocess` does not find too short.
+
+    Args:
+        period: between its rows [s].
+        rate: of the analysis grid [Hz].
+    """
+    grid = AnalysisGrid.of(period, rate)
+    return (FEWEST_ROWS - 1) * grid.factor + len(grid.taps)
+
+
 def _rows(recording: Recording, channels: Sequence[Channel]) -> FloatArray:
     return np.stack([recording[c.signal][:, c.column] for c in channels], axis=1)
 
@@ -128,14 +139,22 @@ def _check_length(runs: Runs) -> None:
     for programme, grid, time in zip(runs.programmes, runs.grids, runs.times, strict=True):
         fewest = FEWEST_POSES if programme.poses else FEWEST_ROWS
         if len(time) < fewest:
-            what = f"rows of {programme.name} at {1.0 / grid.step:.3g} Hz"
+            what = f"rows of {_part(programme)} at {1.0 / grid.step:.3g} Hz"
             length = float(np.ptp(programme.time)) + (fewest + 1 - len(time)) * grid.step
             span = "" if programme.poses else f", so {length:.2f} s"
             expected = (
-                f"at least {fewest}{span}: a longer recording, stretch (--alternate; without it"
+                f"at least {fewest}{span} in every recording, stretch (--alternate; without it"
                 f" every second tenth is held out) or piece (drive.horizon){_finer(programme)}"
             )
             raise InvalidInputError(what, len(time), expected)
+
+
+def _part(programme: Excitation) -> str:
+    """What was too short: a recording, or a stretch or a piece of it."""
+    if programme.poses:
+        return programme.name
+    begin, end = programme.time[[0, -1]]
+    return f"{programme.name} from {begin:.2f} to {end:.2f} s"
 
 
 def _finer(programme: Excitation) -> str:

@@ -145,7 +145,8 @@ class MjcfMachine(Machine):
 
     def split(self, recording: Recording, length: float) -> tuple[list[Recording], list[Recording]]:
         """Stretches, or poses; the length of the file if zero."""
-        return alternate(recording, length or self.rig.description.block)
+        told = self.rig.description
+        return alternate(recording, length or told.block, told.rate)
 
     def pieces(self, recording: Recording) -> tuple[Recording, ...]:
         """Of the horizon of its file."""

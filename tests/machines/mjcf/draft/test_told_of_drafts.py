@@ -115,3 +115,21 @@ def test_volts_in_steps_are_not_coarse(swing, write):
     assert not log.is_coarse("u_V")
     assert not log.is_coarse("relay_V")
     assert other.is_coarse("i_A")
+
+
+@pytest.mark.parametrize(
+    ("rows", "told"),
+    [
+        (1500, "--alternate 2 "),
+        (210, "--alternate 1 "),  # no usual one
+        (190, "held out  nothing: the log is too short to be cut into stretches"),
+    ],
+)
+def test_a_length_of_stretches_is_told_or_that_there_is_none(swing, write, rows, told):
+    path, columns = swing
+    log = write({name: values[:rows] for name, values in columns.items()})
+    made = new_machine(path, [log], path.with_name("my.toml"))
+    text = new_text(made, path, [log])
+    assert told in text
+    assert ("--held-out" in text) is ("nothing" in told)
+    assert "held out  nothing" not in new_text(made, path, [log, log])

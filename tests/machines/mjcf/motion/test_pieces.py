@@ -136,11 +136,29 @@ def test_a_recording_as_long_as_a_refusal_asks_is_taken(tmp_path):
     forward = MjcfForward.of(Rig.load(str(rig_in(tmp_path))))
     with pytest.raises(InvalidInputError) as refused:
         preprocess(forward, [recording_of(60)], None, 47.0)
-    seconds = float(re.search(r"at least 100, so (.*) s:", str(refused.value))[1])
+    seconds = float(re.search(r"at least 100, so (.*) s in", str(refused.value))[1])
     rows = round(seconds / 0.01) + 1
     preprocess(forward, [recording_of(rows)], None, 47.0)
     with pytest.raises(InvalidInputError, match="at least 100"):
         preprocess(forward, [recording_of(rows - 6)], None, 47.0)
+
+
+@pytest.mark.parametrize(("rows", "count"), [(286, 2), (186, 1), (500, 5)])
+def test_a_horizon_that_has_enough_rows_leaves_no_piece_with_too_few(tmp_path, rows, count):
+    """6 s at 47.6 Hz in pieces of 2.1 s were refused as three of 2 s, and 2.1 s asked for."""
+    rig = Rig.load(str(rig_in(tmp_path, ", horizon = 2.1")))
+    found = pieces(rig, recording_of(rows, 0.021))
+    assert len(found) == count
+    preprocess(MjcfForward.of(rig), found)
+
+
+def test_pieces_have_enough_rows_at_the_rate_of_the_machine(tmp_path):
+    path = rig_in(tmp_path, ", horizon = 4")
+    path.write_text(path.read_text().replace("[signals]", 'rate = "25 Hz"\n[signals]', 1))
+    rig = Rig.load(str(path))
+    found = pieces(rig, recording_of(1060))
+    assert len(found) == 2
+    preprocess(MjcfForward.of(rig), found, None, rig.description.rate)
 
 
 def test_each_piece_has_the_rows_of_its_lead_before_it(tmp_path):

@@ -208,7 +208,7 @@ def _noise(
     for m in check.found:
         values = log.as_logged(m.column) if rest is None else log.column(m.column)
         effort = m.spot.quantity is Quantity.EFFORT
-        put_out = effort and is_command(m.column)
+        put_out = effort and is_command(log.said.get(m.column, m.column))
         sd, how = noise_of(values, log.period, rest, put_out, effort and not put_out)
         found[m.column] = (abs(m.factor) * sd, how)
     return found

@@ -33,7 +33,7 @@ from ves_twin.machines.mjcf.draft.untold import untold
 from ves_twin.machines.mjcf.motion.forward import MjcfForward
 from ves_twin.machines.mjcf.motion.pieces import pieces
 from ves_twin.machines.mjcf.recordings.columns import read_rig_recording
-from ves_twin.machines.mjcf.recordings.interleaved_split import alternate
+from ves_twin.machines.mjcf.recordings.interleaved_split import alternate, enough
 from ves_twin.machines.mjcf.rig.description import KIND, Mode, RigDescription
 from ves_twin.machines.mjcf.rig.machine import Rig
 
@@ -84,6 +84,7 @@ class Draft:
         rubs: columns of efforts that friction explains, and the model does not.
         gravity: that the model should have, as its file has it; empty where it is right.
         short: whether a diagnosis would find the log, or a piece of it, too short.
+        one_only: whether the log makes one stretch and no second one.
     """
 
     text: str
@@ -97,6 +98,7 @@ class Draft:
     rubs: tuple[str, ...] = ()
     gravity: str = ""
     short: bool = False
+    one_only: bool = False
 
 
 def draft(model: Path, logs: Sequence[Path], out: Path, rate: float | None = None) -> Draft:
@@ -156,12 +158,13 @@ def draft(model: Path, logs: Sequence[Path], out: Path, rate: float | None = Non
     coarse = [] if turned else now.coarse
     short = _short(now.rig, part)
     smooth = _smooth(now.mode)
-    look = (*given.notes, *log.notes, *check.findings, *silent, *turned, *coarse, *smooth, *short)
     words = f"{now.mode.mode}: {now.mode.why}"
     stretch = 0.0 if short else _stretch(now, part, log)
+    look = (*given.notes, *log.notes, *check.findings, *silent, *turned, *coarse, *smooth, *short)
     guesses = _guesses(check, now.mode)
     told = {name: max(share, 0.0) for name, share in now.explained.items()}
-    beside = (stretch, check.rubs, check.gravity, bool(short))
+    one_only = not (stretch or short or now.mode.horizon)
+    beside = (stretch, check.rubs, check.gravity, bool(short), one_only)
     return Draft(now.text, given.text, guesses, left, look, words, told, *beside)
 
 
@@ -242,15 +245,28 @@ def _percent(version: _Version) -> str:
 def _stretch(now: _Version, part: Recording, log: LogColumns) -> float:
     """Length of stretches to hold out [s]; a last one of half a length is one, too.
 
-    0 where `diagnose` would find one of them too short, or the log is in pieces already.
+    The shortest that is enough where the usual one is not; 0 where none is, or the log is in pieces
+    already.
     """
     length = max(STRETCH, float(np.ceil(ROWS / now.mode.rate)))
-    if log.period * (log.rows - 1) <= 1.5 * length or now.mode.horizon:
+    if now.mode.horizon:
         return 0.0
-    if float(np.ptp(part.time)) <= 1.5 * length:  # of a long log a part alone was simulated
+    whole = log.period * (log.rows - 1)
+    if float(np.ptp(part.time)) <= 1.5 * length < whole:  # a part alone was simulated
         return length
-    fit, held = alternate(part, length)
-    return 0.0 if any(_short(now.rig, one) for one in (*fit, *held)) else length
+    if len(part.time) < FEWEST:
+        return 0.0
+    usable = (one for one in (length, enough(part, now.mode.rate)) if _splits(now.rig, part, one))
+    return next(usable, 0.0)
+
+
+def _splits(rig: Rig, part: Recording, length: float) -> bool:
+    """Whether stretches of a length [s] are two or more, each long enough for a diagnosis."""
+    try:
+        fit, held = alternate(part, length, rig.description.rate)
+    except InvalidInputError:
+        return False
+    return not any(_short(rig, one) for one in (*fit, *held))
 
 
 def _smooth(mode: Chosen) -> list[str]:

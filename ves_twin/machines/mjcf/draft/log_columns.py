@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 from pathlib import Path
 
 import numpy as np
@@ -18,6 +19,7 @@ from ves_twin.data.empty_cells import FEW, filled, lone
 from ves_twin.data.formats.log import Column, Kind
 from ves_twin.data.formats.open_log import open_log
 from ves_twin.data.mapping.column_expression import ColumnExpression
+from ves_twin.machines.mjcf.draft.said import said
 
 FEWEST = 64
 """Rows below which neither noise nor motion can be told."""
@@ -74,6 +76,11 @@ class LogColumns:
     def rows(self) -> int:
         """Of every column."""
         return len(next(iter(self.values.values())))
+
+    @cached_property
+    def said(self) -> Mapping[str, str]:
+        """What the name of each column says."""
+        return said(self.values)
 
     def column(self, text: str) -> FloatArray:
         """Rows (n,) of a column, or of a formula of columns as a machine's file may hold one."""

@@ -137,7 +137,7 @@ def matched(log: LogColumns, spots: Sequence[Spot]) -> Matches:
     order = {spot: i for i, spot in enumerate(spots)}
     found_.sort(key=lambda m: order[m.spot])
     rest = [c for c in columns if c not in chosen]
-    setpoints = tuple(c for c in rest if is_setpoint(c))
+    setpoints = tuple(c for c in rest if is_setpoint(log.said[c]))
     left = {c: _reason(c, spots, alike) for c in rest if c not in setpoints}
     left |= dict.fromkeys(log.constant, "never changes")
     left |= dict.fromkeys(log.empty, "has rows without a number")
@@ -151,7 +151,7 @@ def _likeness(log: LogColumns, column: str, spot: Spot, spots: Sequence[Spot]) -
     zero = any(re.findall(r"\d+", bare_name(c))[-1:] == ["0"] for c in family)
     zero = zero and not any(re.findall(r"\d+", s.name)[-1:] == ["0"] for s in rivals)
     spot = _numbered(spot, rivals, len(family))
-    return likeness(column, _unit(log, column), spot, len(rivals) == 1, zero)
+    return likeness(log.said[column], _unit(log, column), spot, len(rivals) == 1, zero)
 
 
 def _numbered(spot: Spot, rivals: Sequence[Spot], columns: int) -> Spot:
@@ -169,7 +169,7 @@ def _numbered(spot: Spot, rivals: Sequence[Spot], columns: int) -> Spot:
 
 def _unit(log: LogColumns, column: str) -> str:
     """As the file or the name says it, or implies it; empty if neither does."""
-    return log.units.get(column, "") or implied_unit(column)
+    return log.units.get(column, "") or implied_unit(log.said[column])
 
 
 def _whole_sensors(chosen: dict[str, Spot], spots: Sequence[Spot]) -> dict[str, Spot]:

@@ -10,6 +10,7 @@ from ves_twin.core.errors import InvalidInputError
 from ves_twin.machines.mjcf.draft.check import Checked
 from ves_twin.machines.mjcf.draft.log_columns import LogColumns
 from ves_twin.machines.mjcf.draft.match import Matches
+from ves_twin.machines.mjcf.draft.names import OTHER
 from ves_twin.machines.mjcf.draft.spots import Quantity, single_joints, words_of
 
 FRAME_POSITION = int(mujoco.mjtSensor.mjSENS_FRAMEPOS)
@@ -51,7 +52,16 @@ def refuse(log: LogColumns, matches: Matches, check: Checked, model: mujoco.MjMo
     counted = [column for column in matches.left if _is_counted(column, log)]
     if counted and not (lacks_effort or placed):
         expected += f"; {', '.join(counted)} as m or rad: the model does not tell what a count is"
+    elif joints and not placed and any(_is_open(column, log) for column in matches.left):
+        named = joints.split(", ")[0]
+        expected += f"; a column that holds one is read by a name like pos_{named} or q1"
+        expected += f" (vel_{named} or dq1 of a speed): rename it"
     raise InvalidInputError(f"{log.file} does not fit the model", came, expected)
+
+
+def _is_open(column: str, log: LogColumns) -> bool:
+    """Whether a column that is left over could be a joint's under another name."""
+    return column in log.values and not OTHER & set(words_of(column))
 
 
 def _is_counted(column: str, log: LogColumns) -> bool:

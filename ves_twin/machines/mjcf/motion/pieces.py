@@ -9,8 +9,7 @@ import numpy as np
 
 from ves_twin.core.errors import InvalidInputError
 from ves_twin.core.recording.recording import POSES, Recording
-from ves_twin.diagnosis.model.grid import AnalysisGrid
-from ves_twin.diagnosis.record.preprocess import FEWEST_ROWS
+from ves_twin.diagnosis.record.preprocess import fewest_rows
 from ves_twin.machines.mjcf.motion.started import lead_rows
 from ves_twin.machines.mjcf.rig.description import Mode
 from ves_twin.machines.mjcf.rig.machine import Rig
@@ -34,8 +33,9 @@ def pieces(rig: Rig, recording: Recording) -> tuple[Recording, ...]:
         recording: of one motion.
 
     Returns:
-        The pieces in order, two thirds to four thirds of a horizon long; the recording alone where
-        the machine has no horizon or the recording is not longer.
+        The pieces in order, two thirds to four thirds of a horizon long, or up to two horizons
+        where they would else have too few rows; the recording alone where the machine has no
+        horizon or the recording is not longer.
 
     Raises:
         InvalidInputError: a joint whose start no row tells.
@@ -49,7 +49,7 @@ def pieces(rig: Rig, recording: Recording) -> tuple[Recording, ...]:
     _check_starts(rig)
     lead = lead_rows(rig, time)
     step = (float(time[-1]) - float(time[0])) / (len(time) - 1)
-    count = _count(len(time) - lead, step, drive.horizon)
+    count = _count(len(time) - lead, step, rig)
     if count < 2:
         return (recording,)
     ends = np.linspace(lead, len(time), count + 1).round().astype(int)
@@ -61,13 +61,16 @@ def pieces(rig: Rig, recording: Recording) -> tuple[Recording, ...]:
     return tuple(found)
 
 
-def _count(rows: int, step: float, horizon: float) -> int:
-    """Of pieces about a horizon long; longer by a third where it takes that for enough rows."""
-    grid = AnalysisGrid.of(step)
-    count = round(rows * step / horizon)
-    most = rows // ((FEWEST_ROWS - 1) * grid.factor + len(grid.taps))
-    within = most > 0 and rows * step / most <= LONGEST * horizon
-    return min(count, most) if within else count
+def _count(rows: int, step: float, rig: Rig) -> int:
+    """Of pieces about a horizon long; longer by a third where it takes that for enough rows.
+
+    Of a horizon that has enough rows all pieces have, be it with one piece fewer.
+    """
+    horizon = rig.description.drive.horizon
+    fewest = fewest_rows(step, rig.description.rate)
+    count, most = round(rows * step / horizon), rows // fewest
+    long = horizon >= (fewest - 1) * step or rows * step <= most * LONGEST * horizon
+    return min(count, most) if most and long else count
 
 
 def _check_starts(rig: Rig) -> None:
