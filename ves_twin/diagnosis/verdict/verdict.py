@@ -79,9 +79,12 @@ class Estimate:
         return self.told("nominal")
 
     def told(self, origin: str) -> str:
-        """The same; `origin` says what the departure counts from."""
+        """The same; `origin` says what the departure counts from, told where it is not zero."""
         span = f"{self.low:.4g} to {self.high:.4g}"
-        return f"{self.value:.4g}{unit_tail(self.unit)} ({origin} {self.nominal:.4g}; {span})"
+        base = f"{origin} {self.nominal:.4g}"
+        if self.nominal != 0.0:
+            base += f", a change of {self.value - self.nominal:.4g}"
+        return f"{self.value:.4g}{unit_tail(self.unit)} ({base}; {span})"
 
 
 @dataclass(frozen=True)
