@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from pathlib import Path
 
 import numpy as np
@@ -13,9 +14,11 @@ from ves_twin.core.recording.recording import Recording, RecordingInfo
 from ves_twin.diagnosis.model.forward import Excitation
 from ves_twin.diagnosis.model.widened import Widened
 from ves_twin.diagnosis.settings import Settings
+from ves_twin.diagnosis.verdict.verdict import Kind
 from ves_twin.machines.diagnose import diagnose
 from ves_twin.machines.mjcf.motion.forward import MjcfForward
 from ves_twin.machines.mjcf.rig.machine import Rig
+from ves_twin.report.diagnosis.answer import confidence_sentence
 
 TIME = 0.02 * np.arange(600)
 HIDDEN = {
@@ -61,9 +64,9 @@ def rig(tmp_path_factory: pytest.TempPathFactory) -> Rig:
     return arm(tmp_path_factory.mktemp("whole"), OFFERED)
 
 
-def recorded(rig: Rig, seed: int, back: float) -> Recording:
+def recorded(rig: Rig, seed: int, back: float, hidden: Mapping[str, float] = HIDDEN) -> Recording:
     programme = fed(seed, back)
-    rows = MjcfForward.of(rig).simulate(programme, HIDDEN)
+    rows = MjcfForward.of(rig).simulate(programme, hidden)
     rows = rows + 0.01 * np.random.default_rng(seed).standard_normal(rows.shape)
     signals = {**programme.drive, "ta": rows[:, :1], "tb": rows[:, 1:]}
     return Recording(TIME, signals, RecordingInfo("measured", scenario=f"motion {seed}"))
@@ -84,6 +87,22 @@ def test_a_friction_is_proved_and_firm_only_where_its_joint_turns_round(
         twin = label.replace("coulomb_friction", "force_offset")
         assert proved.firm is (back > 1.0)
         assert proved.acts_like == (() if back > 1.0 else (twin,))
+
+
+@pytest.mark.parametrize("back", [0.8, 4.0])
+def test_a_friction_that_is_named_alone_is_provisional_where_its_joint_goes_one_way(
+    rig: Rig, back: float, tmp_path: Path, banks: Path
+) -> None:
+    offered = arm(tmp_path, {"coulomb_friction": "a b"})
+    hidden = {"coulomb_friction@a:level": 0.5}
+    one, other = (recorded(rig, seed, back, hidden) for seed in (1, 2))
+    settings = Settings(nulls=20, cache=banks, laws=False)
+    verdict = diagnose([one], offered, held_out=[other], settings=settings).verdict
+    assert verdict.verdict is Kind.NAMED
+    (cause,) = verdict.causes
+    assert cause.firm is (back > 1.0)
+    assert ("force offset at a reads the same" in confidence_sentence(verdict)) is not cause.firm
+    assert ("force_offset@a" in verdict.words) is not cause.firm
 
 
 ONE_WAY = {

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
 from ves_twin.core.types import FloatArray
 from ves_twin.diagnosis.build_up.halves import Halves
 from ves_twin.diagnosis.build_up.result import Proved
 from ves_twin.diagnosis.model.directional import Directional
+from ves_twin.diagnosis.record.runs import Runs
 
 
 def with_one_way_twins(
@@ -27,20 +28,35 @@ def with_one_way_twins(
         points: departures in each half (coordinates,); none if None.
     """
     runs = halves.regression.half.runs, halves.held.runs
-    forward = runs[0].forward
-    if not proved or not isinstance(forward, Directional):
-        return tuple(proved)
     same = runs[0].programmes is runs[1].programmes
-    moments = [
-        (programme, one.values(k, point))
-        for one, point in zip(runs, points or (runs[0].origin, runs[1].origin), strict=True)
-        for k, programme in enumerate(one.programmes)
-    ][: len(runs[0].programmes) if same else None]
-    labels = {one.label for one in proved}
-    twins = forward.one_way_twins(sorted(labels), moments)
+    ends = points or (runs[0].origin, runs[1].origin)
+    places = list(zip(runs, ends, strict=True))[: 1 if same else 2]
+    twins = one_way_twins([one.label for one in proved], places)
     found = []
     for one in proved:
-        like = [name for name in twins.get(one.label, ()) if name not in labels]
+        like = twins.get(one.label, ())
         acts = tuple(dict.fromkeys([*one.acts_like, *like]))
         found.append(replace(one, acts_like=acts, firm=one.firm and not like))
     return tuple(found)
+
+
+def one_way_twins(
+    labels: Sequence[str], places: Sequence[tuple[Runs, FloatArray]]
+) -> Mapping[str, tuple[str, ...]]:
+    """What nothing tells from causes in recordings, themselves left out, by label.
+
+    Args:
+        labels: of the causes.
+        places: recordings, with the departures (coordinates,) at which they are simulated.
+    """
+    forward = places[0][0].forward
+    if not labels or not isinstance(forward, Directional):
+        return {}
+    moments = [
+        (programme, runs.values(k, point))
+        for runs, point in places
+        for k, programme in enumerate(runs.programmes)
+    ]
+    known = forward.one_way_twins(sorted(labels), moments)
+    others = {label: tuple(n for n in names if n not in labels) for label, names in known.items()}
+    return {label: names for label, names in others.items() if names}

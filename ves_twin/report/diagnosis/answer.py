@@ -269,6 +269,9 @@ def why_loose(cause: Cause) -> str:
     """Why a name is not firm."""
     if cause.below_row:
         return "less than a row of the log, whose clock explains that as well"
+    if cause.acts_like:
+        like = " or ".join(map(spoken, cause.acts_like))
+        return f"in a motion that does not turn round {like} reads the same"
     if not cause.sigmas or all(e.low <= e.nominal <= e.high for e in cause.parameters.values()):
         return "its interval holds what the model has already"
     return f"{cause.sigmas:.1f} {OFF}"
