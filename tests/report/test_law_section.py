@@ -75,6 +75,8 @@ def test_a_reader_is_sent_to_a_law_without_a_claim_only_if_it_is_worth_something
     idle = replace(none, gain=replace(LAW.gain, share=0.0))
     assert "look there first" in law_sentences(none)[0]
     assert "look there" not in law_sentences(idle)[0]
+    assert len(law_sentences(idle)) == 1 < len(law_sentences(none))
+    assert "<li>" not in "".join(map(str, law_parts(idle)))
     grows = replace(none, gain=replace(LAW.gain, errors={"joint": (1.0, 1.6)}))
     assert "look there" not in law_sentences(grows)[0]
 

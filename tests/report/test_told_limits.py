@@ -8,6 +8,7 @@ import pytest
 
 from ves_twin.diagnosis.build_up.result import Proved
 from ves_twin.diagnosis.law.result import LAW
+from ves_twin.diagnosis.record.residual_structure import ResidualStructure
 from ves_twin.diagnosis.unseen.gain import Gain
 from ves_twin.diagnosis.verdict.verdict import (
     Basis,
@@ -21,12 +22,14 @@ from ves_twin.diagnosis.verdict.verdict import (
 )
 from ves_twin.report.diagnosis.answer import (
     confidence_sentence,
+    nearest_sentence,
     next_step,
     verdict_sentence,
 )
 from ves_twin.report.diagnosis.basis import rests_on
 from ves_twin.report.diagnosis.limits import blind_causes
 from ves_twin.report.diagnosis.out_of_step import out_of_step_sentence
+from ves_twin.report.diagnosis.proved import standing_words
 from ves_twin.report.diagnosis.strained import check_sentence, tuned_words
 
 FIGURES = Statistics(1.0, 2.0, 9.0, 5.0)
@@ -149,3 +152,44 @@ def test_what_was_left_out_to_save_time_is_told_in_one_short_line(count, said):
     assert said in told
     assert told.count("part") == min(count, 4)
     assert "--minutes gives more" in told
+
+
+@pytest.mark.parametrize(
+    ("like", "named"),
+    [
+        (("coulomb_friction@slide", "force_offset@slide"), "Coulomb friction at slide"),
+        (("viscous_asymmetry@slide", "force_offset@slide"), "force offset at slide"),
+        (("viscous_asymmetry@slide",), "Coulomb asymmetry at slide"),
+    ],
+)
+def test_a_friction_that_would_push_is_told_by_what_it_may_be_instead(like, named):
+    """The headline named a youBot's Coulomb asymmetry, which the table said no friction does."""
+    takes = {"force": (9.0, 8.0)}
+    one = Proved("coulomb_asymmetry", "slide", {}, 1e-6, 20, takes, False, like, drives=True)
+    said = verdict_sentence(replace(verdict(False), proved=(one,)))
+    assert f"Something that acts like {named}." in said
+    assert "push" in standing_words(one)
+    assert (named in standing_words(one)) is ("asymmetry" not in named)
+
+
+@pytest.mark.parametrize(
+    ("given", "than"), [(2.17, "the tolerances alone, tuned"), (0.5, "the model as given")]
+)
+def test_what_an_extension_is_worse_than_is_told(given, than):
+    """2.17 as given, 1.54 tuned and 1.75 with it was called worse than the model as given."""
+    gain = Gain(None, None, None, 2.0, 3.0, {"force": (1.54, 1.75)}, given={"force": given})
+    left = ResidualStructure(9.0, (), None, ())
+    unknown = replace(
+        verdict(), verdict=Kind.UNKNOWN, suspect="joint_spring@slide", gain=gain, leftover=left
+    )
+    assert f"It predicts force worse than {than}:" in nearest_sentence(unknown)
+
+
+@pytest.mark.parametrize(("left", "share"), [(0.998, "all"), (0.4, "0.4"), (1.2, "1.2")])
+def test_a_channel_that_is_not_explained_at_all_is_told_as_all_of_its_spread(left, share):
+    error = ChannelError(9.0, 9.0, 1.0, left, "N", 1.0)
+    figures = replace(FIGURES, misfit=50.0, misfit_threshold=5.0)
+    unknown = replace(
+        verdict(), verdict=Kind.UNKNOWN, statistics=figures, residuals={"force": error}, proved=()
+    )
+    assert f"{share} of the spread of force" in confidence_sentence(unknown)

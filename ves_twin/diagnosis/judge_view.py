@@ -3,8 +3,11 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from dataclasses import replace
 
+from ves_twin.diagnosis.build_up.halves import carried_point
+from ves_twin.diagnosis.build_up.one_way import one_way_twins
 from ves_twin.diagnosis.decide import Conclusion, decide
 from ves_twin.diagnosis.experiment.next_experiment import separations
 from ves_twin.diagnosis.explain.disagreement import Alone, disagreement
@@ -76,9 +79,23 @@ def judge_as_seen(view: View, progress: Progress, alone: bool = False) -> Verdic
         forecast=end.forecast,
         before=end.before,
         proposals=proposals,
+        twins=_twins(end, held),
         apart=apart,
     )
     return assemble_verdict(findings, end.kind, basis, exclude)
+
+
+def _twins(end: Conclusion, held: HeldOut | None) -> Mapping[str, tuple[str, ...]]:
+    """What nothing in the recordings tells from causes that are named together."""
+    if end.found is None or not end.kind.names_causes or _proves(end):
+        return {}
+    runs, fit = end.found.evidence.runs, end.found.best
+    places = [(runs, fit.shift)]
+    if held is not None:
+        there = held.seen.runs
+        places.append((there, carried_point(runs, there, fit.shift)))
+    labels = {cause.label for one in end.found.chosen for cause in one.causes}
+    return one_way_twins(sorted(labels), places)
 
 
 def _proves(end: Conclusion) -> bool:

@@ -90,10 +90,10 @@ def build_up(
     before = in_full(halves.regression, (), point, evidence)
     if budget.over:
         budget.leave_out(UNFINISHED)
-    there = held.runs.one(carried_point(fitted.runs, held.runs, final.shift))
+    points = final.shift, carried_point(fitted.runs, held.runs, final.shift)
     ends = (
         np.asarray(bare_residual(evidence, final), float),
-        np.asarray(held.measured - there, float),
+        np.asarray(held.measured - held.runs.one(points[1]), float),
     )
     shown = final if proof.proved else _near(builder, halves, proof)
     plain = Evidence(fitted.runs, fitted.measured, _on(start.evidence.whitening, fitted.runs))
@@ -101,7 +101,8 @@ def build_up(
     if shown is not None:
         sure = _widened(evidence, shown, desk.settings.confidence, halves.regression, proof.proved)
         told = _explained(desk, start, _in_noise(plain, sure))
-    return Built(told, before, report_of(halves, proof, ends), fitted, held)
+    report = report_of(halves, proof, ends, points)
+    return Built(told, before, report, fitted, held)
 
 
 def _at_work(

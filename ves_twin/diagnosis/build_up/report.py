@@ -13,6 +13,7 @@ from ves_twin.diagnosis.build_up.halves import Halves
 from ves_twin.diagnosis.build_up.inseparable import inseparable
 from ves_twin.diagnosis.build_up.leftover_laws import Law, by_channel, laws_left, same_motion
 from ves_twin.diagnosis.build_up.memory import memory
+from ves_twin.diagnosis.build_up.one_way import with_one_way_twins
 from ves_twin.diagnosis.build_up.proof import FALSE_SHARE, Proof
 from ves_twin.diagnosis.build_up.regression import Half
 from ves_twin.diagnosis.build_up.result import TOGETHER, BuildUp, Left, Proved
@@ -34,13 +35,19 @@ SHAKEN = 0.25
 name. Chosen on EMPS, whose three frictions are published and leave a law of a tenth of theirs."""
 
 
-def report_of(halves: Halves, proof: Proof, ends: tuple[FloatArray, FloatArray]) -> BuildUp:
+def report_of(
+    halves: Halves,
+    proof: Proof,
+    ends: tuple[FloatArray, FloatArray],
+    points: tuple[FloatArray, FloatArray] | None = None,
+) -> BuildUp:
     """Everything that is told of a proof, sizes excepted.
 
     Args:
         halves: both halves.
         proof: what is proved.
         ends: what the extended model leaves of the fitted and of the held-out half (rows, c).
+        points: its departures in the fitted and in the held-out half (coordinates,); none if None.
     """
     regression = halves.regression
     fit = regression.solve(proof.proved, proof.bench.fit.whitening)
@@ -54,8 +61,9 @@ def report_of(halves: Halves, proof: Proof, ends: tuple[FloatArray, FloatArray])
     lost = _unfollowed(bench.held, halves.measured, left)
     proved = [_proved(bench, proof, n, others[n], laws, left, lost) for n in proof.proved]
     proved.sort(key=lambda one: (-one.share, one.p))
+    told = (replace(p, firm=p.firm and p.label not in shared) for p in proved)
     return BuildUp(
-        proved=tuple(replace(p, firm=p.firm and p.label not in shared) for p in proved),
+        proved=with_one_way_twins(tuple(told), halves, points),
         tested=proof.tested,
         false_discovery_rate=FALSE_SHARE,
         p_limit=proof.limit,

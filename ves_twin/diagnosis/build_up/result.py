@@ -28,6 +28,9 @@ SUBLINEAR = frozenset({"stribeck_friction", "quadratic_drag"})
 """Kinds that no machine has less of than none: friction that grows less than in proportion to
 speed, as of grease, reads so (two measured arms, TX40 and TIAGo)."""
 
+IMPROPER = SUBLINEAR | {"coulomb_asymmetry", "viscous_asymmetry"}
+"""Kinds that are a part of some other friction, and drive their joint where that is too small."""
+
 STRAIGHT = frozenset({"viscous_friction", "coulomb_friction"})
 """Kinds that share such a friction among them where it has no kind of its own."""
 
@@ -93,6 +96,12 @@ class Proved:
         """Whether it is one of SUBLINEAR with a negative size: the shape of another friction."""
         first = next(iter(self.parameters.values()), None)
         return self.effect in SUBLINEAR and first is not None and first.value < 0.0
+
+    @property
+    def standing_in(self) -> str:
+        """What a cause that would drive its joint may be instead; empty if it may be itself."""
+        other = (n for n in self.acts_like if n.partition("@")[0] not in IMPROPER)
+        return next(other, "") if self.drives else ""
 
     def bent_by(self, others: Iterable[Proved]) -> bool:
         """Whether it is a friction beside which one of others shows that it is sublinear."""

@@ -59,6 +59,7 @@ SQUARE = Form("square", "x^2", lambda x, w: np.square(x))
 SIGNED_SQUARE = Form("square against motion", "|x| x", lambda x, w: np.abs(x) * x)
 CUBE = Form("cubic", "x^3", lambda x, w: x**3)
 SIGN = Form("Coulomb", "sign(x)", lambda x, w: np.tanh(x / (SHARP * w)))
+JUMP = Form("step at zero", SIGN.formula, SIGN.at)
 MODULUS = Form("modulus", "|x|", lambda x, w: np.abs(x))
 SINE = Form("sine", "sin(x)", lambda x, w: np.sin(x))
 COSINE = Form("cosine", "cos(x)", lambda x, w: np.cos(x))
@@ -120,7 +121,7 @@ TONE = Form(
 
 FORMS: dict[str, tuple[Form, ...]] = {
     "position": (
-        *(CONSTANT, LINEAR, SQUARE, CUBE, SINE, COSINE, MODULUS, SIGN, RAMP, DOWN, BEND),
+        *(CONSTANT, LINEAR, SQUARE, CUBE, SINE, COSINE, MODULUS, JUMP, RAMP, DOWN, BEND),
         DEAD_ZONE,
     ),
     "speed": (LINEAR, SIGNED_SQUARE, CUBE, SIGN, SQUARE, MODULUS, STRIBECK, SATURATING),
@@ -131,7 +132,7 @@ FORMS: dict[str, tuple[Form, ...]] = {
         SQUARE,
         SIGNED_SQUARE,
         CUBE,
-        SIGN,
+        JUMP,
         MODULUS,
         RAMP,
         DOWN,

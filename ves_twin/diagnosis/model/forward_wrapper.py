@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 from ves_twin.core.types import FloatArray
+from ves_twin.diagnosis.model.directional import Directional, Moment, Visited
 from ves_twin.diagnosis.model.forward import Channel, Excitation, Forward, Hypothesis, Parameter
 
 
@@ -47,6 +48,17 @@ class ForwardWrapper:
     ) -> FloatArray:
         """See `Forward`."""
         return self.forward.simulate(programme, values, refined)
+
+    def one_way_twins(
+        self, labels: Sequence[str], moments: Sequence[Moment], visited: Visited | None = None
+    ) -> Mapping[str, tuple[str, ...]]:
+        """See `Directional`; none where the forward inside knows none."""
+        inside = self.forward
+        return (
+            inside.one_way_twins(labels, moments, visited)
+            if isinstance(inside, Directional)
+            else {}
+        )
 
     def identified(self, change: str, more: bytes = b"") -> str:
         """Identity of the forward with a change, for subclasses."""

@@ -10,6 +10,7 @@ from scipy.interpolate import CubicSpline
 from scipy.signal import butter, filtfilt, savgol_filter
 
 from ves_twin.core.types import BoolArray, FloatArray
+from ves_twin.diagnosis.model.directional import Moment, Visited
 from ves_twin.diagnosis.model.forward import Channel, Excitation
 from ves_twin.diagnosis.model.forward_wrapper import ForwardWrapper
 from ves_twin.diagnosis.model.invertible import Invertible
@@ -103,6 +104,12 @@ class ByMotion(ForwardWrapper):
         """See `LawForward`; as measured, whatever the laws."""
         told = self.told(programme, values, laws)
         return told[1] if told else {}
+
+    def one_way_twins(
+        self, labels: Sequence[str], moments: Sequence[Moment], visited: Visited | None = None
+    ) -> Mapping[str, tuple[str, ...]]:
+        """See `Directional`; of the motion as measured."""
+        return super().one_way_twins(labels, moments, visited or self.visited)
 
     @property
     def band(self) -> float:

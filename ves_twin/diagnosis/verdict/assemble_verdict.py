@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from scipy.stats import norm
@@ -69,6 +69,7 @@ class Findings:
         law: that was found where no cause explains the record; None if nobody looked.
         shown: what the report shows as fitted, if not `found`: a law that is claimed.
         beside: proved causes with a law that is claimed of what they leave, fitted together.
+        twins: what nothing in the recordings tells from causes that are named, by their label.
     """
 
     seen: Dataset
@@ -90,6 +91,7 @@ class Findings:
     law: LawFinding | None = None
     shown: Explanation | None = None
     beside: Explanation | None = None
+    twins: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
 
     @property
     def fitted(self) -> Explanation | None:
@@ -286,7 +288,7 @@ def _cause(
     """Firm if it is no commissioning parameter, or further off than commissioning errors go.
 
     Not where every interval holds what the model has already: such a size may be none. Nor a delay
-    of less than a row of a log.
+    of less than a row of a log, nor what a reversal alone would tell from another cause.
     """
     runs = findings.seen.runs
     z = float(norm.isf(0.5 * (1.0 - findings.settings.confidence)))
@@ -303,14 +305,16 @@ def _cause(
     shown = any(not e.low <= e.nominal <= e.high for e in estimates.values())
     row = _row(findings.seen) if findings.logged else 0.0
     below = any(_below(name, e, row) for name, e in estimates.items())
+    like = findings.twins.get(hypothesis.label, ())
     return Cause(
         effect=hypothesis.effect,
         target=hypothesis.target,
         parameters=estimates,
         probability=weight,
-        firm=shown and not below and (absent or max(sigmas) >= findings.kappa),
+        firm=shown and not below and not like and (absent or max(sigmas) >= findings.kappa),
         sigmas=max(sigmas, default=None),
         below_row=below,
+        acts_like=like,
     )
 
 

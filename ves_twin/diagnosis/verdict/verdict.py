@@ -79,9 +79,12 @@ class Estimate:
         return self.told("nominal")
 
     def told(self, origin: str) -> str:
-        """The same; `origin` says what the departure counts from."""
+        """The same; `origin` says what the departure counts from, told where it is not zero."""
         span = f"{self.low:.4g} to {self.high:.4g}"
-        return f"{self.value:.4g}{unit_tail(self.unit)} ({origin} {self.nominal:.4g}; {span})"
+        base = f"{origin} {self.nominal:.4g}"
+        if self.nominal != 0.0:
+            base += f", a change of {self.value - self.nominal:.4g}"
+        return f"{self.value:.4g}{unit_tail(self.unit)} ({base}; {span})"
 
 
 @dataclass(frozen=True)
@@ -97,6 +100,7 @@ class Cause:
         sigmas: largest departure in declared sd, with a baseline in sd of what a rig in order may
             change by since then; None if it is no commissioning parameter.
         below_row: whether it is a delay of less than a row of a log.
+        acts_like: causes that a joint which turned round would tell from it.
     """
 
     effect: str
@@ -106,6 +110,7 @@ class Cause:
     firm: bool
     sigmas: float | None
     below_row: bool = False
+    acts_like: tuple[str, ...] = ()
 
     @property
     def shortened(self) -> Cause:
@@ -380,8 +385,9 @@ class Verdict:
         sizes = ", ".join(
             f"{name} = {p.told(origin)}" for name, p in (shown[:1] if told else shown)
         )
-        text = f"{cause.effect} at {cause.target}: {told}{sizes}"
-        if cause.firm or (cause.sigmas is None and self.proved):
+        first = f"{cause.effect} at {cause.target}: {told}{sizes}"
+        text = " or ".join([first, *cause.acts_like])
+        if cause.firm or (cause.sigmas is None and (self.proved or cause.acts_like)):
             return text
         if self.unconfirmed:
             return f"{text}, which the held-out recordings do not confirm"

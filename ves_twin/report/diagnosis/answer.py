@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from ves_twin.core.quantity import percent
-from ves_twin.diagnosis.build_up.result import UNFINISHED
+from ves_twin.diagnosis.build_up.result import TOGETHER, UNFINISHED
 from ves_twin.diagnosis.explain.disagreement import disagree
 from ves_twin.diagnosis.law.result import LAW
+from ves_twin.diagnosis.unseen.gain import Gain
 from ves_twin.diagnosis.verdict.verdict import Cause, Kind, Verdict
 from ves_twin.report.diagnosis.basis import gain_words, taken_share
 from ves_twin.report.diagnosis.coarse_step import finer
@@ -208,14 +209,17 @@ def _beyond(verdict: Verdict) -> str:
         if not shares:
             return f"{text}."
         most = max(shares, key=lambda name: shares[name])
-        return f"{text}: {shares[most]:.2g} of the spread of {most}, less of any other channel."
+        share = f"{shares[most]:.2g}"
+        share = "all" if share == "1" else share
+        return f"{text}: {share} of the spread of {most}, less of any other channel."
     return "No cause fits well enough to be accepted."
 
 
 def _proved(verdict: Verdict) -> str:
     """Of causes that were proved one by one: firm names, those that act like one, what is left."""
     firm = [spoken(one.label) for one in verdict.proved if one.firm]
-    like = [spoken(one.label) for one in verdict.proved if not (one.firm or one.ended)]
+    loose = (one for one in verdict.proved if not (one.firm or one.ended))
+    like = [" with ".join(map(spoken, (o.standing_in or o.label).split(TOGETHER))) for o in loose]
     ended = [spoken(one.label) for one in verdict.proved if one.ended]
     count = len(firm) + len(like)
     what = "1 cause improves" if count == 1 else f"{count or 'No'} causes improve"
@@ -265,6 +269,9 @@ def why_loose(cause: Cause) -> str:
     """Why a name is not firm."""
     if cause.below_row:
         return "less than a row of the log, whose clock explains that as well"
+    if cause.acts_like:
+        like = " or ".join(map(spoken, cause.acts_like))
+        return f"in a motion that does not turn round {like} reads the same"
     if not cause.sigmas or all(e.low <= e.nominal <= e.high for e in cause.parameters.values()):
         return "its interval holds what the model has already"
     return f"{cause.sigmas:.1f} {OFF}"
@@ -304,11 +311,19 @@ def nearest_sentence(verdict: Verdict) -> str:
             said += f"With it {gain_words(verdict)}. More is missing. "
         if verdict.gain is not None and verdict.gain.worse:
             worse = listed(verdict.gain.worse[:TOLD])
-            said += f"It predicts {worse} worse than the model as given: no candidate is written. "
+            said += (
+                f"It predicts {worse} worse than {_than(verdict.gain)}: no candidate is written. "
+            )
     if left.loud:
         top = left.loud[0]
         said += f"What is left is loudest in {top.channel} at {ends_words(top)}."
     return said
+
+
+def _than(gain: Gain) -> str:
+    """The model that an extension is held against where it predicts worse."""
+    tuned = all(gain.over[name][0] == gain.errors[name][0] for name in gain.worse)
+    return "the tolerances alone, tuned" if tuned else "the model as given"
 
 
 def suspect_words(verdict: Verdict) -> str:

@@ -156,13 +156,13 @@ def gain_sentence(verdict: Verdict) -> str:
         )
     said = gain_words(verdict)
     if gain.passed:
-        return f"Gain of the extended plant: {said}."
+        return f"Gain: {said}."
     if not gain.by_causes:
         return f"Gain: {said}. But the same rig without the cause predicts them better."
     if gain.grown:
         return f"Gain: {said}. That is none, since the rms errors grow."
     if verdict.proved and gain.fallen:
-        return f"Gain of the extended plant: {said}. The error of every channel falls."
+        return f"Gain: {said}. The error of every channel falls."
     return f"Gain: {said}. That is no clear gain."
 
 

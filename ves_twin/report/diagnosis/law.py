@@ -33,8 +33,13 @@ DRAWN = 400
 
 
 def law_sentences(law: LawFinding) -> list[str]:
-    """What was found, what it is worth, where it was seen, what else it could be."""
+    """What was found, what it is worth, where it was seen, what else it could be.
+
+    Of a law that is not claimed, and not worth a look, the first alone.
+    """
     said = [capital(f"{law.words}.") if law.claimed else _missing(law)]
+    if not (law.claimed or _likely(law)):
+        return said
     said.append(worth_sentence(law))
     if law.seen:
         spans = [
@@ -63,12 +68,16 @@ def _unit(law: LawFinding) -> str:
 
 
 def _missing(law: LawFinding) -> str:
-    gain = law.gain
-    likely = gain is None or gain.share is None or (gain.share >= WORTH_A_LOOK and not gain.grown)
-    advice = ": look there first" if likely else ""
+    advice = ": look there first" if _likely(law) else ""
     return (
         f"No law is claimed: {law.reason}. What comes nearest is {law.words or law.place}{advice}."
     )
+
+
+def _likely(law: LawFinding) -> bool:
+    """Whether held-out recordings leave a law that is not claimed worth a look."""
+    gain = law.gain
+    return gain is None or gain.share is None or (gain.share >= WORTH_A_LOOK and not gain.grown)
 
 
 def worth_sentence(law: LawFinding) -> str:
@@ -106,7 +115,8 @@ def law_heading(law: LawFinding) -> str:
 def law_parts(law: LawFinding) -> list[Html]:
     """The section of a report."""
     lines = law_sentences(law)
-    parts = [paragraph(lines[0], "lead open" if law.claimed else ""), bullets(lines[1:])]
+    parts = [paragraph(lines[0], "lead open" if law.claimed else "")]
+    parts += [bullets(lines[1:])] if lines[1:] else []
     if law.shape == "table":
         parts.append(law_figure(law))
     if law.numbers:

@@ -67,7 +67,8 @@ SHOWN = 4
 CHI2 = (
     "chi^2 is the squared error in units of noise, summed over the recordings, and that of each"
     " tolerance in units of its sd. A rival that is worse by about 10 or more is unlikely; one that"
-    " is worse by 2 is as good."
+    " is worse by 2 is as good. Sizes are changes of what the model has, of each explanation by"
+    " itself."
 )
 """How the table of rivals is read; 2 ln 100, at which a rival is dropped, is 9.2."""
 
@@ -280,7 +281,7 @@ def _pictures(verdict: Verdict, exhibit: ReportTraces) -> list[Html]:
 
 
 def _rivals(rivals: tuple[Rival, ...]) -> Html:
-    head = ("cause", "size fitted", "worse than the best by (chi^2)", "why")
+    head = ("cause", "change of the model", "worse than the best by (chi^2)", "why")
     rows = [
         (
             " with ".join(map(spoken, rival.causes)),

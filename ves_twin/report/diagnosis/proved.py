@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 
 from ves_twin.core.quantity import UNSURE, percent, quantity
 from ves_twin.diagnosis.build_up.result import TOGETHER, Left, Proved, Size
@@ -96,10 +96,7 @@ def standing_words(one: Proved) -> str:
     if one.below_row:
         return "less than a row of the log: its clock explains that as well"
     if one.drives:
-        return (
-            "acts like it, and is no friction: its joint would be pushed on by it. An effort that"
-            " is read late or early (`sensor_delay` of efforts), an offset or a wrong gain reads so"
-        )
+        return _driving_words(one)
     if one.sublinear:
         return "acts like it: friction that grows less than in proportion to speed reads so"
     if one.bent:
@@ -107,11 +104,34 @@ def standing_words(one: Proved) -> str:
     if one.unfollowed:
         return f"acts like it: {', '.join(one.unfollowed[:SHOWN])} is still not followed at all"
     if one.acts_like:
-        like = [" with ".join(map(spoken, name.split(TOGETHER))) for name in one.acts_like]
-        return f"acts like it, or like {' or '.join(like)}"
+        return f"acts like it,{_or(one.acts_like)}"
     if one.wide:
         return "acts like it: its interval reaches the end of its range"
     return "acts like it: what is left, a tolerance or another cause follows the same motion"
+
+
+def _driving_words(one: Proved) -> str:
+    """How sure the name of a friction is that would push its joint on."""
+    if not one.standing_in:
+        return (
+            "acts like it, and is no friction: its joint would be pushed on by it. An effort that"
+            " is read late or early (`sensor_delay` of efforts), an offset or a wrong gain reads so"
+        )
+    like = _or([name for name in one.acts_like if name != one.standing_in])
+    return (
+        f"acts like {_together(one.standing_in)}{like}; {spoken(one.effect)} of this size would"
+        " push its joint on"
+    )
+
+
+def _or(names: Sequence[str]) -> str:
+    """What else it acts like; empty where there is nothing."""
+    return f" or like {' or '.join(map(_together, names))}" if names else ""
+
+
+def _together(name: str) -> str:
+    """A cause, or few that only together do it, as a person says it."""
+    return " with ".join(map(spoken, name.split(TOGETHER)))
 
 
 def proved_line(one: Proved) -> str:

@@ -11,11 +11,13 @@ import numpy as np
 from ves_twin.core.errors import InvalidInputError
 from ves_twin.core.types import FloatArray
 from ves_twin.core.units import to_si
+from ves_twin.diagnosis.model.directional import Moment, Visited
 from ves_twin.diagnosis.model.forward import Channel, Excitation, Hypothesis, Parameter
 from ves_twin.diagnosis.model.law_forward import LawPlace
 from ves_twin.effects.law import Law, LawKind, variable_along
 from ves_twin.machines.mjcf.motion.inverse import efforts_of_motion
 from ves_twin.machines.mjcf.motion.missing import missing_efforts
+from ves_twin.machines.mjcf.motion.one_way import one_way_twins
 from ves_twin.machines.mjcf.motion.started import read_from, signal_of, start_signal
 from ves_twin.machines.mjcf.motion.stepping import motion_of_drive
 from ves_twin.machines.mjcf.motion.work import Work
@@ -183,6 +185,12 @@ class MjcfForward:
     ) -> Mapping[str, FloatArray]:
         """Variables that laws depend on (n,), as simulated."""
         return self._moved(Work.begin(self.rig, programme, values, laws), False)[1]
+
+    def one_way_twins(
+        self, labels: Sequence[str], moments: Sequence[Moment], visited: Visited | None = None
+    ) -> Mapping[str, tuple[str, ...]]:
+        """See `Directional`."""
+        return one_way_twins(self.rig, labels, moments, visited or self.visited)
 
     def law_places(self) -> tuple[LawPlace, ...]:
         """Joints and compared columns at which a law may act."""
