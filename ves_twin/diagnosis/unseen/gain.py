@@ -59,9 +59,9 @@ class Gain:
 
     @property
     def over(self) -> Mapping[str, tuple[float, float]]:
-        """The errors, over the model as it was given where its tuning predicts far worse: of all
-        channels together, or of one.
+        """The errors, over the model as it was given where its tuning predicts far worse.
 
+        In all channels together, or in the one.
         Tolerances that are bent for a missing cause may fit hardly anything: a crane's trolley was
         off by 0.18 m as given, by 0.54 m tuned, and a gain over that says nothing.
         """
