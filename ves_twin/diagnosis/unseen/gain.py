@@ -61,9 +61,9 @@ class Gain:
     def over(self) -> Mapping[str, tuple[float, float]]:
         """The errors, over the model as it was given where its tuning predicts far worse.
 
-        In all channels together, or in the one.
-        Tolerances that are bent for a missing cause may fit hardly anything: a crane's trolley was
-        off by 0.18 m as given, by 0.54 m tuned, and a gain over that says nothing.
+        In all channels together, or in one of them. Tolerances that are bent for a missing cause
+        may fit hardly anything: a crane's trolley was off by 0.18 m as given, by 0.54 m tuned, and
+        a gain over that says nothing.
         """
         given = [self.given.get(name, 0.0) for name in self.errors]
         tuned = [before for before, _ in self.errors.values()]

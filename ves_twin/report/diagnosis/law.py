@@ -138,9 +138,10 @@ def law_parts(law: LawFinding) -> list[Html]:
 def law_figure(law: LawFinding) -> Html:
     """The picture of a law in a page."""
     points = " Points: what the recordings ask for along time, without any law."
+    against = " It acts beside the drive, which must give as much against it."
     caption = (
         f"{capital(law.kind)} at {law.place} against {law.of[0]}.{points if law.points else ''}"
-        " Line and band: the law."
+        f" Line and band: the law.{against * (law.kind == 'effort')}"
     )
     return svg(draw_law(law), "law", caption)
 
