@@ -109,6 +109,12 @@ def test_a_clock_of_any_name_is_found_though_its_rows_jitter(tmp_path, name):
     assert inspect_log(open_log(path)).tables[0].clock.column == name
 
 
+def test_a_clock_that_is_called_by_its_place_is_found_though_rows_are_lost(tmp_path):
+    time = 0.02 * np.flatnonzero(np.random.default_rng(1).uniform(size=600) > 0.3)
+    path = lab(tmp_path / "a.csv", time, {"column_2": np.sin(time)}, head="column_1")
+    assert inspect_log(open_log(path)).tables[0].clock.column == "column_1"
+
+
 def test_a_counter_of_rows_is_no_clock(tmp_path):
     path = lab(
         tmp_path / "a.csv", np.arange(50), {"x": np.random.default_rng(0).normal(size=50)}, "idx"

@@ -12,11 +12,8 @@ if TYPE_CHECKING:
 NOTHING = 0.05
 """Share of every column's power below which columns, or the model, may be other ones."""
 
-ONE = (
-    "the log is too short to be cut into stretches (--alternate); proof needs another recording"
-    " (--held-out)"
-)
-"""What is told of a log that makes one stretch."""
+ONE = "every second tenth: too short for --alternate; another recording (--held-out) proves more"
+"""What is held out of a log in which no stretches are long enough."""
 
 
 def new_text(found: NewMachine, model: Path, logs: Sequence[Path]) -> str:
@@ -45,7 +42,7 @@ def new_text(found: NewMachine, model: Path, logs: Sequence[Path]) -> str:
     if draft.short:
         first = f"see to the rows that a diagnosis lacks (look); then {first}"
     if draft.one_only and not fitted:
-        lines.append(f"  held out  nothing: {ONE}")
+        lines.append(f"  held out  {ONE}")
     lines += [f"  next      {first}ves-twin diagnose {given}{held} --plant {found.path}"]
     return "\n".join(lines)
 

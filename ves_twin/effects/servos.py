@@ -99,10 +99,10 @@ class ServoDamping(Effect):
 @final
 @dataclass(frozen=True)
 class ServoStrength(Effect):
-    """A position servo gives more, or less, of all: kp, kv and its force limit x (1 + share).
+    """A position servo gives more, or less, of all: kp, kv and force limits x (1 + share).
 
-    Its effort is (1 + s)(kp (u - q) - kv v) within (1 + s) of its limits: another gear, motor or
-    supply than the model's, or a stall torque that was guessed.
+    Its effort is (1 + s)(kp (u - q) - kv v) within (1 + s) of its limits and its joint's: another
+    gear, motor or supply than the model's, or a stall torque that was guessed.
     """
 
     share: float = 0.0
@@ -129,6 +129,7 @@ class ServoStrength(Effect):
         for numbers in (model.actuator_gainprm, model.actuator_biasprm):
             numbers[at, :3] *= 1.0 + self.share
         model.actuator_forcerange[at] *= 1.0 + self.share
+        model.jnt_actfrcrange[model.actuator_trnid[at, 0]] *= 1.0 + self.share
 
 
 @final

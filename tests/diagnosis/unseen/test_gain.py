@@ -302,3 +302,9 @@ def test_a_gain_over_a_channel_that_tolerances_bent_away_is_none_whatever_the_ot
     gain = replace(PASSING, errors=errors, given={"place": 0.0249, "speed": 0.25})
     assert gain.over == {"place": (0.0249, 0.0283), "speed": (0.21, 0.20)}
     assert gain.worse == ("place",)
+
+
+def test_where_all_channels_together_were_bent_away_the_better_of_both_counts_in_each():
+    errors = {"a": (0.1, 0.15), "b": (1.0, 0.08)}
+    gain = replace(PASSING, errors=errors, given={"a": 0.2, "b": 0.1})
+    assert gain.over == {"a": (0.1, 0.15), "b": (0.1, 0.08)}

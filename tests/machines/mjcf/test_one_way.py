@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -137,3 +138,13 @@ def test_a_force_that_pushes_a_joint_on_is_like_no_friction(rig: Rig) -> None:
 
 def test_a_friction_that_falls_within_the_speeds_of_a_record_is_no_constant(rig: Rig) -> None:
     assert twin_of(rig, "stribeck_friction@a", {"level": 0.5, "fall": 0.3}, 0.8) == ()
+
+
+def test_a_slow_recording_that_turns_round_tells_what_a_fast_one_does_not(rig: Rig) -> None:
+    twins = MjcfForward.of(rig).one_way_twins
+    slow = fed(1, 4.0)
+    drive = {name: 0.02 * rows for name, rows in slow.drive.items()}
+    moments = [(fed(0, 0.8), {"coulomb_friction@a:level": 0.5})]
+    assert twins(["coulomb_friction@a"], moments)
+    moments += [(replace(slow, drive=drive), {"coulomb_friction@a:level": 0.5})]
+    assert not twins(["coulomb_friction@a"], moments)

@@ -139,3 +139,17 @@ def test_a_star_means_no_strength_of_a_servo_that_has_neither_limit_nor_brake(tm
     text = servo_rig.TOML.replace(servo_rig.EFFECTS, 'effects = [{ kind = "*", on = ["*"] }]')
     bare = servo_rig.rig(tmp_path, text, servo_rig.MODEL.replace("0 -8 -0.3", "0 -8 0"))
     assert "servo_strength" not in {entry.effect.kind for entry in bare.entries}
+
+
+def test_the_limit_of_a_servo_s_joint_grows_with_it(tmp_path: Path):
+    text = servo_rig.TOML.replace(servo_rig.EFFECTS, 'effects = [{ kind = "*", on = ["*"] }]')
+    model = servo_rig.MODEL.replace("0 -8 -0.3", "0 -8 0").replace(
+        'armature="0.002"', 'armature="0.002" actuatorfrcrange="-0.2 0.2"'
+    )
+    machine = servo_rig.rig(tmp_path, text, model)
+    assert "servo_strength" in {entry.effect.kind for entry in machine.entries}
+    share = {"servo_strength@servo:share": 0.5}
+    found = MjcfForward.of(machine).simulate(servo_rig.programme(), share)
+    other = model.replace("0.2 0.2", "0.3 0.3").replace('"8"', '"12"').replace("0 -8 0", "0 -12 0")
+    rows = MjcfForward.of(servo_rig.rig(tmp_path, text, other)).simulate(servo_rig.programme(), {})
+    assert np.allclose(found, rows, atol=1e-6)

@@ -17,6 +17,8 @@ _NAMED = re.compile(
     r".*[ _.]?time|.*stamp|rowtimes)$",
     re.IGNORECASE,
 )
+_NAMELESS = re.compile(r"(?:column|col|c|var|variable|field|unnamed|x|v)?[ _:]*#", re.IGNORECASE)
+
 _COUNTER = re.compile(r"^(?:idx|index|i|n|row|sample|samples|count|counter|seq)$", re.IGNORECASE)
 
 EPOCHS = ((1e9, 4e9, "s"), (1e12, 4e12, "ms"), (1e15, 4e15, "us"), (1e18, 4e18, "ns"))
@@ -67,9 +69,12 @@ def clock_fields(columns: Sequence[Column], block: Block) -> tuple[ClockField, .
 
 
 def _numbered(column: Column, columns: Sequence[Column]) -> bool:
-    """Whether others are called the same but for a number, as joints are and clocks are not."""
+    """Whether others are called the same but for a number, as joints are and clocks are not.
+
+    Columns that are called by their place alone tell nothing.
+    """
     stem, *others = (re.sub(r"\d+", "#", bare_name(c.name)) for c in (column, *columns))
-    return others.count(stem) > 1
+    return others.count(stem) > 1 and not _NAMELESS.fullmatch(stem)
 
 
 def _score(column: Column, values: FloatArray, place: int, numbered: bool) -> float:

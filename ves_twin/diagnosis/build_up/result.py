@@ -100,7 +100,8 @@ class Proved:
     @property
     def standing_in(self) -> str:
         """What a cause that would drive its joint may be instead; empty if it may be itself."""
-        other = (n for n in self.acts_like if n.partition("@")[0] not in IMPROPER)
+        none = IMPROPER | STRAIGHT if self.sublinear else IMPROPER
+        other = (n for n in self.acts_like if n.partition("@")[0] not in none)
         return next(other, "") if self.drives else ""
 
     def bent_by(self, others: Iterable[Proved]) -> bool:

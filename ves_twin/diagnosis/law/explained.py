@@ -127,7 +127,8 @@ def _over(gain: Gain | None, alone: Mapping[str, float] | None) -> Gain | None:
     """A law's gain with errors over what the causes were proved to leave: tuning is another's."""
     if gain is None or not alone:
         return gain
-    return replace(gain, errors={n: (alone[n], after) for n, (_, after) in gain.errors.items()})
+    errors = {n: (alone[n], after) for n, (_, after) in gain.errors.items()}
+    return replace(gain, errors=errors, given={})
 
 
 def _borne_out(

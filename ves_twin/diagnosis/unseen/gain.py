@@ -73,7 +73,7 @@ class Gain:
         bent = (worse >= np.log(BENT_AWAY)) | (np.mean(worse) >= np.log(BENT_AWAY))
         if not np.any(bent):
             return self.errors
-        bases = np.where(bent, given, tuned).tolist()
+        bases = np.where(bent, np.minimum(given, tuned), tuned).tolist()
         pairs = zip(self.errors.items(), bases, strict=True)
         return {name: (base, after) for (name, (_, after)), base in pairs}
 

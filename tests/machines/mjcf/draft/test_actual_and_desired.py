@@ -70,3 +70,10 @@ def test_a_refusal_says_by_which_names_a_position_is_read(arm, write, columns):
     kept = {named.get(name, name): rows for name, rows in columns.items() if name[0] != "d"}
     found, _ = drafted(arm, write(kept))
     assert {"pos_turn", "pos_lift", "q3"} <= {guess.column for guess in found.guesses}
+
+
+@pytest.mark.parametrize("names", [("q_meas_1", "qd_1"), ("q_act1", "qd1", "qdd1")])
+def test_a_rate_beside_a_measured_position_is_no_set_point(names):
+    told = said(names)
+    assert [told[name] for name in names[1:]] == [*names[1:]]
+    assert told[names[0]] == "q_actual_1"

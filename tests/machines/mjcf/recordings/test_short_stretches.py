@@ -49,6 +49,18 @@ def test_a_recording_too_short_for_two_stretches_is_refused_with_the_stretch_and
 
 def test_stretches_that_are_too_short_are_refused_with_a_length_that_is_taken():
     recording = recording_of(10.0)
-    with pytest.raises(InvalidInputError, match="at least 100: --alternate 2 or longer"):
+    with pytest.raises(InvalidInputError, match=r"at least 100: --alternate 2$"):
         alternate(recording, 0.5, 100.0)
     assert min(min(rows) for rows in rows_of(recording, 2.0)) >= 100
+
+
+@pytest.mark.parametrize("start", [0.0, 3.3, 1000.123])
+@pytest.mark.parametrize(
+    ("native", "rate"), [(10, 10), (30, 12.5), (125, 100), (250, 100), (500, 200)]
+)
+def test_a_length_that_is_advised_is_taken_wherever_the_clock_begins(native, rate, start):
+    """By rounding 99 of 100 rows lay in a stretch of 100 periods from 3.3 s on."""
+    time = start + np.arange(4 * native + 7 * fewest_rows(1.0 / native, rate)) / native
+    recording = Recording(time, {"x": time[:, None]}, RecordingInfo("measured", scenario="log"))
+    fitted, held = rows_of(recording, enough(recording, rate), rate)
+    assert min(*fitted, *held) >= fewest_rows(1.0 / native, rate)

@@ -84,7 +84,7 @@ class Draft:
         rubs: columns of efforts that friction explains, and the model does not.
         gravity: that the model should have, as its file has it; empty where it is right.
         short: whether a diagnosis would find the log, or a piece of it, too short.
-        one_only: whether the log makes one stretch and no second one.
+        one_only: whether no length of stretches was found that has rows enough in each.
     """
 
     text: str

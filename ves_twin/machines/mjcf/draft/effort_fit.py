@@ -50,7 +50,7 @@ class EffortFit:
         against: whether a steady load, as a weight, pulls the other way than the slope says.
         size: rms of the effort over that of what the model needs.
         alone: share of its power that the model explains by itself, the effort turned if need be.
-        pushes: whether the friction beside the model would drive the joint.
+        pushes: whether friction, of the model and beside it, would drive the joint.
     """
 
     slope: float
@@ -105,7 +105,13 @@ class EffortFit:
         return -1 if self.work < -WORKS else 1
 
     @staticmethod
-    def of(y: FloatArray, need: FloatArray, speed: FloatArray, free: bool) -> EffortFit:
+    def of(
+        y: FloatArray,
+        need: FloatArray,
+        speed: FloatArray,
+        free: bool,
+        brakes: FloatArray | float = 0.0,
+    ) -> EffortFit:
         """Fit.
 
         Args:
@@ -113,6 +119,7 @@ class EffortFit:
             need: of the model (m,).
             speed: of the joint (m,).
             free: whether any constant may stand between effort and column.
+            brakes: of the need what friction of the model takes (m,).
         """
         friction = friction_columns(speed)
         whole = np.column_stack([need, friction])
@@ -128,7 +135,8 @@ class EffortFit:
         heavy = min(map(abs, loads)) > LOADED * float(np.sqrt(np.mean(y**2)))
         against = gain > TELLS and heavy and loads[0] * loads[1] < 0.0
         size = float(np.sqrt(np.mean(y**2) / max(float(np.mean(need**2)), 1e-300)))
-        rubbed = float(speed @ (friction[:, :2] @ slopes[1:3])) * np.sign(slopes[0])
+        rubs = friction[:, :2] @ slopes[1:3] + slopes[0] * brakes
+        rubbed = float(speed @ rubs) * np.sign(slopes[0])
         alone = 1.0 - min(float(np.var(y - need)), float(np.var(y + need))) * len(y) / power
         pushes = bool(rubbed < -WORKS * most)
         told = float(slopes[0]), shares[0], gain, work, free, against, size, alone, pushes

@@ -264,8 +264,11 @@ class Judge:
 
     def fit(self, match: Match, motion: Motion) -> EffortFit:
         """Of a recorded effort, in its unit's SI, beside friction."""
-        y, need = self.recorded(match, motion), self.needed(match, motion)
-        return EffortFit.of(y, need, motion.speed[:, self.dof(match)], match.electrical)
+        y, need, dof = self.recorded(match, motion), self.needed(match, motion), self.dof(match)
+        speed = motion.speed[:, dof]
+        brakes = self.model.dof_damping[dof] * speed
+        brakes = brakes + self.model.dof_frictionloss[dof] * np.sign(speed)
+        return EffortFit.of(y, need, speed, match.electrical, brakes / self.gain(match))
 
     def along(self, found: list[Match], motion: Motion) -> Iterator[tuple[Match, FloatArray]]:
         """Each effort that acts on one joint, with what it is there (m,)."""

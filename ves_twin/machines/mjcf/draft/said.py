@@ -29,7 +29,7 @@ def said(columns: Iterable[str]) -> dict[str, str]:
     """Each column's name, or what it says where a letter or a word is grown to a quantity.
 
     A letter a is "actual" beside a d, or where columns are numbered, but neither of a, b and c nor
-    beside the quantity alone; a d is "desired" beside what is actual: elsewhere it is a rate.
+    beside the quantity alone; a d is "desired" beside that a: elsewhere it is a rate.
 
     Args:
         columns: names of all of a log.
@@ -57,5 +57,5 @@ def _said(column: str, part: _Parts, tails: Collection[str]) -> str:
     actual = {*MEASURED, *(("a",) if plain and (part.number or "d" in tails) else ())}
     if part.tail in actual:
         return f"{part.quantity}_actual_{part.number}"
-    desired = {*SETPOINT, *(("d",) if lettered and actual & set(tails) else ())}
+    desired = {*SETPOINT, *(("d",) if plain else ())}
     return f"{part.quantity}_desired_{part.number}" if part.tail in desired else column

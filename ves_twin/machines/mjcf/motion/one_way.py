@@ -16,13 +16,20 @@ from ves_twin.machines.mjcf.motion.work import SMOOTH
 from ves_twin.machines.mjcf.rig.machine import Rig
 
 MOVING = 0.02
-"""Share of a joint's fastest speed from which a row counts as motion. Chosen above what the noise
-of a standing encoder leaves of a smoothed speed: 0.2 % at a youBot's arm."""
+"""Share of a joint's fastest speed in a recording from which a row counts as motion."""
+
+STANDING = 0.005
+"""The same of its fastest speed in any, below which it stands: what the noise of a standing encoder
+leaves of a smoothed speed was 0.2 % at a youBot's arm."""
 
 CONSTANT = 0.1
 """Share of the square of an effort along a motion up to which a constant stands for it. Chosen so
 that Coulomb friction of a joint that reverses in 3 % of its moving rows (4 x 3 % x 97 %) is told
 from an offset, as its jump is seen there."""
+
+MORE = 1.5
+"""Times the model's dry friction that a force may be which stands for less of it: an interval's
+width, assumed."""
 
 TWINS = {"force_offset": "coulomb_friction", "viscous_asymmetry": "viscous_friction"}
 """What a kind is in one direction; any other one whose effort is constant is a force offset."""
@@ -43,6 +50,7 @@ def one_way_twins(
     if not asked:
         return {}
     paths = [(visited(programme, values), values) for programme, values in moments]
+    paths = [(path, values) for path, values in paths if path]  # none where a limit is at work
     found = {_label(effect): _twin(rig, effect, paths) for effect in asked}
     return {label: (twin,) for label, twin in found.items() if twin}
 
@@ -64,16 +72,23 @@ def _twin(rig: Rig, effect: Effect, paths: Sequence[Path]) -> str:
     fastest = max((float(np.max(np.abs(s), initial=0.0)) for s in speeds), default=0.0)
     if fastest == 0.0:
         return ""
-    moving = [np.abs(speed) > MOVING * fastest for speed in speeds]
+    moving = [_moves(speed, fastest) for speed in speeds]
     if not _is_constant([np.sign(speed) for speed in speeds], moving):
         return ""
     efforts = [_effort(rig, _label(effect), *path) for path in paths]
     if effect.kind == "force_offset" and _pushes(efforts, speeds):
         level = CoulombFriction(joint).present(rig.model)  # of which there may be less
-        return f"coulomb_friction@{joint}" if level > 0.0 else ""
+        size = np.mean([float(np.mean(np.abs(effort))) for effort in efforts])
+        return f"coulomb_friction@{joint}" if 0.0 < size < MORE * level else ""
     if effect.kind in TWINS:
         return f"{TWINS[effect.kind]}@{joint}"
     return f"force_offset@{joint}" if _is_constant(efforts, moving) else ""
+
+
+def _moves(speed: FloatArray, fastest: float) -> BoolArray:
+    """Rows (n,) in which a joint moves, of a recording that may be slower than others."""
+    own = float(np.max(np.abs(speed), initial=0.0))
+    return np.asarray(np.abs(speed) > max(MOVING * own, STANDING * fastest))
 
 
 def _pushes(efforts: Sequence[FloatArray], speeds: Sequence[FloatArray]) -> bool:

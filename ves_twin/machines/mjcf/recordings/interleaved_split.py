@@ -11,6 +11,9 @@ from ves_twin.core.recording.recording import POSES, Recording
 from ves_twin.core.types import BoolArray, FloatArray
 from ves_twin.diagnosis.record.preprocess import fewest_rows
 
+ROUNDING = 1e-6
+"""Share of a stretch by which stamps may be early for rounding."""
+
 LEFT_OUT = -1
 """Number of the stretch of rows that belong to none."""
 
@@ -41,7 +44,8 @@ def alternate(
     if count < 2:
         span = f"a stretch of {length:g} in {stop - start:g}"
         raise InvalidInputError("stretches to hold out", span, "two stretches or more")
-    number = np.minimum((recording.time - start) // length, count - 1)
+    ends = (recording.time - start) / length + ROUNDING
+    number = np.minimum(np.floor(ends), count - 1)
     if recording.info.log == POSES:
         return [_rows(recording, number % 2 == 0)], [_rows(recording, number % 2 == 1)]
     number[recording.time - start >= count * length] = LEFT_OUT
@@ -73,17 +77,19 @@ def _check_rows(recording: Recording, parts: Sequence[Recording], rate: float) -
         return
     what = f"rows of {recording.info.scenario or 'a recording'} from"
     what += f" {short.time[0]:.2f} to {short.time[-1]:.2f} s, a stretch of --alternate"
-    expected = f"at least {fewest}: --alternate {enough(recording, rate):g} or longer"
-    if rows < 2 * fewest:
+    length = enough(recording, rate)
+    expected = f"at least {fewest}: --alternate {length:g}"
+    if rows * period < 1.5 * length:
         both = f"two stretches take {2 * fewest * period:.2f} s, and it has {rows * period:.2f} s"
         expected = f"at least {fewest}: {both}, so hold out another recording (--held-out)"
     raise InvalidInputError(what, len(short.time), expected)
 
 
 def enough(recording: Recording, rate: float) -> float:
-    """The shortest length of stretches [s], in tenths, of which all have rows enough."""
-    period = _period(recording)
-    return float(np.ceil(10.0 * fewest_rows(period, rate) * period)) / 10.0
+    """The shortest length of stretches [s], of two digits, of which all have rows enough."""
+    least = fewest_rows(_period(recording), rate) * _period(recording) * (1.0 - ROUNDING)
+    digit = 10.0 ** (np.floor(np.log10(least)) - 1.0)
+    return float(f"{np.ceil(least / digit) * digit:.2g}")
 
 
 def _period(recording: Recording) -> float:

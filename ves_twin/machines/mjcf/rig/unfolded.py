@@ -191,9 +191,11 @@ def _targets(kind: str, told: RigDescription, model: mujoco.MjModel) -> list[str
 
 
 def _limited(name: str, model: mujoco.MjModel) -> bool:
-    """Whether a servo has a limit of force, or brakes."""
-    at = model.actuator(name).id
-    return bool(model.actuator_forcelimited[at]) or float(model.actuator_biasprm[at, 2]) != 0.0
+    """Whether a servo, or the joint it drives, has a limit of force, or it brakes."""
+    at, joint = model.actuator(name).id, driven_joint(model, name)
+    limited = joint and model.jnt_actfrclimited[model.joint(joint).id]
+    own = model.actuator_forcelimited[at] or float(model.actuator_biasprm[at, 2]) != 0.0
+    return bool(limited or own)
 
 
 def _neighbours(names: list[str], model: mujoco.MjModel) -> list[str]:
