@@ -28,7 +28,8 @@ def _table(table: TableReport) -> Iterator[str]:
     else:
         yield f"  clock: {_clock(table.clock)}"
         for gap in () if table.clock.uneven else table.clock.longest:
-            yield f"    gap of {gap.length:.4g} s after {gap.start:.9g} s"
+            since = gap.start - table.clock.start
+            yield f"    gap of {gap.length:.4g} s, {since:.6g} s from the start"
     if table.candidates:
         yield f"  rising too: {', '.join(table.candidates)}"
     if not table.channels:

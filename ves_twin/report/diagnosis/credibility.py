@@ -108,10 +108,11 @@ def _uncertainty(verdict: Verdict) -> Factor:
 
 def _robustness(verdict: Verdict) -> Factor:
     fitted = [r for r in verdict.rivals if r.standing is not Standing.SCREENED]
-    if len(fitted) > 1 and fitted[1].behind is not None:
+    others = [r for r in fitted if r.causes != fitted[0].causes]
+    if others and others[0].behind is not None:
         said = (
             f"Explanations fitted in full: {len(fitted)}. The nearest rival of the best leaves"
-            f" {digits(fitted[1].behind)} more of chi^2."
+            f" {digits(others[0].behind)} more of chi^2."
         )
         return Factor("results robustness", Pedigree.MEASURED, said)
     said = f"Causes searched: {len(verdict.smallest_findable)}; none had to be fitted."

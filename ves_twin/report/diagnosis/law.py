@@ -94,8 +94,9 @@ def worth_sentence(law: LawFinding) -> str:
 
 
 def equals(law: LawFinding) -> list[LawRival]:
-    """Other laws that leave noise and are as good."""
-    return [one for one in law.also if one.adequate and one.behind < EQUAL]
+    """Other laws that are as good: leave noise if it does, and are no less probable than that."""
+    needed = law.misfit <= law.misfit_limit
+    return [one for one in law.also if (one.adequate or not needed) and one.behind < EQUAL]
 
 
 def _else(law: LawFinding) -> str:
@@ -130,7 +131,7 @@ def law_parts(law: LawFinding) -> list[Html]:
             (one.label, one.form, digits(one.behind), "yes" if one.adequate else "no")
             for one in law.also
         ]
-        head = ("law", "formula", "less probable, nats", "leaves noise")
+        head = ("law", "formula", "less probable, nats (below 0: more)", "leaves noise")
         parts.append(folded("What else was fitted", table(head, others)))
     return parts
 

@@ -352,7 +352,7 @@ def _leftover(verdict: Verdict) -> list[Html]:
     goes = [
         f"{f.channel} goes along with {f.shape} (correlation {f.correlation:+.2f})"
         for f in left.features
-        if abs(f.correlation) > 0.1
+        if abs(f.correlation) > 0.1 and f.shape != f.channel
     ]
     return [*parts, table(head, rows), bullets(goes)]
 

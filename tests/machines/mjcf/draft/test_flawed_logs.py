@@ -81,5 +81,7 @@ def test_signals_of_several_clocks_are_refused_with_what_to_do(arm, columns, wri
         rows[k, k % len(names)] = columns[names[k % len(names)]][k]
     log = write({"t": columns["t"]} | dict(zip(names, rows.T, strict=True)))
     log.write_text(log.read_text().replace("nan", ""))
-    with pytest.raises(InvalidInputError, match=r"no row holds .* together: signals of several"):
+    with pytest.raises(
+        InvalidInputError, match=r"no row holds all of them: signals of several .* import --map"
+    ):
         drafted(arm, log)

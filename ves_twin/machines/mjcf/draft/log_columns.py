@@ -27,6 +27,9 @@ FEWEST = 64
 FILLED = 0.9
 """Share of its rows that a column must fill to be used; of the others the stretch is."""
 
+FIRST = 3
+"""Names that a refusal tells of a group."""
+
 JITTER = 0.01
 """Departure of a step from the usual one from which on a draft says so."""
 
@@ -202,15 +205,22 @@ def _sorted(
     constant = [n for n, v in used.items() if np.ptp(v) == 0.0]
     values = {n: np.asarray(np.interp(even, own, v)) for n, v in used.items() if n not in constant}
     if not values or len(even) < FEWEST:
-        came = f"constant: {', '.join(constant) or 'none'}; with gaps: {', '.join(empty) or 'none'}"
+        groups = (("constant", constant), ("with gaps", empty))
+        came = "; ".join(f"{word}: {_few(names)}" for word, names in groups if names)
         expected = "columns of numbers that change"
         some = len(empty) > 1 and all(np.any(full[n]) for n in empty)
         if some and not np.any(np.all([full[n] for n in empty], axis=0)):
-            expected += f"; no row holds {', '.join(empty)} together: signals of several clocks, as"
-            expected += " a player of messages exports them, are read once they are on one clock"
-        raise InvalidInputError(f"columns of {path.name}", came, expected)
+            expected += "; no row holds all of them: signals of several clocks, as a player of"
+            expected += " messages exports them, are put on one clock by ves-twin import --map"
+        raise InvalidInputError(f"columns of {path.name}", came or "none", expected)
     told = tuple(constant), tuple(empty), tuple(notes)
     return LogColumns(path.name, clock, scale, period, values, units, *told, window, used)
+
+
+def _few(names: list[str]) -> str:
+    """Some names, and how many more there are."""
+    more = f" and {len(names) - FIRST} more" if len(names) > FIRST else ""
+    return f"{', '.join(names[:FIRST])}{more}"
 
 
 def _without_wraps(name: str, values: FloatArray, unit: str, notes: list[str]) -> FloatArray:

@@ -123,5 +123,5 @@ def _coarse(found: dict[str, tuple[float, str]], step: float) -> list[str]:
     more = f", {len(found) - 1} more by more than {COARSE:g}" if len(found) > 1 else ""
     return [
         f"the model's step of {step:.3g} s puts {worst} {off} off (rms), {times:.2g} times its"
-        f" noise{more}: give the model a smaller timestep"
+        f" noise{more}: give the model a smaller timestep, or integrator RK4"
     ]

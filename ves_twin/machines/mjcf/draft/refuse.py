@@ -33,7 +33,8 @@ def refuse(log: LogColumns, matches: Matches, check: Checked, model: mujoco.MjMo
     """
     efforts = [m for m in check.found if m.spot.quantity is Quantity.EFFORT]
     there = ", ".join(f"{m.column}{' as an effort' * (m in efforts)}" for m in check.found)
-    left = ", ".join([*matches.left, *matches.setpoints]) or "none"
+    open_ = [column for column in matches.left if column not in log.empty]
+    left = ", ".join([*open_, *matches.setpoints]) or "none"
     motors = ", ".join(model.actuator(i).name for i in range(model.nu))
     joints = ", ".join(model.joint(i).name for i in single_joints(model))
     lacks_effort = not efforts
@@ -42,6 +43,8 @@ def refuse(log: LogColumns, matches: Matches, check: Checked, model: mujoco.MjMo
     if lacks_effort and not placed and model.nu:
         expected = f"{expected}, and a position or speed of {joints}"
     came = f"columns matched: {there or 'none'}; not matched: {left}"
+    if log.empty:
+        came += f"; a tenth empty: {', '.join(log.empty)}"
     if not model.nu:
         came = f"a model without actuators; {came}"
         expected = f"actuators, or a position of {joints} and what follows from it"
