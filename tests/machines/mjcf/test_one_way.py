@@ -19,7 +19,7 @@ from ves_twin.diagnosis.verdict.verdict import Kind
 from ves_twin.machines.diagnose import diagnose
 from ves_twin.machines.mjcf.motion.forward import MjcfForward
 from ves_twin.machines.mjcf.rig.machine import Rig
-from ves_twin.report.diagnosis.answer import confidence_sentence
+from ves_twin.report.diagnosis.answer import confidence_sentence, next_step
 
 TIME = 0.02 * np.arange(600)
 HIDDEN = {
@@ -88,6 +88,8 @@ def test_a_friction_is_proved_and_firm_only_where_its_joint_turns_round(
         twin = label.replace("coulomb_friction", "force_offset")
         assert proved.firm is (back > 1.0)
         assert proved.acts_like == (() if back > 1.0 else (twin,))
+        assert proved.one_way is (back < 1.0)
+    assert ("A motion in which a and b turn round as well" in next_step(verdict)) is (back < 1.0)
 
 
 @pytest.mark.parametrize("back", [0.8, 4.0])

@@ -36,7 +36,8 @@ def with_one_way_twins(
     for one in proved:
         like = twins.get(one.label, ())
         acts = tuple(dict.fromkeys([*one.acts_like, *like]))
-        found.append(replace(one, acts_like=acts, firm=one.firm and not like))
+        firm = one.firm and not like
+        found.append(replace(one, acts_like=acts, firm=firm, one_way=bool(like)))
     return tuple(found)
 
 

@@ -62,6 +62,7 @@ class Proved:
         bent: whether it is one of STRAIGHT, and one of SUBLINEAR of negative size is proved at its
             place: with it, its size is that of a line through a curve.
         drives: whether the friction of its place would push the joint on with it.
+        one_way: whether its joint keeps one direction, and a reversal would tell it from another.
     """
 
     effect: str
@@ -78,6 +79,7 @@ class Proved:
     unfollowed: tuple[str, ...] = ()
     bent: bool = False
     drives: bool = False
+    one_way: bool = False
 
     @property
     def label(self) -> str:

@@ -136,7 +136,9 @@ def _with_proved(verdict: Verdict) -> str:
         return f"Simulate with the extended model, and look at {listed(firm[:TOLD])}."
     if all(one.ended for one in verdict.proved):
         return "Look for what else is wrong: what was fitted ends its range and stands for that."
-    return "Simulate with the extended model. A motion in which they differ settles the names."
+    turns = sorted({one.target for one in verdict.proved if one.one_way})
+    motion = f"in which {listed(turns)} turn round as well" if turns else "in which they differ"
+    return f"Simulate with the extended model. A motion {motion} settles the names."
 
 
 def tone(verdict: Verdict) -> str:
