@@ -79,7 +79,7 @@ def _check_rows(recording: Recording, parts: Sequence[Recording], rate: float) -
     what += f" {short.time[0]:.2f} to {short.time[-1]:.2f} s, a stretch of --alternate"
     length = enough(recording, rate)
     expected = f"at least {fewest}: --alternate {length:g}"
-    if rows * period < 1.5 * length:
+    if rows < 2 * fewest or rows * period < 1.5 * length:
         both = f"two stretches take {2 * fewest * period:.2f} s, and it has {rows * period:.2f} s"
         expected = f"at least {fewest}: {both}, so hold out another recording (--held-out)"
     raise InvalidInputError(what, len(short.time), expected)
