@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -15,7 +16,7 @@ from ves_twin.diagnosis.build_up.halves import halves_at, split
 from ves_twin.diagnosis.build_up.inseparable import inseparable
 from ves_twin.diagnosis.build_up.nearest import nearest
 from ves_twin.diagnosis.build_up.paired import Difference, paired
-from ves_twin.diagnosis.build_up.proof import FALSE_SHARE, prove
+from ves_twin.diagnosis.build_up.proof import FALSE_SHARE, NULL_FROM, _again, _null, prove
 from ves_twin.diagnosis.build_up.report import report_of
 from ves_twin.diagnosis.build_up.select import Selector
 from ves_twin.diagnosis.build_up.spanned import spanned_by
@@ -376,3 +377,21 @@ def test_what_spans_a_cause_is_told_by_independent_rows_whatever_proves_it(monke
     proof = prove(two.regression, two.held, [there])
     assert proof.proved == (there,)
     assert [labels[n] for n in spanned_by(proof, there)] == ["coulomb@a"]
+
+
+@pytest.mark.parametrize(
+    ("p", "back"), [({5: 0.3, 7: 1e-4}, 7), ({5: 0.3, 7: 0.2}, None), ({}, None)]
+)
+def test_a_dropped_cause_comes_back_where_held_out_rows_ask_for_it(p, back):
+    """Beside what is kept now; the one with the smallest p, if that is clear."""
+    wider = SimpleNamespace(each=lambda kept, asked: {n: Difference(p[n], 1.0, 20) for n in asked})
+    judges = SimpleNamespace(fitted=lambda names: wider)
+    assert _again(judges, [1, 2], list(p), 4.0) == back
+
+
+def test_as_many_may_be_without_an_effect_as_their_large_p_say():
+    """Of p that are even between 0 and 1 a share 1 - NULL_FROM is above it; at most all of them."""
+    some = [0.9, 0.8, *[0.01] * 10]
+    assert _null(some) == pytest.approx(3.0 / (1.0 - NULL_FROM))
+    assert _null([0.001]) == 1.0
+    assert _null([0.9] * 3) == 3.0
