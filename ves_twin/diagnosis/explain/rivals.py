@@ -77,11 +77,14 @@ def rivals_of(first: Assessment, found: Explanation | None) -> tuple[Rival, ...]
     """
     if found is None:
         return ()
-    rest = [fit for fit in found.fits if all(fit is not kept for kept in found.chosen)]
     told = [_fitted(found, fit, Standing.KEPT) for fit in found.chosen]
-    told += [_fitted(found, fit, Standing.LOST) for fit in rest]
-    told += [_fitted(found, fit, Standing.LOST) for fit in found.hopeless]
-    told += [_fitted(found, fit, Standing.ALONE) for fit in found.alone]
+    lost = (*found.fits, *found.hopeless)
+    others = [(fit, Standing.LOST) for fit in lost] + [(fit, Standing.ALONE) for fit in found.alone]
+    causes = {one.causes for one in told}
+    for fit, standing in others:  # the nearest of several fits of the same causes stands for them
+        one = _fitted(found, fit, standing)
+        told += [one] * (one.causes not in causes)
+        causes.add(one.causes)
     known = {label for rival in told for label in rival.causes}
     held = [
         (first.screen.bank.hypotheses[s.hypothesis].label, s.score)
