@@ -10,7 +10,7 @@ import ves_twin as vt
 from ves_twin.cli.main import main
 from ves_twin.core.errors import FileAccessError
 from ves_twin.plant.assembly import assemble, compile_model
-from ves_twin.plant.mjcf_export import export_mjcf, mjcf_of
+from ves_twin.plant.mjcf_export import mjcf_of
 
 DIGITS = 2e-6
 """MJCF holds six to seven digits of lengths of up to a metre."""
@@ -89,7 +89,7 @@ def test_an_unchanged_plant_loses_nothing_but_what_no_file_has():
 
 def test_a_file_that_cannot_be_written_is_one_line(tmp_path):
     with pytest.raises(FileAccessError, match="cannot write"):
-        export_mjcf(vt.Plant.load("ves2"), tmp_path / "no" / "rig.xml")
+        mjcf_of(vt.Plant.load("ves2")).save(tmp_path / "no" / "rig.xml")
 
 
 def test_info_writes_the_file_and_tells_the_differences_in_words(capsys, tmp_path):
@@ -123,6 +123,6 @@ def test_a_full_disk_leaves_what_was_there(tmp_path, monkeypatch):
     path.write_text("before")
     monkeypatch.setattr("pathlib.Path.write_text", fill)
     with pytest.raises(FileAccessError, match="No space left"):
-        export_mjcf(vt.Plant.load("ves2"), path)
+        mjcf_of(vt.Plant.load("ves2")).save(path)
     assert path.read_text() == "before"
     assert list(tmp_path.iterdir()) == [path]

@@ -19,6 +19,9 @@ from ves_twin.cli.given import Given, add_machine_options, bank_settings
 LAW_PICTURE = "law.png"
 """File with the picture of a law."""
 
+PLANT = "plant.toml"
+"""File of the extended machine, where it passed."""
+
 SUMMARY = "name what the simulation gets wrong in recordings, extend the plant, measure the gain"
 
 
@@ -139,7 +142,7 @@ def _write(found: Diagnosis, folder: Path, names: str) -> None:
     from ves_twin.report.rerun.diagnosis import write_diagnosis_rrd
 
     for name in (
-        "plant.toml",
+        PLANT,
         "plant.candidate.toml",
         LAW_PICTURE,
         SETPOINTS,
@@ -159,7 +162,7 @@ def _write(found: Diagnosis, folder: Path, names: str) -> None:
         path = folder / "plant.candidate.toml"
         found.extended.save(path, f"{note}\nOnly a candidate: {found.refused}.")
     elif found.extended is not None:
-        found.extended.save(folder / "plant.toml", note)
+        found.extended.save(folder / PLANT, note)
     elif found.nearest is not None:
         path = folder / "plant.candidate.toml"
         found.nearest.save(path, f"{note}\nThe nearest, not accepted: {found.refused}.")
@@ -183,7 +186,10 @@ def _plant_sentence(found: Diagnosis) -> str:
         return "No extended plant was written: no cause is named."
     if found.refused:
         return f"The extended plant is a candidate, plant.candidate.toml: {found.refused}."
-    return "The extended plant is plant.toml; it passed on held-out recordings."
+    return (
+        "The extended plant is plant.toml; it passed on held-out recordings. ves-twin info --plant"
+        " plant.toml --mjcf model.xml writes it as plain MJCF, and says what that cannot carry."
+    )
 
 
 def _text(found: Diagnosis, folder: Path) -> str:
@@ -243,7 +249,10 @@ def _text(found: Diagnosis, folder: Path) -> str:
     if found.extended is not None and found.refused:
         lines += ["", f"  plant.candidate.toml, no plant.toml: {found.refused}"]
     files = ", ".join(sorted(p.name for p in folder.iterdir()))
-    return "\n".join([*lines, "", f"  files     {folder}/: {files}"])
+    lines += ["", f"  files     {folder}/: {files}"]
+    if (folder / PLANT).is_file():
+        lines.append(f"  as MJCF   ves-twin info --plant {folder / PLANT} --mjcf model.xml")
+    return "\n".join(lines)
 
 
 def held_out_table(verdict: Verdict) -> list[str]:

@@ -11,16 +11,13 @@ from ves_twin.core.units import unit_tail
 
 if TYPE_CHECKING:
     from ves_twin.effects.effect import Effect
-    from ves_twin.effects.law_table import LawTable
-    from ves_twin.plant.parameters import ParameterTable
-    from ves_twin.plant.plant import Plant
 
 SUMMARY = "versions, models and controllers; with --plant what differs from nominal"
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Options of the command."""
-    parser.add_argument("--plant", metavar="FILE", help="a plant: a name or a TOML file")
+    parser.add_argument("--plant", metavar="FILE", help="a machine: a name or a TOML file")
     parser.add_argument(
         "--mjcf", metavar="OUT", help="with --plant: write it as MJCF, and say what MJCF lacks"
     )
@@ -31,9 +28,7 @@ def execute(arguments: argparse.Namespace) -> int:
     """Print what is installed and known."""
     if arguments.mjcf and not arguments.plant:
         raise InvalidInputError("--mjcf", "no --plant", "--plant NAME or FILE beside it")
-    content = plant_content(arguments.plant) if arguments.plant else general_content()
-    if arguments.mjcf:
-        content |= mjcf_content(arguments.plant, arguments.mjcf)
+    content = general_content() if not arguments.plant else _told(arguments.plant, arguments.mjcf)
     if arguments.json:
         print(json_text(content))
         return 0
@@ -102,72 +97,25 @@ def _places(effect: type[Effect]) -> str:
     return "; ".join(found)
 
 
-def plant_content(name: str) -> dict[str, object]:
-    """One plant: identity, grades of its numbers, and every difference from nominal."""
-    from ves_twin.plant.plant import NOMINAL, Plant
-
-    plant = Plant.load(name)
-    grades: dict[str, str] = {}
-    for parameter in plant.parameters.values():
-        count = int(grades.get(parameter.grade.value, "0")) + 1
-        grades[parameter.grade.value] = str(count)
-    laws = {law.law.label: _law(law) for law in plant.told_laws}
-    return {
-        "plant": plant.name,
-        "hash": plant.hash,
-        "fidelity": plant.fidelity.value,
-        "hydraulics": plant.hydraulics.value,
-        "numbers by grade": grades,
-        f"differences from {NOMINAL}": _differences(plant),
-        "effects": {
-            f"{e.kind} on {e.target}": f"{_values(e)}. {_meaning(e)}" for e in plant.effects
-        },
-        "numbers that the effects change": _changed(plant.actual, plant.parameters),
-        **({"laws": laws} if laws else {}),
-    }
-
-
-def _law(law: LawTable) -> str:
-    said = f"{law.kind}, {law.form or law.shape}"
-    return f"{said}; a cause, not at work" if law.cause else said
-
-
-def mjcf_content(name: str, out: str) -> dict[str, object]:
-    """Write a plant as MJCF; what the file has of its changes, and what it has not."""
+def _told(name: str, out: str | None) -> dict[str, object]:
+    """One machine; written as MJCF what the file has of its changes, and what it has not."""
     from pathlib import Path
 
-    from ves_twin.plant.mjcf_export import export_mjcf
-    from ves_twin.plant.plant import Plant
+    from ves_twin.machines.machine import Machine
+    from ves_twin.plant.plant import NOMINAL
 
-    export = export_mjcf(Plant.load(name), Path(out))
+    machine = Machine.load(name or NOMINAL)
+    content = dict(machine.account())
+    if out is None:
+        return content
+    export = machine.mjcf(Path(out).parent)
+    export.save(Path(out))
     return {
+        **content,
         "MJCF": out,
         "changes that the MJCF has": list(export.carried),
         "changes that it cannot carry": list(export.lost),
         "what no MJCF carries": {str(n): what for n, what in enumerate(export.never, 1)},
-    }
-
-
-def _values(effect: Effect) -> str:
-    sizes = effect.magnitudes_of(effect.target)
-    return ", ".join(f"{m.name} = {effect.values[m.name]:g}{unit_tail(m.unit)}" for m in sizes)
-
-
-def _meaning(effect: Effect) -> str:
-    """What an effect is, in the first line of its class."""
-    return (type(effect).__doc__ or "").strip().splitlines()[0]
-
-
-def _differences(plant: Plant) -> dict[str, object]:
-    from ves_twin.plant.plant import NOMINAL, Plant
-
-    return _changed(plant.parameters, Plant.load(NOMINAL).parameters)
-
-
-def _changed(here: ParameterTable, there: ParameterTable) -> dict[str, object]:
-    return {
-        name: {"nominal": before.tolist(), "here": now.tolist(), "unit": here[name].unit}
-        for name, (now, before) in here.differences(there).items()
     }
 
 

@@ -164,6 +164,16 @@ class Effect(ABC):
         change = self.row_of(self.target).change if self.rows else None
         return change.signal if isinstance(change, Log) else ""
 
+    @property
+    def label(self) -> str:
+        """For people: kind and target."""
+        return f"{self.kind} on {self.target}"
+
+    @classmethod
+    def meaning(cls) -> str:
+        """What it is, in the first line of its class."""
+        return (cls.__doc__ or "").strip().splitlines()[0]
+
     def sized(self, sizes: Mapping[str, float]) -> Self:
         """Of the same kind on the same target, at other sizes."""
         return type(self)(self.target, **sizes)

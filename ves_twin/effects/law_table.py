@@ -104,6 +104,12 @@ class LawTable(Part):
         return self.model_copy(update={"values": values, "form": "", "cause": False})
 
     @property
+    def words(self) -> str:
+        """Kind and form, for people."""
+        said = f"{self.kind}, {self.form or self.shape}"
+        return f"{said}; a cause, not at work" if self.cause else said
+
+    @property
     def law(self) -> Law:
         """As it is simulated."""
         return Law(

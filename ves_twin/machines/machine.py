@@ -8,6 +8,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
+from ves_twin.core.mjcf_export import MjcfExport
 from ves_twin.core.recording.recording import Recording
 from ves_twin.core.signals import Signal
 from ves_twin.data.quality.check import Check
@@ -221,6 +222,21 @@ class Machine(ABC):
 
         Raises:
             FileAccessError: not writable.
+        """
+
+    @abstractmethod
+    def account(self) -> Mapping[str, object]:
+        """What it is and what differs from its nominal model, by title, for people and JSON."""
+
+    @abstractmethod
+    def mjcf(self, folder: Path) -> MjcfExport:
+        """What one MJCF file can carry of it.
+
+        Args:
+            folder: that the file will lie in, from which it finds meshes.
+
+        Raises:
+            InvalidInputError: numbers that no rigid body can have.
         """
 
     @abstractmethod

@@ -1,15 +1,13 @@
-"""export_mjcf: a plant as one plain MJCF file, and what such a file cannot carry."""
+"""mjcf_of: a plant as one plain MJCF file, and what such a file cannot carry."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass, replace
-from pathlib import Path
-from textwrap import fill
+from dataclasses import replace
 
 import numpy as np
 
-from ves_twin.core.whole_file import write_whole
+from ves_twin.core.mjcf_export import MjcfExport
 from ves_twin.plant.assembly import assemble, compile_model
 from ves_twin.plant.plant import Plant
 
@@ -29,23 +27,6 @@ NEVER = (
 """What no MJCF file of the rig has."""
 
 
-@dataclass(frozen=True)
-class MjcfExport:
-    """A plant as MJCF.
-
-    Attributes:
-        text: the file.
-        carried: changes of the plant, by name, that the file has.
-        lost: changes of the plant that it has no place for.
-        never: what no file has, whatever the plant.
-    """
-
-    text: str
-    carried: tuple[str, ...]
-    lost: tuple[str, ...]
-    never: tuple[str, ...] = NEVER
-
-
 def mjcf_of(plant: Plant) -> MjcfExport:
     """The rig at home with its legs' motors at rest, without anything of this package around it.
 
@@ -60,23 +41,8 @@ def mjcf_of(plant: Plant) -> MjcfExport:
     lost: list[str] = []
     for name, without in _without(plant):
         (carried if _xml(without) != body else lost).append(name)
-    lines = [f"{plant.name}, exported by ves_twin; plant hash {plant.hash}.", "Not in this file:"]
-    lines += [f"- {what}" for what in (*lost, *NEVER)]
-    note = "\n".join(fill(line, 96, subsequent_indent="  ") for line in lines)
-    note = note.replace("--", "- -")  # no comment of XML may hold two hyphens
-    return MjcfExport(f"<!--\n{note}\n-->\n{body}", tuple(carried), tuple(lost))
-
-
-def export_mjcf(plant: Plant, path: Path) -> MjcfExport:
-    """Write a plant as MJCF.
-
-    Raises:
-        FileAccessError: the file cannot be written.
-        InvalidInputError: numbers that no rigid body can have.
-    """
-    export = mjcf_of(plant)
-    write_whole(path, export.text)
-    return export
+    title = f"{plant.name}, exported by ves_twin; plant hash {plant.hash}."
+    return MjcfExport.of(title, body, carried, lost, NEVER)
 
 
 def _xml(plant: Plant) -> str:
@@ -94,7 +60,7 @@ def _without(plant: Plant) -> Iterator[tuple[str, Plant]]:
     """Every change of a plant by name, and the plant without it."""
     for effect in plant.effects:
         rest = tuple(e for e in plant.effects if e is not effect)
-        yield f"{effect.kind} on {effect.target}", replace(plant, effects=rest)
+        yield effect.label, replace(plant, effects=rest)
     for law in plant.told_laws:
         others = tuple(one for one in plant.told_laws if one is not law)
         yield f"law {law.law.label}", replace(plant, told_laws=others)

@@ -9,6 +9,7 @@ from pathlib import Path
 from time import perf_counter
 
 from ves_twin.core.errors import InvalidInputError, UnknownNameError
+from ves_twin.core.mjcf_export import MjcfExport
 from ves_twin.core.recording.recording import POSES, Recording
 from ves_twin.core.signals import Signal
 from ves_twin.data.mapping.import_map import ImportMap
@@ -38,9 +39,11 @@ from ves_twin.machines.mjcf.recordings.experiment import MjcfExperiment
 from ves_twin.machines.mjcf.recordings.interleaved_split import alternate
 from ves_twin.machines.mjcf.recordings.read import read_recording
 from ves_twin.machines.mjcf.recordings.signals import rig_ranges, rig_signals
+from ves_twin.machines.mjcf.rig.account import account
 from ves_twin.machines.mjcf.rig.drawn import drawn
 from ves_twin.machines.mjcf.rig.extend import extended, write_rig
 from ves_twin.machines.mjcf.rig.machine import Rig
+from ves_twin.machines.mjcf.rig.mjcf_export import mjcf_of
 from ves_twin.scenario.experiment_file import BY_NUMBERS, ExperimentFile
 
 SORTS = ("measured", "held_out", "commissioning", "baseline")
@@ -176,6 +179,14 @@ class MjcfMachine(Machine):
     def save(self, path: Path, note: str = "") -> None:
         """What it has over the file that it was loaded from."""
         write_rig(self.rig, path, note)
+
+    def account(self) -> Mapping[str, object]:
+        """Of both files."""
+        return account(self.rig)
+
+    def mjcf(self, folder: Path) -> MjcfExport:
+        """Its model with the numbers of its file."""
+        return mjcf_of(self.rig, folder)
 
     def excitations(self, like: Recording | None = None) -> tuple[Excitation, ...]:
         """Multisines within the typical sizes of the file, and releases."""

@@ -8,6 +8,7 @@ from functools import cached_property
 from pathlib import Path
 
 from ves_twin.core.errors import InvalidInputError
+from ves_twin.core.mjcf_export import MjcfExport
 from ves_twin.core.recording.files import is_recording, load_recording
 from ves_twin.core.recording.recording import Recording
 from ves_twin.core.signals import SIGNALS, Signal
@@ -26,6 +27,7 @@ from ves_twin.machines.claimed_law import claimed_laws
 from ves_twin.machines.data_folder import find_data
 from ves_twin.machines.drawing import Drawing
 from ves_twin.machines.machine import Machine, Material, Named, Prepared
+from ves_twin.machines.ves2.account import account
 from ves_twin.machines.ves2.applied import applied
 from ves_twin.machines.ves2.case import ves2_case
 from ves_twin.machines.ves2.declared_load import LOAD, loads_of
@@ -40,6 +42,7 @@ from ves_twin.machines.ves2.inputs import SORTS, check_settings, one_step, prepa
 from ves_twin.machines.ves2.law_causes import named_laws
 from ves_twin.machines.ves2.leg_program_check import misread_legs
 from ves_twin.machines.ves2.next_scenario import write_next_experiment
+from ves_twin.plant.mjcf_export import mjcf_of
 from ves_twin.plant.plant import Plant
 from ves_twin.plant.signal_ranges import signal_ranges
 from ves_twin.plant.write_plant import write_plant
@@ -195,6 +198,14 @@ class Ves2Machine(Machine):
     def save(self, path: Path, note: str = "") -> None:
         """As a plant file."""
         write_plant(self._rig, path, note)
+
+    def account(self) -> Mapping[str, object]:
+        """Of the plant."""
+        return account(self._rig)
+
+    def mjcf(self, folder: Path) -> MjcfExport:
+        """The rig at home, its legs' motors at rest; it has no meshes to find."""
+        return mjcf_of(self._rig)
 
     def excitations(self, like: Recording | None = None) -> tuple[Excitation, ...]:
         """The menu, within stroke, speed and wrench limits, at the rates of this machine."""

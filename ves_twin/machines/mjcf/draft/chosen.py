@@ -39,6 +39,10 @@ FIRST = 10
 DROWNED = 0.05
 """Share of an effort that noise of positions may make once they are differentiated twice."""
 
+LOUD = 0.5
+"""The same where a lower band would cut what the positions swing in: above it they swing in noise
+(a ramp at one speed, of which nothing else is left once its line is taken off)."""
+
 
 @dataclass(frozen=True)
 class Chosen:
@@ -153,8 +157,9 @@ def _of_motion(
     """
     noise, band = dict(otherwise.noise), _band(log, efforts)
     share = max(_induced(m, noise, efforts, model, log, band)[1] for m in positions)
-    least = 0.5 * RATES[0] if closed is None else _swung(log, positions)
-    band = max(min(band, band * (DROWNED / max(share, 1e-9)) ** 0.4), least)
+    quiet, loud = (band * (most / max(share, 1e-9)) ** 0.4 for most in (DROWNED, LOUD))
+    least = 0.5 * RATES[0] if closed is None else min(_swung(log, positions), loud)
+    band = max(min(band, quiet), least)
     length, rate, rated = log.period * log.rows, 2.0 * band, Chosen.rated
     if rate * length < ENOUGH:
         if closed is None:

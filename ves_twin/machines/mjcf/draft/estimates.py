@@ -42,7 +42,8 @@ def noise_of(
     """Sd of one row, as of white noise, and how it was told.
 
     At rest the scatter about a straight line; else the power in the highest octave as if it were
-    that of all, no less than rounding to the smallest step makes, step / sqrt(12). A command has
+    that of all, in the median of the log's stretches: one jump is no noise. No less than rounding
+    to the smallest step makes, step / sqrt(12). A command has
     rounding alone, or a thousandth of its size where it is not rounded: what is fast in it was put
     out so. A measured effort that has next to nothing in its highest octave was low-passed, and its
     noise with it: ASSUMED of its size.
@@ -63,7 +64,7 @@ def noise_of(
         return SMOOTH * float(np.std(values)), "a thousandth of its size: a command has none"
     if rest is not None and float(np.ptp(values[rest])) > 0.0:
         return max(float(np.std(detrend(values[rest]))), rounding), "scatter at rest"
-    frequency, power = spectrum(values, period)
+    frequency, power = spectrum(values, period, "median")
     level = float(np.median(power[frequency >= 0.25 / period]))
     sd, size = max(float(np.sqrt(level * 0.5 / period)), rounding), float(np.std(values))
     if effort and sd < SMOOTH * size:
