@@ -27,7 +27,7 @@ from ves_twin.report.diagnosis.answer import (
     verdict_sentence,
 )
 from ves_twin.report.diagnosis.basis import rests_on
-from ves_twin.report.diagnosis.limits import blind_causes
+from ves_twin.report.diagnosis.limits import blind_causes, next_sentences
 from ves_twin.report.diagnosis.out_of_step import out_of_step_sentence
 from ves_twin.report.diagnosis.proved import standing_words
 from ves_twin.report.diagnosis.strained import check_sentence, tuned_words
@@ -193,3 +193,14 @@ def test_a_channel_that_is_not_explained_at_all_is_told_as_all_of_its_spread(lef
         verdict(), verdict=Kind.UNKNOWN, statistics=figures, residuals={"force": error}, proved=()
     )
     assert f"{share} of the spread of force" in confidence_sentence(unknown)
+
+
+def test_of_two_answers_that_share_a_cause_what_differs_is_told():
+    """An arm's shoulder was told from itself: both answers began with its viscous friction."""
+    kinds = ("viscous_friction", "force_offset", "viscous_friction", "coulomb_friction")
+    causes = tuple(Cause(kind, "elbow", {"size": SIZE}, 0.5, True, None) for kind in kinds)
+    told = replace(
+        verdict(), verdict=Kind.AMBIGUOUS, causes=causes, alternatives=((0, 1), (2, 1), (2, 3))
+    )
+    (said, *_) = next_sentences(told)
+    assert said.startswith("To tell force offset at elbow from Coulomb friction at elbow:")

@@ -62,21 +62,20 @@ def test_rows_that_a_logger_held_are_repeats(healthy):
     count = len(healthy)
     assert words.startswith(f"{count // 2} of {count} rows repeat the one before, first at 0.013 s")
     once = {n: np.r_[values[:6], values[5:-1]] for n, values in healthy.signals.items()}
-    words = found(vt.Recording(healthy.time, once, healthy.info))["repeats"]
-    assert words.startswith(f"1 of {count} rows repeats the one before, first at 0.0")
+    assert "repeats" not in found(vt.Recording(healthy.time, once, healthy.info))  # harms nothing
 
 
 @pytest.mark.parametrize(("speed", "held"), [(0.2, False), (4.0, True)])
 def test_rows_of_a_slow_encoder_repeat_by_its_resolution_and_no_fault(speed, held):
     """A count now and then is a slow motion; a row that repeats at four counts a row was held."""
     counts = np.floor(speed * np.arange(400.0))
-    counts[200] = counts[199]
+    counts[[200, 300]] = counts[[199, 299]]
     recording = vt.Recording(
         0.01 * np.arange(400), {"angle": 1e-3 * counts[:, None]}, RecordingInfo("measured")
     )
     words = {c.name: c.message for c in check_clock(recording) if c.grade is Grade.FAILED}
     assert ("repeats" in words) == held
-    assert not held or words["repeats"].startswith("1 of 400 rows repeats")
+    assert not held or words["repeats"].startswith("2 of 400 rows repeat")
 
 
 def test_another_rate_than_declared_is_found(healthy):

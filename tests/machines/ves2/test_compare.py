@@ -9,6 +9,7 @@ import pytest
 import ves_twin as vt
 from ves_twin.core.errors import InvalidInputError, UnknownNameError
 from ves_twin.data.quality.check import Grade
+from ves_twin.diagnosis.record.residuals.cells import Cell
 from ves_twin.machines.compare import compare
 from ves_twin.machines.comparison import Basis
 from ves_twin.machines.machine import Named
@@ -56,6 +57,17 @@ def test_friction_in_a_leg_is_loudest_in_its_own_column(sticky_result):
     others = max(value for name, value in lengths.items() if name != "leg.length.3")
     assert lengths["leg.length.3"] > 5.0 * others
     assert "leg.command.3" in place_sentence(loud["leg.length.3"])
+
+
+def test_an_error_that_is_there_in_motion_alone_is_largest_in_motion(sticky_result):
+    """Less its mean, that of an elbow which stands for a fifth of its log is largest at rest."""
+    moving = Cell("velocity", "elbow rising", rms=0.5, mean=0.4, sigma=1.0, score=1.0)
+    still = Cell("velocity", "elbow still", rms=1.6, mean=-1.6, sigma=1.0, score=1.0)
+    loud = max(sticky_result.channels, key=lambda c: c.rms_sigma)
+    channel = replace(loud, mean=2.0, regimes=(moving, still))
+    assert "; 6 times as large while elbow is rising as while it is still" in place_sentence(
+        channel
+    )
 
 
 @pytest.mark.slow

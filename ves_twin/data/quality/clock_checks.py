@@ -73,8 +73,9 @@ def _repeats(recording: Recording) -> Check:
     about = np.concatenate([[False], moves, [False]])
     held = np.flatnonzero(~changes & (about[:-2] | about[2:]))
     first, last = np.flatnonzero(changes)[[0, -1]]
-    if np.any((held > first) & (held < last)):  # a machine rests before and after its motion
-        begin, repeat = recording.time[held[0] + 1], "repeats" if len(held) == 1 else "repeat"
-        said = f"{len(held)} of {len(recording)} rows {repeat} the one before"
+    # a machine rests before and after its motion, and one row alone harms nothing
+    if len(held) > 1 and np.any((held > first) & (held < last)):
+        begin, said = recording.time[held[0] + 1], f"{len(held)} of {len(recording)} rows"
+        said += " repeat the one before"
         return failed("repeats", f"{said}, first at {begin:.3f} s")
     return passed("repeats", "none")

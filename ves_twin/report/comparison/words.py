@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from math import sqrt
+
 from ves_twin.core.quantity import digits, percent, quantity
 from ves_twin.data.quality.check import Grade
 from ves_twin.diagnosis.record.residuals.cells import Cell
@@ -157,7 +159,7 @@ def place_sentence(channel: ChannelComparison) -> str:
     where = f"loudest {' and '.join(parts)}" if parts else "a constant; nothing of it moves"
     text = f"{channel.name} ({channel.axis}): {where}"
     for kind in ("velocity", "position", "load") if parts else ():
-        text += _contrast([c for c in channel.regimes if c.kind == kind])
+        text += _contrast([c for c in channel.regimes if c.kind == kind], channel.mean)
     if abs(channel.mean_score) > FAR:
         text += f"; mean {quantity(channel.mean, channel.unit)}"
     lag = channel.lag
@@ -170,14 +172,20 @@ def place_sentence(channel: ChannelComparison) -> str:
     return f"{text}."
 
 
-def _contrast(cells: list[Cell]) -> str:
-    """Where one regime is clearly larger than the least one, or its mean clearly apart."""
+def _contrast(cells: list[Cell], mean: float) -> str:
+    """Where one regime is clearly larger than the least one, or its mean clearly apart.
+
+    As large as it is, with the mean of the whole, which the cells have taken off: dry friction of
+    a joint that mostly turns one way is not largest where it stands.
+    """
     if len(cells) < 2:
         return ""
-    top, least = max(cells, key=lambda c: c.rms), min(cells, key=lambda c: c.rms)
-    if least.rms > 0.0 and top.rms > CONTRAST * least.rms:
+    rms = [sqrt(max(c.rms**2 + 2.0 * mean * c.mean + mean**2, 0.0)) for c in cells]
+    most, fewest = max(rms), min(rms)
+    top, least = cells[rms.index(most)], cells[rms.index(fewest)]
+    if fewest > 0.0 and most > CONTRAST * fewest:
         (name, _, state), other = top.label.rpartition(" "), least.label.rpartition(" ")[2]
-        times = f"{top.rms / least.rms:.2g} times"
+        times = f"{most / fewest:.2g} times"
         return f"; {times} as large while {name} is {state} as while it is {other}"
     apart = max(cells, key=lambda c: abs(c.mean))
     if abs(apart.mean) > 0.6 * top.rms:

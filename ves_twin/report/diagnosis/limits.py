@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from math import inf
 
 from ves_twin.core.quantity import digits, percent, quantity
@@ -163,11 +164,19 @@ def _enough(verdict: Verdict) -> list[str]:
     ]
 
 
+def _apart(alternatives: Sequence[set[str]]) -> str:
+    """What the first of several answers has that the next other one has not, and the reverse."""
+    first, *others = alternatives
+    other = next((names for names in others if names != first), first)
+    sides = (first - other or first, other - first or other)
+    return " from ".join(" with ".join(sorted(side)) for side in sides)
+
+
 def next_sentences(verdict: Verdict) -> tuple[str, ...]:
     """What would make the verdict surer."""
     said = []
     if verdict.verdict is Kind.AMBIGUOUS:
-        names = " from ".join(name_of(verdict.causes[a[0]]) for a in verdict.alternatives[:2])
+        names = _apart([{name_of(verdict.causes[n]) for n in a} for a in verdict.alternatives])
         top = verdict.next_experiment[0] if verdict.next_experiment else None
         if top:
             said.append(f"To tell {names}: {top.programme}.")

@@ -79,3 +79,26 @@ def test_of_low_passed_efforts_the_noise_is_assumed_and_told(arm, columns, write
 def test_of_efforts_as_a_sensor_reads_them_it_is_read_off(arm, columns, write):
     found, _ = drafted(arm, write(columns))
     assert not any("low-passed" in words for words in found.look)
+
+
+def test_one_jump_in_a_log_is_no_noise():
+    """Start and stop of a measured arm at one speed made 6.2 N m of noise of 1.6."""
+    rng = np.random.default_rng(3)
+    torque = 18.0 + 1.5 * rng.standard_normal(234)
+    jerked = torque + np.r_[np.full(9, -20.0), np.zeros(219), np.full(6, -50.0)]
+    sd, how = noise_of(jerked, 0.015, None, effort=True)
+    assert how == "highest octave"
+    assert 0.8 * 1.5 < sd < 1.3 * 1.5  # stretches of 58 rows tell it to a fifth
+
+
+def test_of_a_joint_at_one_speed_positions_drown_no_torque(swing, write):
+    """Beside its line a ramp is noise, in which a draft saw motion up to half the rate."""
+    path, _ = swing
+    rng = np.random.default_rng(6)
+    t = 0.015 * np.arange(190)
+    q, tau = t + 1e-3 * rng.standard_normal(190), 2.0 + 0.1 * rng.standard_normal(190)
+    found, rig = drafted(path, write({"t": t, "q": q, "tau": tau + 0.5 * np.sin(t)}))
+    assert found.mode.startswith("motion")
+    told = rig.description
+    assert told.drive.smoothing < 0.5 / 0.015
+    assert told.signals["drive.effort"].noise < 1.0
