@@ -85,7 +85,7 @@ def test_one_jump_in_a_log_is_no_noise():
     """Start and stop of a measured arm at one speed made 6.2 N m of noise of 1.6."""
     rng = np.random.default_rng(3)
     torque = 18.0 + 1.5 * rng.standard_normal(234)
-    jerked = torque + np.r_[np.full(9, -20.0), np.zeros(219), np.full(6, -50.0)]
+    jerked = torque - np.r_[np.full(29, 60.0), np.zeros(205)]
     sd, how = noise_of(jerked, 0.015, None, effort=True)
     assert how == "highest octave"
     assert 0.8 * 1.5 < sd < 1.3 * 1.5  # stretches of 58 rows tell it to a fifth
