@@ -58,3 +58,11 @@ def spring(before: float, after: float) -> Proved:
 def test_a_law_at_its_place_shakes_a_name_that_takes_little_more(law, one, firm):
     (told,) = shaken((one,), law)
     assert told == replace(one, firm=firm)
+
+
+@pytest.mark.parametrize("law", [LAW, replace(LAW, place="swing")])
+def test_a_name_that_may_be_none_beside_a_law_is_not_firm(law):
+    """Drag of a measured arm was -6 to 34 N m s^2/rad^2 beside a law of that joint's speed."""
+    one = spring(90.0, 8.7)
+    assert shaken((one,), law, ["viscous_friction@slide"]) == (one,)
+    assert shaken((one,), law, [one.label]) == (replace(one, firm=False),)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import replace
 
 from ves_twin.diagnosis.build_up.report import SHAKEN
@@ -11,16 +11,20 @@ from ves_twin.diagnosis.law.result import LawFinding
 from ves_twin.effects.law import joints_of
 
 
-def shaken(proved: Sequence[Proved], law: LawFinding | None) -> tuple[Proved, ...]:
+def shaken(
+    proved: Sequence[Proved], law: LawFinding | None, none_beside: Collection[str] = ()
+) -> tuple[Proved, ...]:
     """What is proved, with no firm name where a law of what is left shakes it.
 
     Unmodelled physics at a joint looks in part like any cause there: hysteresis stiffens, so that a
     cubic spring improves the prediction. A law that a search found there, claimed or not, with a
-    gain on held-out data that is clear of zero, shakes a name from SHAKEN of its amplitude on.
+    gain on held-out data that is clear of zero, shakes a name from SHAKEN of its amplitude on. So
+    does any claimed law beside which a cause may as well be none: it does the cause's work, too.
 
     Args:
         proved: causes, with what each takes from channels on held-out data.
         law: the nearest one of what they leave; None if nobody looked.
+        none_beside: labels of causes that may be none where they were fitted together with it.
     """
     if law is None or not law.part or law.gain is None or (law.gain.low or 0.0) <= 0.0:
         return tuple(proved)
@@ -30,5 +34,6 @@ def shaken(proved: Sequence[Proved], law: LawFinding | None) -> tuple[Proved, ..
         there = {name for name, _ in joints_of(one.target)} <= joints
         before, after = max(one.takes.values(), key=lambda ends: ends[0] ** 2 - ends[1] ** 2)
         more = share * after**2 > SHAKEN**2 * (before**2 - after**2)
-        found.append(replace(one, firm=one.firm and not (there and more)))
+        stands = one.label not in none_beside and not (there and more)
+        found.append(replace(one, firm=one.firm and stands))
     return tuple(found)

@@ -112,7 +112,9 @@ def assemble_verdict(
     components = {p.name for p in parameters if p.component}
     row = _row(findings.seen)
     proved = sized(built, causes, ends, row, components) if built and named else ()
-    proved = driving(shaken(proved, findings.law), {p.name: p.nominal for p in parameters})
+    tuned = _tuned(findings)
+    none = _none_beside(proved, tuned) if findings.beside else ()
+    proved = driving(shaken(proved, findings.law, none), {p.name: p.nominal for p in parameters})
     firm = {one.label: one.firm for one in proved}
     causes = tuple(replace(c, firm=firm.get(f"{c.effect}@{c.target}", c.firm)) for c in causes)
     worse = findings.gain is not None and bool(findings.gain.worse)
@@ -144,7 +146,7 @@ def assemble_verdict(
         residuals=_residuals(findings, exhibit),
         gain=findings.gain,
         forecast=findings.forecast,
-        tuned=_tuned(findings),
+        tuned=tuned,
         leftover=None if kind is Kind.NOTHING else _leftover(findings),
         suspect=suspect,
         rivals=rivals_of(first, found),
@@ -346,6 +348,16 @@ def _tuned(findings: Findings) -> dict[str, Estimate]:
         pull = float(fit.shift[i]) / parameter.sd if parameter.sd > 0.0 else None
         estimates[parameter.name] = Estimate(value, *ends, i in fit.held, pull)
     return estimates
+
+
+def _none_beside(proved: Sequence[Proved], tuned: Mapping[str, Estimate]) -> list[str]:
+    """Labels of causes of which no size is clear of what the model has, beside a law."""
+    found = []
+    for one in proved:
+        sizes = [e for name, e in tuned.items() if name.rpartition(":")[0] == one.label]
+        if sizes and all(e.low <= e.nominal <= e.high for e in sizes):
+            found.append(one.label)
+    return found
 
 
 def _residuals(findings: Findings, exhibit: ReportTraces) -> dict[str, ChannelError]:

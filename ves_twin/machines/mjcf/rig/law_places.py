@@ -64,11 +64,19 @@ def law_places(rig: Rig, channels: Sequence[Channel], mode: Mode) -> tuple[LawPl
 
 
 def _motion(rig: Rig, joint: str) -> tuple[Variable, ...]:
-    """A joint's own position and speed, then those of the others."""
-    model = rig.model
+    """A joint's own position and speed, then those of the others, where a column tells them.
+
+    Of a joint that none tells a simulation alone knows where it is: one that ran away to 54 rad was
+    given a law by which it swung there (a measured arm, its elbow's column left out).
+    """
+    model, told = rig.model, rig.description
+    seen = {*told.drive.joints, *(one.joint for one in told.compare.values())}
+    felt = any(one.sensor for one in told.compare.values())  # which may tell any joint
     names = [model.joint(n).name for n in range(model.njnt) if int(model.jnt_type[n]) in SINGLE]
     found = []
     for name in [joint, *(other for other in names if other != joint)]:
+        if name not in seen and not felt:
+            continue
         position, speed = joint_units(model, name)
         found += [Variable(f"position@{name}", position), Variable(f"speed@{name}", speed)]
     return tuple(found)
