@@ -35,7 +35,6 @@ class LoopState:
     Attributes:
         steps: step of the differences in each coordinate (n,).
         displacements: the coordinates that are displacements of the mechanics.
-        speeds: the coordinates that are their speeds.
 
     Raises:
         InvalidInputError: a controller whose snapshot is not an array.
@@ -58,12 +57,10 @@ class LoopState:
         memory = self._memory(sim.computers.snapshot())
         names += ["memory"] * len(memory)
         self._values = np.concatenate([*self._live, memory])
-        self._memory_size = len(memory)
         size = np.concatenate([np.zeros(rig.model.nv), self._values])
         spool = np.array([name in _SPOOLS for name in names])
         self.steps = np.where(spool, opening, STEP * np.maximum(1.0, np.abs(size)))
         self.displacements = slice(0, rig.model.nv)
-        self.speeds = slice(rig.model.nv, 2 * rig.model.nv)
 
     def jacobian(self, advance: Callable[[], None]) -> FloatArray:
         """Centred differences d(after) / d(before) of one advance of the simulator (n, n)."""
