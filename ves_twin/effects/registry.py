@@ -95,7 +95,7 @@ def kind_on_ves2(name: str) -> type[Effect]:
     return EFFECTS[name]
 
 
-def kind_anywhere(name: str, where: str = "effect") -> type[Effect]:
+def kind_anywhere(name: str) -> type[Effect]:
     """A kind that a machine of an MJCF model can have; an earlier name is understood.
 
     Raises:
@@ -103,7 +103,7 @@ def kind_anywhere(name: str, where: str = "effect") -> type[Effect]:
     """
     name = RENAMED_ANYWHERE.get(name, name)
     if name not in EFFECTS or EFFECTS[name].anywhere is None:
-        raise UnknownNameError(where, name, [k for k, v in EFFECTS.items() if v.anywhere])
+        raise UnknownNameError("effect", name, [k for k, v in EFFECTS.items() if v.anywhere])
     return EFFECTS[name]
 
 

@@ -45,13 +45,13 @@ class LoopState:
         self._sim, self._rest = sim, sim.snapshot()
         self._qpos = rig.data.qpos.copy()
         self._warm = rig.data.qacc_warmstart.copy()
-        names = ["velocity"] * (2 * rig.model.nv)
+        names = ["velocity"] * (2 * rig.model.nv) + ["truth"] * 15
         live = [
             rig.data.qvel,
             rig.data.subtree_com[rig.layout.sensor_body],
             rig.data.site_xpos[rig.layout.sensor_site],
             rig.data.site_xmat[rig.layout.sensor_site],
-            *self._numbers(names, 15),
+            *self._numbers(names),
         ]
         self._live = tuple(live)
         memory = self._memory(sim.computers.snapshot())
@@ -80,9 +80,8 @@ class LoopState:
         self._sim.restore(self._rest)
         return result
 
-    def _numbers(self, names: list[str], truths: int) -> Iterator[FloatArray]:
+    def _numbers(self, names: list[str]) -> Iterator[FloatArray]:
         """Live views of every float of the compiled state and of the board; adds their names."""
-        names += ["truth"] * truths
         late = self._sim.rig.parameters["late"]
         absent = {past for line in PASTS if not late[line]["kept"][0] for past in PASTS[line]}
         for block in (self._sim.rig.state, self._sim.rig.board.block):
