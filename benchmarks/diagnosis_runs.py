@@ -21,13 +21,14 @@ from pathlib import Path
 from types import FrameType
 
 import numpy as np
+from diagnosis_time import drawn
 
 from ves_twin.diagnosis.settings import Settings
 from ves_twin.diagnosis.verdict.verdict import Verdict
 from ves_twin.machines.diagnose import verdict_on
 from ves_twin.machines.ves2 import forward as ves2_forward
 from ves_twin.plant.plant import Plant
-from ves_twin.suites.machine import BlindMachine, BlindRig
+from ves_twin.suites.machine import BlindRig
 from ves_twin.suites.ves2 import BlindVes2
 
 PLANT = "ves2_pressure_fast"
@@ -105,15 +106,6 @@ def _place(frame: FrameType | None) -> tuple[str, str]:
             part = PARTS[name] if name == "with_bends" else part or PARTS.get(name, "")
         frame = frame.f_back
     return stage or "-", part or "-"
-
-
-def drawn(machine: BlindMachine, rig: BlindRig) -> BlindRig:
-    """A rig within its tolerances with what is hidden."""
-    values = machine.commissioned(np.random.default_rng(3))
-    nominal = {p.name: p.nominal for p in machine.forward.parameters}
-    for name, size in rig.values.items():
-        values[name] = values.get(name, nominal[name]) + size
-    return BlindRig(values, rig.outside, rig.size)
 
 
 def used() -> float:

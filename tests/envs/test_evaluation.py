@@ -113,10 +113,6 @@ class _Fails(Policy):
     def __init__(self, answer):
         self.answer = answer
 
-    @classmethod
-    def build(cls, briefing):
-        return cls(None)
-
     def begin(self, observation):
         pass
 

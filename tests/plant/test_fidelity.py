@@ -87,7 +87,7 @@ def test_a_force_pushes_the_platform_by_the_jacobian_of_the_lengths(
         data.ctrl[layout.leg_ctrl] = force
         mujoco.mj_forward(model, data)
         pushed = data.qfrc_actuator[layout.platform_dof :][:6].copy()
-        pushed[3:] = data.site_xmat[layout.top_site].reshape(3, 3) @ pushed[3:]
+        pushed[3:] = data.site("platform/top").xmat.reshape(3, 3) @ pushed[3:]
         expected = fast.geometry.jacobian(pose).T @ force
         np.testing.assert_allclose(pushed, expected, rtol=0, atol=1e-9)  # N, N m of thousands
 

@@ -20,7 +20,7 @@ from ves_twin.thesis.verdict import Verdict
 
 @pytest.fixture(scope="module")
 def context():
-    return Context.nominal()
+    return Context(Plant.load("ves2"))
 
 
 def stroke(context, claim):

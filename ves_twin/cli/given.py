@@ -64,7 +64,7 @@ class Given:
         return self.read_one(name) if name else None
 
 
-def add_machine_options(parser: argparse.ArgumentParser, standstill: bool = True) -> None:
+def add_machine_options(parser: argparse.ArgumentParser) -> None:
     """Options that say which machine was recorded, and how."""
     parser.add_argument(
         "--plant", metavar="FILE", help="the machine: a name, a plant of VES II, an MJCF machine"
@@ -72,10 +72,7 @@ def add_machine_options(parser: argparse.ArgumentParser, standstill: bool = True
     parser.add_argument("--experiment", metavar="FILE", help="how they were made (TOML)")
     parser.add_argument("--data", metavar="DIR", help="folder of recordings, as public data sets")
     parser.add_argument("--map", metavar="MAP", help="which column of a log is which signal (TOML)")
-    if standstill:
-        parser.add_argument(
-            "--standstill", metavar="REC", help="the machine standing still: its noise"
-        )
+    parser.add_argument("--standstill", metavar="REC", help="the machine standing still: its noise")
 
 
 def bank_settings() -> Settings:

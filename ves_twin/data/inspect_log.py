@@ -137,7 +137,7 @@ def _channels(
         low = high = changes = missing = None
         if known is not None and column.name in known.extremes:
             extremes = known.extremes[column.name]
-            low, high, missing = extremes.low, extremes.high, extremes.missing
+            low, high = extremes.low, extremes.high
         elif known is None and column.name in counts:
             low, high, missing, changes = counts[column.name].told()
         name = table.full_name(column.name)

@@ -44,7 +44,3 @@ class Place:
     begin: float = 0.0
     end: float = 1.0
     terms: int = 4
-
-    def pick(self, slide: str, hinge: str) -> str:
-        """One of two units, by the kind of joint."""
-        return hinge if self.hinge else slide

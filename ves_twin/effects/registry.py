@@ -67,12 +67,9 @@ def _problem(loaded: object) -> str | None:
     wrong = lacks(Effect)(loaded)
     if wrong or getattr(loaded, "anywhere", None) is not None:
         return wrong
-    absent = [name for name in _DECLARED if not getattr(loaded, name, None)]
-    whole = getattr(loaded, "rows", ()) and hasattr(loaded, "kind")
-    return f"lacks {', '.join(absent)}" if absent and not whole else None
+    absent = [name for name in ("kind", "sizes", "rows") if not getattr(loaded, name, None)]
+    return f"lacks {', '.join(absent)}" if absent else None
 
-
-_DECLARED = ("kind", "targets", "magnitudes", "channels", "source")
 
 EFFECTS: Registry[type[Effect]] = Registry(
     "ves_twin.effects",
@@ -95,7 +92,7 @@ def kind_on_ves2(name: str) -> type[Effect]:
     return EFFECTS[name]
 
 
-def kind_anywhere(name: str, where: str = "effect") -> type[Effect]:
+def kind_anywhere(name: str) -> type[Effect]:
     """A kind that a machine of an MJCF model can have; an earlier name is understood.
 
     Raises:
@@ -103,7 +100,7 @@ def kind_anywhere(name: str, where: str = "effect") -> type[Effect]:
     """
     name = RENAMED_ANYWHERE.get(name, name)
     if name not in EFFECTS or EFFECTS[name].anywhere is None:
-        raise UnknownNameError(where, name, [k for k, v in EFFECTS.items() if v.anywhere])
+        raise UnknownNameError("effect", name, [k for k, v in EFFECTS.items() if v.anywhere])
     return EFFECTS[name]
 
 

@@ -37,7 +37,6 @@ class CommandedLegs(PlatformController):
 
     def __init__(self, geometry: StewartGeometry, start: FloatArray) -> None:
         self._geometry = geometry
-        self._start = start
         self.motion: PlatformMotion = Hold(start)
         self.hold()
 

@@ -65,13 +65,13 @@ class Policy(abc.ABC):
     """Decides an action from an observation; one object serves many episodes in turn."""
 
     @classmethod
-    @abc.abstractmethod
     def build(cls, briefing: Any) -> Policy:
         """A policy for an environment, by its `briefing()`: a TaskSpec, or a TrialSpec.
 
         Raises:
             InvalidInputError: an environment that it does not fit.
         """
+        return cls(briefing)  # type: ignore[call-arg]  # an __init__ of more: its own build
 
     @abc.abstractmethod
     def begin(self, observation: FloatArray) -> None:

@@ -37,7 +37,6 @@ class Layout:
     wrench_sensor: int
     sensor_site: int
     sensor_body: int
-    top_site: int
 
     @staticmethod
     def of(model: mujoco.MjModel) -> Layout:
@@ -66,7 +65,6 @@ class Layout:
             wrench_sensor=int(model.sensor("force").adr[0]),
             sensor_site=int(model.site("sensor/wrench").id),
             sensor_body=int(model.body("sensor/sensor").id),
-            top_site=int(model.site("platform/top").id),
         )
 
     @property

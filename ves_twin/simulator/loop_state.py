@@ -35,7 +35,6 @@ class LoopState:
     Attributes:
         steps: step of the differences in each coordinate (n,).
         displacements: the coordinates that are displacements of the mechanics.
-        speeds: the coordinates that are their speeds.
 
     Raises:
         InvalidInputError: a controller whose snapshot is not an array.
@@ -46,24 +45,22 @@ class LoopState:
         self._sim, self._rest = sim, sim.snapshot()
         self._qpos = rig.data.qpos.copy()
         self._warm = rig.data.qacc_warmstart.copy()
-        names = ["velocity"] * (2 * rig.model.nv)
+        names = ["velocity"] * (2 * rig.model.nv) + ["truth"] * 15
         live = [
             rig.data.qvel,
             rig.data.subtree_com[rig.layout.sensor_body],
             rig.data.site_xpos[rig.layout.sensor_site],
             rig.data.site_xmat[rig.layout.sensor_site],
-            *self._numbers(names, 15),
+            *self._numbers(names),
         ]
         self._live = tuple(live)
         memory = self._memory(sim.computers.snapshot())
         names += ["memory"] * len(memory)
         self._values = np.concatenate([*self._live, memory])
-        self._memory_size = len(memory)
         size = np.concatenate([np.zeros(rig.model.nv), self._values])
         spool = np.array([name in _SPOOLS for name in names])
         self.steps = np.where(spool, opening, STEP * np.maximum(1.0, np.abs(size)))
         self.displacements = slice(0, rig.model.nv)
-        self.speeds = slice(rig.model.nv, 2 * rig.model.nv)
 
     def jacobian(self, advance: Callable[[], None]) -> FloatArray:
         """Centred differences d(after) / d(before) of one advance of the simulator (n, n)."""
@@ -83,9 +80,8 @@ class LoopState:
         self._sim.restore(self._rest)
         return result
 
-    def _numbers(self, names: list[str], truths: int) -> Iterator[FloatArray]:
+    def _numbers(self, names: list[str]) -> Iterator[FloatArray]:
         """Live views of every float of the compiled state and of the board; adds their names."""
-        names += ["truth"] * truths
         late = self._sim.rig.parameters["late"]
         absent = {past for line in PASTS if not late[line]["kept"][0] for past in PASTS[line]}
         for block in (self._sim.rig.state, self._sim.rig.board.block):

@@ -167,7 +167,7 @@ class BlindMjcf(BlindMachine):
         if programme == "standstill":
             return self._standing(rig, self.programme(programme), rng)
         fed = self.programme(programme, lead)
-        whole = self._measured(rig, fed, rng)
+        whole = self.play(rig, fed, rng)
         first = round(lead / fed.period)
         signals = {name: values[first:] for name, values in whole.signals.items()}
         return replace(whole, time=whole.time[: len(whole.time) - first], signals=signals)
@@ -189,10 +189,6 @@ class BlindMjcf(BlindMachine):
         window = np.sin(np.linspace(0.0, np.pi, len(fed.time)))[:, None] ** 2
         return replace(fed, drive={signal: window * rows for signal, rows in fed.drive.items()})
 
-    def play(self, rig: BlindRig, programme: Excitation, rng: np.random.Generator) -> Recording:
-        """Commands from a given start."""
-        return self._measured(rig, programme, rng)
-
     def _standing(self, rig: BlindRig, fed: Excitation, rng: np.random.Generator) -> Recording:
         """Clamped where it starts: one reading, and noise."""
         of_day = {p.name: p.nominal for p in self.forward.parameters if p.per_recording}
@@ -203,32 +199,33 @@ class BlindMjcf(BlindMachine):
         fed = replace(fed, drive=still)
         return self._recorded(fed, np.tile(first, (len(fed.time), 1)), rig, rng)
 
-    def _measured(self, rig: BlindRig, fed: Excitation, rng: np.random.Generator) -> Recording:
-        """Rows twice as dense where commands are held from row to row, so that delays are finer.
+    def play(self, rig: BlindRig, programme: Excitation, rng: np.random.Generator) -> Recording:
+        """Commands from a given start.
 
-        And where columns have errors of their own: speeds are then those that motion has there. The
+        Rows are twice as dense where commands are held from row to row, so that delays are finer,
+        and where columns have errors of their own: speeds are then those that motion has there. The
         last rows, beyond which a spline knows nothing, differ from the model's by that.
         """
         dense = 2 if self.mode is Mode.CONTROL or rig.errors else 1
-        time = np.asarray(fed.period / dense * np.arange(dense * len(fed.time)), float)
+        time = np.asarray(programme.period / dense * np.arange(dense * len(programme.time)), float)
         held = np.arange(len(time)) // dense
-        drive = {name: rows[held] for name, rows in fed.drive.items()}
+        drive = {name: rows[held] for name, rows in programme.drive.items()}
         for signal in self._moved:
-            drive[signal] = CubicSpline(fed.time, fed.drive[signal])(time)
+            drive[signal] = CubicSpline(programme.time, programme.drive[signal])(time)
         if self.mode is Mode.CONTROL:
-            kicks = lfilter([1.0 - SLOW], [1.0, -SLOW], rng.standard_normal(len(fed.time)))
+            kicks = lfilter([1.0 - SLOW], [1.0, -SLOW], rng.standard_normal(len(programme.time)))
             shaken = np.repeat(DISTURBANCE * kicks / np.sqrt((1.0 - SLOW) / (1.0 + SLOW)), dense)
             pushed = [(name, size) for name, _, size in driven(self.rig) if name not in self._moved]
             for signal, size in pushed:
                 drive[signal] = drive[signal] + size * shaken[:, None]
-        denser = replace(fed, time=time, drive=drive)
+        denser = replace(programme, time=time, drive=drive)
         rows = np.full((len(time), len(self.forward.channels)), np.nan)
         for integrator in INTEGRATORS:
             real = MjcfForward(self._real(rig, integrator), self.mode)
             rows = real.simulate(denser, rig.values)
             if np.all(np.isfinite(rows)):
-                return self._recorded(fed, rows[::dense], rig, rng)
-        came = f"{self.rig.description.name} at half the step fails under {fed.name}"
+                return self._recorded(programme, rows[::dense], rig, rng)
+        came = f"{self.rig.description.name} at half the step fails under {programme.name}"
         raise InvalidInputError("recording", came, "a smaller excitation.amplitude")
 
     def _real(self, rig: BlindRig, integrator: mujoco.mjtIntegrator) -> Rig:

@@ -10,7 +10,7 @@ from shlex import quote
 from typing import Any
 
 from ves_twin.core.recording.recording import Recording
-from ves_twin.plant.plant import NOMINAL, Plant
+from ves_twin.plant.plant import Plant
 from ves_twin.scenario.schema import Scenario
 from ves_twin.simulator.simulate import simulate
 
@@ -47,11 +47,6 @@ class Context:
     models: Models = Models.THESIS
     plant_name: str = ""
     _kept: dict[str, Any] = field(default_factory=dict, repr=False, compare=False)
-
-    @staticmethod
-    def nominal(quick: bool = False) -> Context:
-        """The rig as shipped, the thesis's models."""
-        return Context(Plant.load(NOMINAL), quick)
 
     def run(self, scenario: str, changes: Mapping[str, object] | None = None) -> Run:
         """A scenario with some keys changed, on this plant; run once, then kept.

@@ -3,10 +3,10 @@
 import mujoco
 import numpy as np
 import pytest
+from appendix_g import appendix_g_mass_matrix
 
 from ves_twin.core.errors import InvalidInputError
 from ves_twin.mechanics.kinematics.dh_chain import DhChain, Joint
-from ves_twin.mechanics.planning.appendix_g import appendix_g_mass_matrix
 from ves_twin.mechanics.planning.chain import SerialChain
 from ves_twin.plant.assembly import assemble_free_arm, compile_model
 from ves_twin.plant.puma_chain import PRINTED_INERTIA

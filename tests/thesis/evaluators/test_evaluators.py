@@ -109,9 +109,9 @@ def test_an_evaluation_repeats_to_the_bit_and_has_values_to_compare(claims, nomi
 
 @pytest.mark.slow
 @pytest.mark.timeout(1200)
-def test_every_claim_is_computed_and_its_commands_exist(request):
+def test_every_claim_is_computed_and_its_commands_exist(nominal, request):
     """Without those that are dear; with them and calibrated without a claim in `make nightly`."""
-    context = Context.nominal(quick=True)
+    context = Context(nominal, quick=True)
     nightly = request.config.getoption("--nightly")
     claims = {n: claim for n, claim in load_claims().items() if nightly or n not in DEAR}
     without = plant_without if nightly else lambda claim: None

@@ -30,7 +30,6 @@ class RecordingStream:
 
     def __init__(self, folder: Path, names: tuple[str, ...], info: RecordingInfo) -> None:
         self._folder = folder
-        self._info = info
         self._schema = schema_of(names, info)
         self._path = folder / STREAM_NAME
         try:

@@ -10,6 +10,7 @@ from scipy.signal import coherence, correlate, csd, firwin, oaconvolve
 
 from ves_twin.core.errors import InvalidInputError
 from ves_twin.core.types import FloatArray
+from ves_twin.core.without_line import without_line
 
 ALIKE = 0.6
 """Correlation below which two columns did not see the same motion."""
@@ -117,7 +118,7 @@ def _coarse(
     """Offset to a row, correlation there, and the next peak as a share of it."""
     grid_a = np.arange(a_time[0], a_time[-1], step)
     grid_b = np.arange(b_time[0], b_time[-1], step)
-    x, y = _levelled(np.interp(grid_a, a_time, a)), _levelled(np.interp(grid_b, b_time, b))
+    x, y = without_line(np.interp(grid_a, a_time, a)), without_line(np.interp(grid_b, b_time, b))
     ones_x, ones_y = np.ones(len(x)), np.ones(len(y))
     cross = correlate(y, x, method="fft")
     power = correlate(y**2, ones_x, method="fft") * correlate(ones_y, x**2, method="fft")
@@ -208,8 +209,3 @@ def _sd(tangent: FloatArray, residual: FloatArray, power: float, memory: float) 
     variance = covariance[0] + 2.0 * float(weights[1:] @ covariance[1:])
     floor = 0.1 * covariance[0]
     return float(np.sqrt(max(variance, floor)) / power)
-
-
-def _levelled(values: FloatArray) -> FloatArray:
-    line = np.vander(np.linspace(-1.0, 1.0, len(values)), 2)
-    return np.asarray(values - line @ np.linalg.lstsq(line, values, rcond=None)[0])

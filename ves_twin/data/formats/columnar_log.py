@@ -78,7 +78,7 @@ class ParquetLog(Log):
             if not (told and parts and all(p is not None and p.has_min_max for p in parts)):
                 return None
             low, high = min(p.min for p in parts), max(p.max for p in parts)
-            found[column.name] = Extremes(float(low), float(high), None)
+            found[column.name] = Extremes(float(low), float(high))
         return KnownRanges("the file's own statistics", found)
 
 

@@ -57,11 +57,10 @@ class Table:
 
 @dataclass(frozen=True)
 class Extremes:
-    """Smallest and largest value of a column, and rows without a number (None: not counted)."""
+    """Smallest and largest value of a column."""
 
     low: float
     high: float
-    missing: int | None
 
 
 @dataclass(frozen=True)

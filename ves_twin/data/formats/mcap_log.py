@@ -113,7 +113,7 @@ class McapLog(Log):
         for name, values in block.items():
             good = values[:SAMPLED][np.isfinite(values[:SAMPLED])]
             if len(good):
-                found[name] = Extremes(float(good.min()), float(good.max()), None)
+                found[name] = Extremes(float(good.min()), float(good.max()))
         return KnownRanges(f"first {SAMPLED} messages", found)
 
     def _survey(self, stream: IO[bytes]) -> None:

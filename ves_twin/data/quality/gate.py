@@ -27,11 +27,6 @@ class QualityReport:
         """Checks that found something wrong."""
         return tuple(check for check in self.checks if check.grade is Grade.FAILED)
 
-    @property
-    def doubts(self) -> tuple[Check, ...]:
-        """Checks that could not tell."""
-        return tuple(check for check in self.checks if check.grade is Grade.UNKNOWN)
-
 
 def quality_gate(recording: Recording, weight: float | None = None) -> QualityReport:
     """Clock, values, wiring, units and frames of a recording.

@@ -44,7 +44,3 @@ class Metric:
         factor, lower = self._factor
         along = inner(self.columns, signals)
         return np.asarray(solve_triangular(factor, along, trans=0 if lower else 1, lower=lower))
-
-    def covariance(self) -> FloatArray:
-        """Posterior covariance of the nuisances (k, k), in sd^2."""
-        return np.asarray(cho_solve(self._factor, np.eye(self.columns.shape[1])))

@@ -26,13 +26,11 @@ class Candidate:
         hypothesis: number in the bank's library.
         score: chi^2 that its best scaled signature takes away.
         sizes: the departure that does.
-        entry: which entry of the bank that was.
     """
 
     hypothesis: int
     score: float
     sizes: FloatArray
-    entry: int
 
 
 @dataclass(frozen=True)
@@ -123,7 +121,7 @@ class Screen:
             if len(rows):
                 k = int(rows[np.argmax(score[rows])])
                 sizes = amplitude[k] * self.bank.sizes[k]
-                best.append(Candidate(h, float(score[k]), sizes, k))
+                best.append(Candidate(h, float(score[k]), sizes))
         return sorted(best, key=lambda suspect: -suspect.score)
 
     def pairs(
@@ -152,7 +150,7 @@ class Screen:
                 break
             key = (int(self.bank.owner[i]), int(self.bank.owner[j]))
             if key not in found:
-                first = Candidate(key[0], float(score[i, j]), a[i, j] * self.bank.sizes[i], i)
-                second = Candidate(key[1], float(score[i, j]), a[j, i] * self.bank.sizes[j], j)
+                first = Candidate(key[0], float(score[i, j]), a[i, j] * self.bank.sizes[i])
+                second = Candidate(key[1], float(score[i, j]), a[j, i] * self.bank.sizes[j])
                 found[key] = (first, second)
         return list(found.values())

@@ -114,7 +114,7 @@ class Bench:
             trials: the subset.
             of: a larger one beside which amplitudes are fitted; the subset itself if None.
         """
-        first = len(self.regression.half.shared) + len(self.regression.half.own)
+        first = self.regression.half.fixed
         parts = [np.arange(first), *(self.places[n] for n in (trials if of is None else of))]
         at = np.concatenate(parts).astype(int)
         shares = self._held(at, first)

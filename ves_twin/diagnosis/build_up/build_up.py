@@ -208,6 +208,5 @@ def _explained(desk: FitContext, start: Explanation, final: Fit) -> Explanation:
         adequate=score < desk.thresholds.misfit,
         score=score,
         second=None,
-        before=tuple(before),
         after=tuple(after),
     )

@@ -85,7 +85,6 @@ def judge(desk: FitContext, fits: list[Fit], far: bool = False) -> Explanation:
         score=score,
         second=second,
         allowance=float(allowance),
-        before=tuple(before),
         after=tuple(after),
     )
 

@@ -23,7 +23,7 @@ class Explanation:
         score: largest cell score it leaves.
         second: best score of a further cause beside it; None if nobody looked.
         allowance: chi^2 that may stay of what the best explains.
-        before, after: cells without and with it.
+        after: cells with it.
         alone: fits of single causes, where only two together are adequate.
         hopeless: fits that were given up, under the first whitening.
         far: whether no cause takes HOPE of what is there, nor two of them by the screen.
@@ -39,7 +39,6 @@ class Explanation:
     score: float
     second: float | None
     allowance: float
-    before: tuple[EnergyCell, ...]
     after: tuple[EnergyCell, ...]
     alone: tuple[Fit, ...] = ()
     hopeless: tuple[Fit, ...] = ()

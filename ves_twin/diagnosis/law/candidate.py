@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from abc import ABC, abstractmethod
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
@@ -205,12 +205,6 @@ class Closed(Candidate):
         """Of inner numbers small: a law is not linear in those."""
         sizes = np.concatenate([[True] + [False] * len(inner) for inner in self.inner])
         return np.asarray(np.where(sizes, self.place.step, STEP) * self.sd)
-
-    @property
-    def each(self) -> tuple[Closed, ...]:
-        """Its forms one by one."""
-        pairs = zip(self.forms, self.inner, strict=True)
-        return tuple(replace(self, forms=(form,), inner=(inner,)) for form, inner in pairs)
 
     @property
     def _points(self) -> FloatArray:

@@ -50,14 +50,12 @@ class LawFit:
         fit: departures, residual, posterior, as of a cause; its chi^2 has the law's prior too.
         prior: precision of all coordinates about their prior means, in units of `unit`.
         jacobian: whitened columns of the law's numbers, the nuisances, and the step (samples, k).
-        smoothness: of the prior; None where its numbers are independent.
         log_evidence: Laplace's approximation [nats].
     """
 
     candidate: Candidate | None
     fit: Fit
     jacobian: FloatArray
-    smoothness: Smoothness | None
     log_evidence: float
 
     @cached_property
@@ -312,7 +310,7 @@ class _Fitter:
             local=local,
             prediction=look.prediction,
         )
-        return LawFit(self.candidate, fit, look.jacobian, smoothness, log_evidence)
+        return LawFit(self.candidate, fit, look.jacobian, log_evidence)
 
 
 @dataclass(frozen=True)

@@ -83,7 +83,6 @@ class Search:
         none: commissioning errors alone.
         pool: laws by falling evidence, the chosen one first.
         further: nats of a further law beside the chosen one.
-        ends: ends of every variable in the recordings.
         limits: what was asked for.
     """
 
@@ -91,7 +90,6 @@ class Search:
     none: LawFit
     pool: tuple[LawFit, ...]
     further: float
-    ends: Mapping[str, tuple[float, float]]
     limits: Limits
 
     @property
@@ -197,7 +195,7 @@ def search_laws(
     pool = [*tables, *others, *closed]
     if not any(_quiet(second, none, fit, limits) for fit in _first(pool, 3)):
         pool += stop_laws(second, none, _joints(worth), ends, progress)
-    return _chosen(second, none, pool, smooth, ends, limits, progress)
+    return _chosen(second, none, pool, smooth, limits, progress)
 
 
 def _further(evidence: Evidence, fit: LawFit, ends: Mapping[str, tuple[float, float]]) -> LawFit:
@@ -231,7 +229,7 @@ def resolved(evidence: Evidence, fit: LawFit) -> LawFit:
 
 
 def _quiet(evidence: Evidence, none: LawFit, fit: LawFit, limits: Limits) -> bool:
-    return Search(evidence, none, (fit,), 0.0, {}, limits).leaves_noise(fit)
+    return Search(evidence, none, (fit,), 0.0, limits).leaves_noise(fit)
 
 
 def _tables(
@@ -265,7 +263,6 @@ def _chosen(
     none: LawFit,
     pool: Sequence[LawFit],
     smooth: Sequence[Candidate],
-    ends: Mapping[str, tuple[float, float]],
     limits: Limits,
     progress: Progress,
 ) -> Search:
@@ -276,7 +273,7 @@ def _chosen(
     third = adapted(evidence, kept[0].fit)
     none = _again(third, none)
     again = _refitted(kept, lambda fit: _again(third, fit), progress)
-    found = Search(third, none, tuple(again), 0.0, ends, limits)
+    found = Search(third, none, tuple(again), 0.0, limits)
     lead = again[0].log_evidence - found.allowance(again[0])
     near = [f for f in again if f.log_evidence >= lead and found.leaves_noise(f)]
     best = min(near, key=lambda f: (f.count, -f.log_evidence)) if near else again[0]

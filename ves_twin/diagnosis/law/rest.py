@@ -94,7 +94,7 @@ def search_rest(
     near = [one for one in ranked if one.log_evidence > ranked[0].log_evidence - EQUAL]
     chosen = min(near, key=lambda one: (one.count, -one.log_evidence))
     pool = (chosen, *(one for one in ranked if one is not chosen))
-    search = RestSearch(second, none, pool, 0.0, ends, limits)
+    search = RestSearch(second, none, pool, 0.0, limits)
     return search if search.nats > CLAIM else None
 
 

@@ -28,7 +28,6 @@ class DayFit:
     """One cause in one recording, all commissioning errors fitted beside it.
 
     Attributes:
-        size: most probable departure [unit of the parameter].
         chi2: there, with the pull of all commissioning errors.
         plain: chi^2 of commissioning errors alone, noise as the cause leaves it.
         score: largest cell score that is left.
@@ -37,7 +36,6 @@ class DayFit:
         shared: names of those parameters.
     """
 
-    size: float
     chi2: float
     plain: float
     score: float
@@ -178,4 +176,4 @@ def _told(fit: Fit, evidence: Evidence, plain: float, score: float) -> DayFit:
     weight = information @ point
     information[np.arange(1, len(at)), np.arange(1, len(at))] -= 1.0
     names = tuple(runs.coordinates[int(i)].parameter.name for i in fit.active[shared])
-    return DayFit(float(fit.sizes[0]), fit.chi2, plain, score, information, weight, names)
+    return DayFit(fit.chi2, plain, score, information, weight, names)

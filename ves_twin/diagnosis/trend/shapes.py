@@ -55,10 +55,6 @@ class Shapes:
         ramps = np.maximum(self.days[None] - self.ramps[:, None], 0.0)
         return np.concatenate([steps, ramps])
 
-    def kind(self, column: int) -> Kind:
-        """Of a column."""
-        return Kind.STEP if column < len(self.steps) else Kind.RAMP
-
     def rows(self, kind: Kind) -> slice:
         """Columns of a kind."""
         count = len(self.steps)

@@ -7,18 +7,12 @@ from typing import final
 
 from ves_twin.core.recording.recording import Recording
 from ves_twin.envs.baselines.retuning import Retuning
-from ves_twin.envs.policy import TrialSpec
 from ves_twin.machines.mjcf.rig.machine import Rig
 
 
 @final
 class BelievedRetuning(Retuning):
     """What tuning in simulation gives without looking at an experiment."""
-
-    @classmethod
-    def build(cls, briefing: TrialSpec) -> BelievedRetuning:
-        """For DiagnoseAndRetune."""
-        return cls(briefing)
 
     def twin(self, records: Sequence[Recording]) -> tuple[Rig, Mapping[str, float]]:
         """The believed machine."""

@@ -33,11 +33,6 @@ class Chase(Policy):
             raise InvalidInputError("Chase", "no target", "VesTwin/MicrogravityCapture-v0")
         self._known = briefing
 
-    @classmethod
-    def build(cls, briefing: TaskSpec) -> Chase:
-        """For MicrogravityCapture."""
-        return cls(briefing)
-
     def begin(self, observation: FloatArray) -> None:
         """The base is at rest."""
         self._pose = self._known.observations.split(observation)["platform.pose"].copy()

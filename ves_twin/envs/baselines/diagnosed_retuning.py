@@ -8,7 +8,6 @@ from typing import final
 
 from ves_twin.core.recording.recording import Recording
 from ves_twin.envs.baselines.retuning import Retuning
-from ves_twin.envs.policy import TrialSpec
 from ves_twin.machines.diagnose import diagnose
 from ves_twin.machines.mjcf.mjcf_machine import MjcfMachine
 from ves_twin.machines.mjcf.rig.machine import Rig
@@ -20,11 +19,6 @@ class DiagnosedRetuning(Retuning):
 
     The twin has the causes that are named; where none are, what comes nearest; else nothing.
     """
-
-    @classmethod
-    def build(cls, briefing: TrialSpec) -> DiagnosedRetuning:
-        """For DiagnoseAndRetune."""
-        return cls(briefing)
 
     def twin(self, records: Sequence[Recording]) -> tuple[Rig, Mapping[str, float]]:
         """The extended machine."""

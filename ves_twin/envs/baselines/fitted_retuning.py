@@ -12,7 +12,6 @@ from ves_twin.core.recording.recording import Recording
 from ves_twin.core.types import FloatArray
 from ves_twin.diagnosis.model.forward import Excitation
 from ves_twin.envs.baselines.retuning import Retuning
-from ves_twin.envs.policy import TrialSpec
 from ves_twin.machines.mjcf.motion.forward import MjcfForward
 from ves_twin.machines.mjcf.rig.machine import Rig
 
@@ -32,11 +31,6 @@ class FittedRetuning(Retuning):
     Numbers of the machine are held by their tolerances, sizes of causes by their largest ones,
     starts and zeros of each recording by theirs. No cause is preferred to another.
     """
-
-    @classmethod
-    def build(cls, briefing: TrialSpec) -> FittedRetuning:
-        """For DiagnoseAndRetune."""
-        return cls(briefing)
 
     def twin(self, records: Sequence[Recording]) -> tuple[Rig, Mapping[str, float]]:
         """The believed machine at the fitted values."""

@@ -41,11 +41,6 @@ class InertialDamper(Policy):
         mass = puma_chain(briefing.belief).mass_matrix(np.array(briefing.scenario.arm.start))
         self._gain = GAIN * np.linalg.pinv(mass[:3, 6:], rcond=SMALL) @ mass[:3, :3]
 
-    @classmethod
-    def build(cls, briefing: TaskSpec) -> InertialDamper:
-        """For an environment of the arm on a base."""
-        return cls(briefing)
-
     def begin(self, observation: FloatArray) -> None:
         """The set-points to come back to."""
         self._start = self._known.observations.split(observation)["arm.command"].copy()

@@ -30,11 +30,6 @@ class LagFeedforward(Policy):
         self._lag = 1.0 / briefing.scenario.legs.gain + DELAY
         self._scale = briefing.actions.high
 
-    @classmethod
-    def build(cls, briefing: TaskSpec) -> LagFeedforward:
-        """For PlatformTracking."""
-        return cls(briefing)
-
     def begin(self, observation: FloatArray) -> None:
         """Nothing summed up, legs at rest."""
         self._sum, self._before = np.zeros(6), np.zeros(6)

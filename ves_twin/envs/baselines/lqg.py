@@ -65,11 +65,6 @@ class Lqg(Policy):
         self._correction = spread @ c.T @ np.linalg.inv(c @ spread @ c.T + noise)
         self._a, self._b, self._c = a, b, c
 
-    @classmethod
-    def build(cls, briefing: TaskSpec) -> Lqg:
-        """For an environment of the arm on a base."""
-        return cls(briefing)
-
     def begin(self, observation: FloatArray) -> None:
         """At rest at the first pose."""
         seen = self._known.observations.split(observation)

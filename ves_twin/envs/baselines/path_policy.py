@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import abc
-from typing import Self
 
 import numpy as np
 
@@ -29,11 +28,6 @@ class PathPolicy(Policy, abc.ABC):
         self._briefing = briefing
         self._scale = briefing.actions.high
         self._plan = np.zeros((2, 3))
-
-    @classmethod
-    def build(cls, briefing: TaskSpec) -> Self:
-        """For VibrationFreeReach."""
-        return cls(briefing)
 
     @abc.abstractmethod
     def plan(self, start: FloatArray, goal: FloatArray) -> FloatArray:

@@ -33,11 +33,6 @@ class ResidualFilter(Policy):
         self._scale = briefing.actions.high
         self._keep = float(np.exp(-briefing.step / MEMORY))
 
-    @classmethod
-    def build(cls, briefing: TaskSpec) -> ResidualFilter:
-        """For GravityCompensation."""
-        return cls(briefing)
-
     def begin(self, observation: FloatArray) -> None:
         """No tool, as sure of it as one reading of 1 N makes."""
         self._normal, self._right = 1.0, 0.0

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from enum import StrEnum
-
 import numpy as np
 
 from ves_twin.core.errors import InvalidInputError
@@ -12,52 +10,33 @@ from ves_twin.mechanics.emulated import EmulatedSystem
 from ves_twin.mechanics.planning.chain import SerialChain
 
 
-class CouplingForm(StrEnum):
-    """Which side of the base's own frequencies the motion is on."""
-
-    COMPLIANCE = "compliance"
-    """Slower than the base: it follows the wrench of the joint accelerations, Y = K^-1 W."""
-    MOMENTUM = "momentum"
-    """Faster than the base: momentum is kept, Y = -(M + H_bb)^-1 H_bq dq."""
-
-
 def coupling_matrix(
     chain: SerialChain,
     base: EmulatedSystem,
     q: FloatArray,
-    form: CouplingForm = CouplingForm.COMPLIANCE,
 ) -> FloatArray:
     """Q(q), the sensitivity of the base to strain energy from the arm in a configuration.
 
     The thesis says what Q is for (4.2) and cites Torres (1993) for the matrix itself, which it
     does not print. Here it follows from the equations of motion for small motions and wrenches,
-    (M + H_bb) Y'' + B Y' + K Y = -H_bq q''. In the form `compliance` the base follows the wrench
-    at once, so the strain energy is
+    (M + H_bb) Y'' + B Y' + K Y = -H_bq q''. A base that motion is slow for follows the wrench of
+    the joint accelerations at once, so the strain energy is
 
         E = 1/2 Y' K Y = 1/2 q'' Q q'',   Q = H_bq' K^-1 H_bq   [J s^4/rad^2].
 
-    In the form `momentum` the motion is over before the springs act, so
-
-        E = 1/2 dq Q dq,   Q = D' K D,  D = (M + H_bb)^-1 H_bq   [J/rad^2].
-
     Args:
         chain: the arm.
-        base: the flexible base; its stiffness must be definite in the form `compliance`.
+        base: the flexible base; its stiffness must be definite.
         q: joint angles [rad] (..., n).
-        form: which of the two.
 
     Returns:
         Q (..., n, n), symmetric, positive semi-definite.
 
     Raises:
-        InvalidInputError: a base that can drift, in the form `compliance`.
+        InvalidInputError: a base that can drift.
     """
-    arm = chain.mass_matrix(q)
-    coupling = arm[..., :6, 6:]
+    coupling = chain.mass_matrix(q)[..., :6, 6:]
     stiffness = (base.stiffness + base.stiffness.T) / 2
-    if form is CouplingForm.MOMENTUM:
-        step = np.linalg.solve(arm[..., :6, :6] + base.mass, coupling)
-        return np.asarray(np.swapaxes(step, -1, -2) @ stiffness @ step)
     if np.linalg.cond(stiffness) > 1e12:
         what = f"stiffness of {base.name}"
         raise InvalidInputError(what, "a singular matrix", "a base with a spring on every axis")
@@ -68,9 +47,8 @@ def coupling_length(
     chain: SerialChain,
     base: EmulatedSystem,
     path: FloatArray,
-    form: CouplingForm = CouplingForm.COMPLIANCE,
 ) -> float:
     """Integral of sqrt(dq' Q dq) along a path of joint angles (k, n): the darkness it crosses."""
     steps = np.diff(path, axis=0)
-    q = coupling_matrix(chain, base, (path[1:] + path[:-1]) / 2, form)
+    q = coupling_matrix(chain, base, (path[1:] + path[:-1]) / 2)
     return float(np.sum(np.sqrt(np.maximum(np.einsum("ki,kij,kj->k", steps, q, steps), 0.0))))

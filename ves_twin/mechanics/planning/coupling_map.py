@@ -10,7 +10,7 @@ from ves_twin.core.errors import InvalidInputError
 from ves_twin.core.types import FloatArray
 from ves_twin.mechanics.emulated import EmulatedSystem
 from ves_twin.mechanics.planning.chain import SerialChain
-from ves_twin.mechanics.planning.coupling import CouplingForm, coupling_matrix
+from ves_twin.mechanics.planning.coupling import coupling_matrix
 
 
 @dataclass(frozen=True)
@@ -87,7 +87,6 @@ def coupling_map(
     first: FloatArray,
     second: FloatArray,
     held: FloatArray,
-    form: CouplingForm = CouplingForm.COMPLIANCE,
 ) -> CouplingMap:
     """The coupling map of two joints.
 
@@ -98,7 +97,6 @@ def coupling_map(
         first: rising angles of the first [rad] (a,).
         second: rising angles of the second [rad] (b,).
         held: angles at which all joints are held; those of the two do not count [rad] (n,).
-        form: see `coupling_matrix`.
 
     Raises:
         InvalidInputError: joints that the arm does not have, or fewer than two angles.
@@ -114,7 +112,7 @@ def coupling_map(
             raise InvalidInputError(f"map angles, {name}", list(angles), "two or more, rising")
     q = np.broadcast_to(np.asarray(held, float), (len(first), len(second), chain.joints)).copy()
     q[..., i], q[..., j] = np.asarray(first)[:, None], np.asarray(second)[None, :]
-    matrix = coupling_matrix(chain, base, q, form)[..., [[i, i], [j, j]], [[i, j], [i, j]]]
+    matrix = coupling_matrix(chain, base, q)[..., [[i, i], [j, j]], [[i, j], [i, j]]]
     values, vectors = np.linalg.eigh(matrix)
     low = vectors[..., 0]
     low = low * np.where(low[..., :1] < 0, -1.0, 1.0)

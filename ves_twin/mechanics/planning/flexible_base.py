@@ -84,8 +84,7 @@ class FlexibleBaseArm:
 
     def poles(self) -> ComplexArray:
         """Poles [1/s] by rising magnitude (2 (6 + n),)."""
-        poles = np.linalg.eigvals(self.state_matrix).astype(complex)
-        return np.asarray(poles[np.lexsort((poles.imag, np.abs(poles).round(9)))])
+        return poles_of(self.state_matrix)
 
     def release(self, start: FloatArray, times: FloatArray) -> FloatArray:
         """Motion after a release at rest from a pose of the base, joints at q0.
@@ -114,6 +113,12 @@ def strain_energy(base: EmulatedSystem, poses: FloatArray) -> FloatArray:
     Source: thesis 4.2.
     """
     return np.asarray(0.5 * np.einsum("...i,ij,...j->...", poses, base.stiffness, poses))
+
+
+def poles_of(state_matrix: FloatArray) -> ComplexArray:
+    """Poles [1/s] by rising magnitude (n,)."""
+    poles = np.linalg.eigvals(state_matrix).astype(complex)
+    return np.asarray(poles[np.lexsort((poles.imag, np.abs(poles).round(9)))])
 
 
 def joint_matrix(gains: FloatArray, n: int, what: str) -> FloatArray:

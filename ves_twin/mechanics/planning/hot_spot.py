@@ -13,7 +13,7 @@ from ves_twin.core.errors import InvalidInputError
 from ves_twin.core.types import FloatArray
 from ves_twin.mechanics.emulated import EmulatedSystem
 from ves_twin.mechanics.planning.chain import SerialChain
-from ves_twin.mechanics.planning.coupling import CouplingForm, coupling_matrix
+from ves_twin.mechanics.planning.coupling import coupling_matrix
 from ves_twin.mechanics.planning.timed_path import rounded
 
 REACH = 3
@@ -29,7 +29,6 @@ def hot_spot_path(
     high: FloatArray,
     cells: int = 40,
     straightness: float = 0.1,
-    form: CouplingForm = CouplingForm.COMPLIANCE,
 ) -> FloatArray:
     """Shortest path in the metric of the coupling, on a grid between two configurations.
 
@@ -47,7 +46,6 @@ def hot_spot_path(
         high: largest angle [rad] (n,).
         cells: grid cells along each joint that moves.
         straightness: 0 goes any way round for less coupling; large values go straight.
-        form: see `coupling_matrix`.
 
     Returns:
         Joint angles, evenly spaced along the way [rad] (401, n), from start to end exactly.
@@ -70,7 +68,7 @@ def hot_spot_path(
         for a, b, p, r in zip(low, high, start, end, strict=True)
     ]
     grid = np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1)
-    metric = coupling_matrix(chain, base, grid, form)
+    metric = coupling_matrix(chain, base, grid)
     size = np.trace(metric, axis1=-2, axis2=-1).mean() / chain.joints
     metric += straightness * size * np.eye(chain.joints)
     nodes = grid.reshape(-1, chain.joints)

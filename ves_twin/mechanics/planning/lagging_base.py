@@ -9,7 +9,7 @@ import numpy as np
 from ves_twin.core.errors import InvalidInputError
 from ves_twin.core.types import ComplexArray, FloatArray
 from ves_twin.mechanics.emulated import EmulatedSystem
-from ves_twin.mechanics.planning.flexible_base import JointGains, joint_matrix
+from ves_twin.mechanics.planning.flexible_base import JointGains, joint_matrix, poles_of
 from ves_twin.mechanics.planning.pped import quadratic_integral
 
 
@@ -64,8 +64,7 @@ class LaggingBaseArm:
 
     def poles(self) -> ComplexArray:
         """Poles [1/s] by rising magnitude (24 + 2 n,)."""
-        poles = np.linalg.eigvals(self.state_matrix).astype(complex)
-        return np.asarray(poles[np.lexsort((poles.imag, np.abs(poles).round(9)))])
+        return poles_of(self.state_matrix)
 
     def energy_integral(self, start: FloatArray, until: float) -> float:
         """Integral of 1/2 P' K P after a release at rest from a pose [J s]; inf if unstable.

@@ -82,14 +82,12 @@ class GainSearch:
         at_bounds: names of the gains that ran into a bound, such as "B2"; a measure whose optimum
             lies there does not determine them.
         converged: whether the best start ended by tolerance.
-        evaluations: of the measure, over all starts.
     """
 
     gains: JointGains
     value: float
     at_bounds: tuple[str, ...]
     converged: bool
-    evaluations: int
 
 
 def search_gains(
@@ -143,7 +141,6 @@ def search_gains(
         value=float(best.fun),
         at_bounds=tuple(name for name, is_stuck in zip(names, stuck, strict=True) if is_stuck),
         converged=bool(best.success),
-        evaluations=sum(int(end.nfev) for end in ends),
     )
 
 

@@ -22,14 +22,12 @@ class VirtualManipulator:
     Attributes:
         chain: the arm.
         links: v_k in the base frame at q = 0 [m] (n + 1, 3).
-        link: the link that carries the point, 0 to n.
 
     Source: thesis 4.3.1, B.5, B.6 (after Vafa and Dubowsky 1990); lengths errata E-41.
     """
 
     chain: SerialChain
     links: FloatArray
-    link: int
 
     @staticmethod
     def to(chain: SerialChain, point: FloatArray, link: int) -> VirtualManipulator:
@@ -59,7 +57,7 @@ class VirtualManipulator:
         links -= chain.mass[:, None] / total * (chain.com - joints[:-1])
         links[:link] += spans[:link]
         links[link] += np.asarray(point, float) - joints[link]
-        return VirtualManipulator(chain, links, link)
+        return VirtualManipulator(chain, links)
 
     @staticmethod
     def to_endpoint(chain: SerialChain) -> VirtualManipulator:

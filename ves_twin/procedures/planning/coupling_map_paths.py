@@ -39,7 +39,6 @@ class PathRun:
     """One way from start to end.
 
     Attributes:
-        path: evenly spaced joint angles (k, 3) [rad].
         commands: one a cycle (m, 3) [rad].
         length: in joint space [rad].
         coupling: darkness crossed, the integral of sqrt(dq' Q dq).
@@ -47,7 +46,6 @@ class PathRun:
         energy_linear: by the linear base under joints that follow exactly [J] (m,).
     """
 
-    path: FloatArray
     commands: FloatArray
     length: float
     coupling: float
@@ -101,7 +99,6 @@ class CouplingMapPaths(Procedure):
             commands = timed_path(path, self.duration, CYCLE, self.rest)
             motion = zero_gravity_motion(plant, base, commands, CYCLE)
             found[name] = PathRun(
-                path=path,
                 commands=commands,
                 length=float(path_lengths(path)[-1]),
                 coupling=coupling_length(chain, base, path),

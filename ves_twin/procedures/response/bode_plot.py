@@ -31,12 +31,10 @@ class BodePlot:
             axes.set_xscale("log")
             axes.grid(which="both", alpha=0.3)
 
-    def line(self, response: FrequencyResponse, label: str, colour: str, style: str = "-") -> None:
+    def line(self, response: FrequencyResponse, label: str, colour: str) -> None:
         """Draw a model."""
-        self._gain.plot(response.frequency, response.decibel, style, color=colour, lw=1.2)
-        self._phase.plot(
-            response.frequency, response.degrees, style, color=colour, lw=1.2, label=label
-        )
+        self._gain.plot(response.frequency, response.decibel, color=colour, lw=1.2)
+        self._phase.plot(response.frequency, response.degrees, color=colour, lw=1.2, label=label)
 
     def points(
         self, response: MeasuredResponse, label: str | None, colour: str, marker: str = "o"
@@ -46,9 +44,9 @@ class BodePlot:
         self._gain.plot(response.frequency, response.decibel, **look)
         self._phase.plot(response.frequency, response.degrees, label=label, **look)
 
-    def mark(self, decibel: float) -> None:
-        """A thin line at a level of the gain."""
-        self._gain.axhline(decibel, color="0.5", lw=0.8, ls=":")
+    def mark_bandwidth(self) -> None:
+        """A thin line where the gain has fallen by 3 dB."""
+        self._gain.axhline(-3.0, color="0.5", lw=0.8, ls=":")
 
     def limit(self, lowest: float, highest: float) -> None:
         """Bounds of the gain [dB]."""

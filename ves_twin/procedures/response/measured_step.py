@@ -11,22 +11,23 @@ from ves_twin.simulator.linear.response import StepResponse
 from ves_twin.simulator.simulate import simulate
 
 HEAVE = 2
+HEIGHT = 0.002
+"""Of the step [m]."""
 
 
-def measure_step(plant: Plant, legs: Legs, duration: float, height: float = 0.002) -> StepResponse:
+def measure_step(plant: Plant, legs: Legs, duration: float) -> StepResponse:
     """Step the commanded heave from rest, without noise, and take the mean of the legs.
 
     Args:
         plant: the world.
         legs: gains and filter place.
         duration: after the step [s].
-        height: of the step [m].
 
     Returns:
         Measured length over the commanded step, from the leg cycle of the step on.
     """
     pose = [0.0] * 6
-    pose[HEAVE] = height
+    pose[HEAVE] = HEIGHT
     changes: dict[str, object] = {
         "run.duration": duration,
         "run.log": "leg",

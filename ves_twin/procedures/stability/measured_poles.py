@@ -23,15 +23,19 @@ WEAKEST = 1e-4
 RATE = 150.0
 """Samples that are fitted [Hz]: above twice the highest pole looked for."""
 
+RELEASE = 0.005
+"""Heave from which the rig is released [m]."""
+DURATION = 2.5
+"""Of the run, which a growing motion ends before [s]."""
+ORDER = 14
+"""Number of exponentials that are fitted."""
+
 
 def measure_poles(
     plant: Plant,
     legs: Legs,
     model: AxisModel,
     rate: float,
-    release: float = 0.005,
-    duration: float = 2.5,
-    order: int = 14,
 ) -> ComplexArray:
     """Release the rig in heave under admittance control, gravity known exactly, without noise.
 
@@ -40,9 +44,6 @@ def measure_poles(
         legs: gains and filter place.
         model: emulated base in heave.
         rate: admittance cycles [Hz].
-        release: heave from which it is released [m].
-        duration: of the run, which a growing motion ends before [s].
-        order: number of exponentials fitted.
 
     Returns:
         Poles [1/s] that carry at least WEAKEST of the motion, the strongest first.
@@ -52,19 +53,19 @@ def measure_poles(
         file.write_text(_model_file(model), encoding="utf-8")
         changes: dict[str, object] = {
             "legs": legs.model_dump(mode="json"),
-            "run.duration": duration,
+            "run.duration": DURATION,
             "run.noise": False,
             "run.log": "tick",
             "platform.emulated": str(file),
             "platform.rate": rate,
-            "platform.start": [0.0, 0.0, release, 0.0, 0.0, 0.0],
+            "platform.start": [0.0, 0.0, RELEASE, 0.0, 0.0, 0.0],
         }
         run = simulate(Scenario.load("release_table_5_2", changes), plant)
     heave = run["truth.pose"][:, HEAVE]
     beyond = np.flatnonzero(np.abs(heave) > LARGEST)
     heave = heave[: beyond[0]] if len(beyond) else heave
     every = max(1, round(1.0 / (RATE * run.info.period)))
-    return matrix_pencil(heave[::every], every * run.info.period, order)
+    return matrix_pencil(heave[::every], every * run.info.period, ORDER)
 
 
 def matrix_pencil(values: FloatArray, step: float, order: int) -> ComplexArray:

@@ -16,6 +16,9 @@ from ves_twin.plant.plant import Plant
 _ROD, _SPEED, _HELD, _VALVE, _Z1, _Z2, _B1, _B2, _READING, _POSE, _RATE, _COMMAND = range(12)
 _STATES = 12
 
+LOWEST, HIGHEST = 0.02, 4.0
+"""Ratios of mass to payload that are tried."""
+
 
 @dataclass(frozen=True)
 class OneAxis:
@@ -79,13 +82,13 @@ class OneAxis:
         free = np.argsort(np.abs(multipliers - 1.0))[:2]
         return float(np.log(np.max(np.delete(multipliers, free))) / (period * self.tick))
 
-    def lowest_stable_ratio(self, lowest: float = 0.02, highest: float = 4.0) -> float:
+    def lowest_stable_ratio(self) -> float:
         """Lowest stable ratio of mass to payload; the ends of the range where there is none."""
-        if self.growth(highest) > 0.0:
-            return highest
-        if self.growth(lowest) < 0.0:
-            return lowest
-        below, above = np.log([lowest, highest])
+        if self.growth(HIGHEST) > 0.0:
+            return HIGHEST
+        if self.growth(LOWEST) < 0.0:
+            return LOWEST
+        below, above = np.log([LOWEST, HIGHEST])
         while above - below > 0.002:
             middle = 0.5 * (below + above)
             below, above = (middle, above) if self.growth(np.exp(middle)) > 0 else (below, middle)

@@ -12,6 +12,7 @@ from ves_twin.core.types import FloatArray
 from ves_twin.diagnosis.law.result import LawFinding, LawRival
 from ves_twin.report.colours import AFTER, MEASURED
 from ves_twin.report.diagnosis.basis import rms_words, taken_words
+from ves_twin.report.diagnosis.words import capital
 from ves_twin.report.figure import new_figure, svg
 from ves_twin.report.html import Html, bullets, folded, paragraph, table
 
@@ -56,11 +57,6 @@ def law_sentences(law: LawFinding) -> list[str]:
         said.append("It depends on time: it holds for these recordings, and foretells nothing.")
     said.append(_else(law))
     return said
-
-
-def capital(text: str) -> str:
-    """With a capital first letter."""
-    return text[:1].upper() + text[1:]
 
 
 def _unit(law: LawFinding) -> str:

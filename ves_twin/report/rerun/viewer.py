@@ -59,7 +59,7 @@ def _show(path: Path) -> int:
 
 
 def _serve(path: Path) -> int:
-    data, page = _free_ports(2)
+    data, page = _two_free_ports()
     ports = ["--port", str(data), "--web-viewer-port", str(page)]
     with _viewer([str(path), "--serve-web", "--bind", LOOPBACK, *ports]) as process:
         _await(process, (data, page))
@@ -106,8 +106,8 @@ def _environment() -> dict[str, str]:
     return values | {"CI": "true", "TELEMETRY_ENABLED": "false"}
 
 
-def _free_ports(count: int) -> list[int]:
-    sockets = [socket.socket() for _ in range(count)]
+def _two_free_ports() -> list[int]:
+    sockets = [socket.socket(), socket.socket()]
     try:
         for s in sockets:
             s.bind((LOOPBACK, 0))

@@ -33,7 +33,7 @@ def section(parameters: ParameterTable) -> TransferFunction:
     return TransferFunction(numerator, denominator, period)
 
 
-def leg_actuator(plant: Plant, load: float | None = None) -> StateSpace:
+def leg_actuator(plant: Plant) -> StateSpace:
     """From the speed that the leg controller asks for [m/s] to the length that it measures [m].
 
     A command waits for the next tick of the amplifiers, 0, 1 or 2 ticks in turn, and is held. The
@@ -42,8 +42,7 @@ def leg_actuator(plant: Plant, load: float | None = None) -> StateSpace:
         x(k+1) = Phi x(k) + G1 u(k-1) + G0 u(k).
 
     Args:
-        plant: numbers of valve, oil and clocks.
-        load: mass that the leg moves [kg]; that of a heaving platform if left out.
+        plant: numbers of valve, oil and clocks; a leg moves its share of a heaving platform.
 
     Raises:
         InvalidInputError: amplifiers slower than the leg loop.
@@ -58,7 +57,7 @@ def leg_actuator(plant: Plant, load: float | None = None) -> StateSpace:
     leg, amplifier = (round(table.number(f"clock.{n}_ticks")) for n in ("leg", "amplifier"))
     if amplifier > leg:
         raise InvalidInputError("clock.amplifier_ticks", amplifier, f"at most {leg}, a leg cycle")
-    stage = hydraulic_stage(plant, load_per_leg(plant) if load is None else load)
+    stage = hydraulic_stage(plant, load_per_leg(plant))
     waits = [-k % amplifier for k in range(0, math.lcm(leg, amplifier), leg)]
     size = len(stage.A)
     a, b = np.zeros((size + 1, size + 1)), np.zeros((size + 1, 1))
@@ -73,7 +72,7 @@ def leg_actuator(plant: Plant, load: float | None = None) -> StateSpace:
     return StateSpace(a, b / table.number("hydraulics.full_speed"), c, [[0.0]], leg * tick)
 
 
-def leg_loop(plant: Plant, settings: LegSettings, load: float | None = None) -> StateSpace:
+def leg_loop(plant: Plant, settings: LegSettings) -> StateSpace:
     """From commanded to measured length, closed loop.
 
     u = gain e - rate_gain dL/dt, with the section on the error, on the measured length, or
@@ -83,7 +82,7 @@ def leg_loop(plant: Plant, settings: LegSettings, load: float | None = None) -> 
     """
     from control import StateSpace, feedback
 
-    inner = _with_rate(plant, settings, load)
+    inner = _with_rate(plant, settings)
     filtering = StateSpace(*_section_matrices(plant.actual))
     if settings.place is FilterPlace.ERROR:
         closed = feedback(inner * filtering * settings.gain, 1)
@@ -94,10 +93,10 @@ def leg_loop(plant: Plant, settings: LegSettings, load: float | None = None) -> 
     return closed
 
 
-def _with_rate(plant: Plant, settings: LegSettings, load: float | None) -> StateSpace:
+def _with_rate(plant: Plant, settings: LegSettings) -> StateSpace:
     from control import StateSpace, feedback
 
-    actuator = leg_actuator(plant, load)
+    actuator = leg_actuator(plant)
     period = leg_period(plant.actual)
     gain = settings.rate_gain / period
     rate = StateSpace([[0.0]], [[1.0]], [[-gain]], [[gain]], period)

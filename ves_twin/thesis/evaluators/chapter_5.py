@@ -202,14 +202,14 @@ def _mass_limit(context: Context, place: FilterPlace) -> MassLimit:
 def _error_limit(context: Context, claim: Claim) -> Evaluation:
     limit = _mass_limit(context, FilterPlace.ERROR)
     note = f"whole sampled rig, gain {DEFAULT.gain:g} /s; grows at {limit.frequency:.1f} Hz"
-    return Evaluation((limit.mass / limit.payload,), note=note, runs=(MAP,))
+    return Evaluation((limit.share,), note=note, runs=(MAP,))
 
 
 def _feedback_limit(context: Context, claim: Claim) -> Evaluation:
     error, feedback = (
         _mass_limit(context, place) for place in (FilterPlace.ERROR, FilterPlace.FEEDBACK)
     )
-    note = f"feedback {feedback.mass / feedback.payload:.2f} of the payload, on the structure"
+    note = f"feedback {feedback.share:.2f} of the payload, on the structure"
     return Evaluation((feedback.mass / error.mass,), note=note, runs=(MAP,))
 
 

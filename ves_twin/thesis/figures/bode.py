@@ -68,7 +68,7 @@ def draw_figure_5_2(plant: Plant, folder: Path, quick: bool) -> FigureResult:
     if not quick:
         low = LegSettings.of_counts(LOW, 0, FilterPlace.NONE)
         _draw_points(plot, other_form(plant).with_values(ticks), low, "C0", QUICK, numbers)
-    plot.mark(-3.0)
+    plot.mark_bandwidth()
     plot.limit(-40.0, 10.0)
     png = plot.save(folder / "fig-5-2.png")
     note = f"the high gain is assumed: K1 = {HIGH}; leg cycle {OLD_LEG_TICKS} ticks"
@@ -91,7 +91,7 @@ def draw_figure_5_12(plant: Plant, folder: Path, quick: bool) -> FigureResult:
     if not quick:
         default = LegSettings.of_counts(HIGH, K2, FilterPlace.ERROR)
         _draw_points(plot, other_form(plant), default, "C3", QUICK, numbers)
-    plot.mark(-3.0)
+    plot.mark_bandwidth()
     plot.limit(-60.0, 10.0)
     png = plot.save(folder / "fig-5-12.png")
     title = "Bode plot of platform with filter, K2 = 30000, K1 = 3000 to 30000"

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ves_twin.core.types import ComplexArray, FloatArray
+from ves_twin.core.without_line import without_line
 
 CLEAR = 1.5
 """A coherence so many times what chance gave is one."""
@@ -63,7 +64,7 @@ class Companions:
         self._names = (*own, *(RATE + name for name in own)) if self._told else ()
         self._pieces = self._spectra(every) if self._told else np.zeros((0, 0, 0), complex)
         self._every: dict[str, FloatArray] = dict(zip(self._names, every.T, strict=True))
-        about = _without_line(every)
+        about = without_line(every)
         self._whole = about / np.maximum(np.linalg.norm(about, axis=0), 1e-300)
 
     def rows(self, name: str) -> FloatArray:
@@ -94,7 +95,7 @@ class Companions:
 
     def _together(self, residual: FloatArray, pieces: ComplexArray, turn: int) -> FloatArray:
         """What each column explains: as a filter of it within pieces, or by a factor in all."""
-        rows = np.roll(_without_line(residual), turn * self._length // 2)
+        rows = np.roll(without_line(residual), turn * self._length // 2)
         factor = np.square(rows @ self._whole / max(float(np.linalg.norm(rows)), 1e-300))
         return np.asarray(np.maximum(self._shares(pieces, turn), factor))
 
@@ -105,12 +106,6 @@ class Companions:
         fed = np.mean(np.abs(drive) ** 2, axis=0)
         explained = cross / np.maximum(fed, 1e-9 * fed.max(axis=0))
         return np.asarray(explained.sum(axis=0) / max(float(power.sum()), 1e-300))
-
-
-def _without_line(rows: FloatArray) -> FloatArray:
-    """Rows (n,) or (n, k) less their straight lines: a drift goes along with every slow column."""
-    line = np.vander(np.linspace(-1.0, 1.0, len(rows)), 2)
-    return np.asarray(rows - line @ np.linalg.lstsq(line, rows, rcond=None)[0])
 
 
 def _with_rates(drive: FloatArray) -> FloatArray:
