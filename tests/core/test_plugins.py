@@ -166,10 +166,10 @@ def test_info_names_the_packages_without_loading_them(install, capsys):
 
 STICKY = '''
 from dataclasses import dataclass
+from typing import ClassVar
 
 from ves_twin.effects.effect import LEGS, Effect
-from ves_twin.effects.row import Row
-from ves_twin.effects.size import Size
+from ves_twin.effects.magnitude import Magnitude
 
 
 @dataclass(frozen=True)
@@ -178,9 +178,11 @@ class Sticky(Effect):
 
     length: float = 0.0
 
-    kind = "sticky"
-    sizes = (Size("length", "m"),)
-    rows = (Row(LEGS, (0.0, 1e-3, 0.1), ("leg.length",)),)
+    kind: ClassVar[str] = "sticky"
+    targets: ClassVar[tuple[str, ...]] = LEGS
+    magnitudes: ClassVar[tuple[Magnitude, ...]] = (Magnitude("length", "m", 0.0, 1e-3, 0.1),)
+    channels: ClassVar[tuple[str, ...]] = ("leg.length",)
+    source: ClassVar[str] = "a test"
 
     def edit_loop(self, parameters):
         parameters["transducer"]["home"][self.index] += self.length
@@ -203,9 +205,7 @@ def test_an_installed_effect_acts_like_a_built_in_one(install):
 
 def test_an_installed_effect_that_declares_nothing_is_one_line(install):
     install("bobbing_vague", {"ves_twin.effects": {"vague": "bobbing_vague:Vague"}}, STICKY)
-    with pytest.raises(
-        PluginError, match=r"'vague' of bobbing_vague 1\.2 .* lacks kind, sizes, rows"
-    ):
+    with pytest.raises(PluginError, match=r"'vague' of bobbing_vague 1\.2 .* lacks kind, targets"):
         vt.Simulator(None, vt.Scenario.load("position_sine", {"effects.vague.rig.x": 1.0}), 0)
 
 

@@ -33,7 +33,8 @@ class Effect(ABC):
 
     `sizes` has name, unit and sign of each field; `rows` the targets on VES II and `anywhere` the
     elements of other machines, each with ranges and the one number that is changed. A kind that is
-    more than a change of one number overrides hooks.
+    more than a change of one number overrides hooks. A kind on VES II alone may say `targets`,
+    `magnitudes`, `channels` and `source` in place of `sizes` and `rows`.
 
     A size is a departure from what the machine has: with every size zero a hook must change
     nothing, to the last bit. Effects of one machine add up; it holds one of a kind on a target.
@@ -54,7 +55,9 @@ class Effect(ABC):
     rows: ClassVar[tuple[Row, ...]] = ()
     anywhere: ClassVar[Anywhere | None] = None
     targets: ClassVar[tuple[str, ...]] = ()
-    """All of VES II, those of `rows`."""
+    """All of VES II."""
+    magnitudes: ClassVar[tuple[Magnitude, ...]] = ()
+    channels: ClassVar[tuple[str, ...]] = ()
     source: ClassVar[str] = ""
     proportional: ClassVar[bool] = True
     """Whether its trace on VES II is proportional to its size."""
@@ -63,6 +66,9 @@ class Effect(ABC):
         if cls.rows:
             cls.rows = tuple(replace(row, source=row.source or cls.source) for row in cls.rows)
             cls.targets = tuple(target for row in cls.rows for target in row.targets)
+        elif cls.targets and cls.magnitudes:
+            cls.sizes = tuple(Size(m.name, m.unit, m.sign) for m in cls.magnitudes)
+            cls.rows = (Row(cls.targets, (0.0, 0.0, 0.0), cls.channels, source=cls.source),)
 
     def __post_init__(self) -> None:
         for name, value in self._fields().items():
@@ -88,7 +94,7 @@ class Effect(ABC):
     def magnitudes_of(cls, target: str) -> tuple[Magnitude, ...]:
         """Sizes with unit and range on a target of VES II; raises as `row_of`."""
         row = cls.row_of(target)
-        return tuple(row.magnitude(size) for size in cls.sizes)
+        return cls.magnitudes or tuple(row.magnitude(size) for size in cls.sizes)
 
     @classmethod
     def magnitudes_at(cls, place: Place) -> tuple[Magnitude, ...]:

@@ -67,9 +67,12 @@ def _problem(loaded: object) -> str | None:
     wrong = lacks(Effect)(loaded)
     if wrong or getattr(loaded, "anywhere", None) is not None:
         return wrong
-    absent = [name for name in ("kind", "sizes", "rows") if not getattr(loaded, name, None)]
-    return f"lacks {', '.join(absent)}" if absent else None
+    absent = [name for name in _DECLARED if not getattr(loaded, name, None)]
+    whole = getattr(loaded, "rows", ()) and hasattr(loaded, "kind")
+    return f"lacks {', '.join(absent)}" if absent and not whole else None
 
+
+_DECLARED = ("kind", "targets", "magnitudes", "channels", "source")
 
 EFFECTS: Registry[type[Effect]] = Registry(
     "ves_twin.effects",
