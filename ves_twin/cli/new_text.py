@@ -12,7 +12,7 @@ if TYPE_CHECKING:
 NOTHING = 0.05
 """Share of every column's power below which columns, or the model, may be other ones."""
 
-ONE = "too short for --alternate: causes are proved by every second tenth; another log proves more"
+ONE = "too short for --alternate: causes are proved by every second tenth; --held-out proves more"
 """What is held out of a log in which no stretches are long enough."""
 
 
