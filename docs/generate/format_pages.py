@@ -68,7 +68,7 @@ The first line is a comment: the `question`. The `name` is that of the file. Nei
 `scenarios/` is a good beginning; to change a key or two of one, `ves-twin run NAME --set KEY=VALUE` is enough."""
 
 _HEADS = {
-    "rig": "# Rig\n\nTOML beside a MuJoCo model; worked example in [bring your own rig](../bring-your-own-rig.md). The file begins with"
+    "rig": "# Rig\n\nTOML beside a MuJoCo model; every key in words in [the file of a machine](../machine-file.md). It begins with"
     f' `schema = 1` and `kind = "{KIND}"`, and may name another one as its `base`; the schema is of the rest.',
     "scenario": _SCENARIO,
     "import-map": "# Import map\n\nTOML, read by `ves-twin import --map` and drafted by `ves-twin inspect --draft-map`;"

@@ -6,21 +6,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from joint_states import write_joint_states
 from mcap.writer import Writer
-from mcap_ros2.writer import Writer as Ros2Writer
-
-JOINT_STATE = """std_msgs/Header header
-string[] name
-float64[] position
-================================================================================
-MSG: std_msgs/Header
-builtin_interfaces/Time stamp
-string frame_id
-================================================================================
-MSG: builtin_interfaces/Time
-int32 sec
-uint32 nanosec
-"""
 
 ROS1 = """Header header
 float64 value
@@ -78,18 +65,7 @@ def _ros1(i: int, at: int) -> bytes:
 @pytest.fixture
 def ros2_file(tmp_path):
     """A ROS 2 topic of joint states, its stamps 3 ms before its log times."""
-    path = tmp_path / "ros2.mcap"
-    with path.open("wb") as stream:
-        writer = Ros2Writer(stream)
-        schema = writer.register_msgdef("sensor_msgs/msg/JointState", JOINT_STATE)
-        for i in range(100):
-            at = START + i * 5_000_000
-            stamp = {"sec": (at - 3_000_000) // 10**9, "nanosec": (at - 3_000_000) % 10**9}
-            message = {
-                "header": {"stamp": stamp, "frame_id": "base"},
-                "name": ["a", "b"],
-                "position": [0.1 * i, -0.1 * i],
-            }
-            writer.write_message("/joint_states", schema, message, at, at)
-        writer.finish()
-    return path
+    at = [START + i * 5_000_000 for i in range(100)]
+    turn = [{"position": [0.1 * i, -0.1 * i]} for i in range(100)]
+    messages = ((t, t - 3_000_000, ("a", "b"), fields) for t, fields in zip(at, turn, strict=True))
+    return write_joint_states(tmp_path / "ros2.mcap", messages)

@@ -158,6 +158,6 @@ def test_the_policy_of_the_page_follows_better_than_none(tmp_path):
 
 
 def test_every_kind_of_any_machine_stands_in_the_table_of_its_page():
-    page = (PAGES.parent / "bring-your-own-rig.md").read_text("utf-8")
+    page = (PAGES.parent / "machine-file.md").read_text("utf-8")
     told = set(re.findall(r"`(\w+)`", page.partition("| kind of effect |")[2]))
     assert {name for name in EFFECTS.built_in if EFFECTS[name].anywhere} <= told

@@ -27,6 +27,7 @@ class ChannelReport:
         low, high: its range; None where it holds no numbers.
         missing: rows without a number; None where not counted.
         changes: share of the rows whose value differs from the row before; None: not counted.
+        said: what the file calls it beside its name; empty: nothing.
     """
 
     name: str
@@ -36,6 +37,7 @@ class ChannelReport:
     high: float | None
     missing: int | None
     changes: float | None
+    said: str = ""
 
 
 @dataclass(frozen=True)
@@ -141,7 +143,8 @@ def _channels(
         elif known is None and column.name in counts:
             low, high, missing, changes = counts[column.name].told()
         name = table.full_name(column.name)
-        found.append(ChannelReport(name, column.unit, column.kind, low, high, missing, changes))
+        counted = low, high, missing, changes
+        found.append(ChannelReport(name, column.unit, column.kind, *counted, column.said))
     return tuple(found)
 
 

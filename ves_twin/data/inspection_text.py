@@ -64,7 +64,7 @@ def _channel(channel: ChannelReport, table: TableReport, width: int) -> str:
     head = f"{channel.name:<{width}}  {channel.unit or '?':<8}"
     if channel.low is None or channel.high is None:
         return f"{head}  {'no numbers' if channel.kind.value != 'text' else 'text'}"
-    notes = []
+    notes = [channel.said] if channel.said else []
     if channel.missing:
         notes.append(f"{channel.missing} missing")
     if channel.low == channel.high:

@@ -5,6 +5,7 @@ import sys
 import numpy as np
 import pytest
 from google.protobuf.timestamp_pb2 import Timestamp
+from joint_states import write_joint_states
 from mcap_protobuf.writer import Writer as ProtobufWriter
 
 from ves_twin.core.errors import InvalidInputError, VesTwinError
@@ -13,6 +14,7 @@ from ves_twin.data.formats.message_fields import number_at, number_paths
 from ves_twin.data.formats.open_log import open_log
 from ves_twin.data.formats.ros1_messages import ros1_decoder
 from ves_twin.data.inspect_log import inspect_log
+from ves_twin.data.inspection_text import inspection_text
 
 
 def test_json_topics_have_their_numbers_and_three_times(mcap_file):
@@ -38,6 +40,25 @@ def test_ros_2_messages_are_decoded(ros2_file):
     found = log.read("/joint_states", ["log_time", "header.stamp", "position[1]"])
     assert np.allclose(found["log_time"] - found["header.stamp"], 0.003, atol=1e-12)
     assert np.allclose(found["position[1]"], -0.1 * np.arange(100))
+
+
+def test_joint_states_are_called_by_their_joints_whatever_their_order(tmp_path):
+    """Several nodes may publish on one topic, each the joints that it knows."""
+    told = [(("a", "b"), [1.0, 2.0]), (("b", "a"), [4.0, 3.0]), (("b", "c"), [6.0, 7.0])] * 30
+    messages = (
+        (10**15 + i * 5_000_000, 10**15, names, {"position": values})
+        for i, (names, values) in enumerate(told)
+    )
+    path = write_joint_states(tmp_path / "joints.mcap", messages)
+    log = open_log(path)
+    said = {c.name: c.said for c in log.table("/joint_states").columns}
+    assert said["position[0]"] == "a.position"
+    assert said["position[1]"] == "b.position"
+    assert said["header.stamp"] == said["log_time"] == ""
+    found = log.read("/joint_states", ["position[0]", "position[1]"])
+    assert np.array_equal(found["position[0]"], [1.0, 3.0, np.nan] * 30, equal_nan=True)
+    assert np.array_equal(found["position[1]"], [2.0, 4.0, 6.0] * 30)
+    assert "b.position" in inspection_text(inspect_log(log))
 
 
 def test_ros_1_messages_are_decoded_without_running_their_definition(mcap_file):

@@ -29,11 +29,19 @@ class Kind(StrEnum):
 
 @dataclass(frozen=True)
 class Column:
-    """One column: its name, and the unit that the file gives it (empty: none)."""
+    """One column.
+
+    Attributes:
+        name: as a map names it.
+        unit: that the file gives it; empty: none.
+        kind: of what it holds.
+        said: what the file calls it otherwise: a joint beside a place in an array; empty: nothing.
+    """
 
     name: str
     unit: str = ""
     kind: Kind = Kind.NUMBER
+    said: str = ""
 
 
 @dataclass(frozen=True)

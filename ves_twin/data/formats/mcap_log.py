@@ -19,7 +19,13 @@ from ves_twin.core.types import FloatArray
 from ves_twin.data.formats.limits import Limits
 from ves_twin.data.formats.log import Block, Column, Extremes, KnownRanges, Log, Table
 from ves_twin.data.formats.message_fields import Path as FieldPath
-from ves_twin.data.formats.message_fields import long_arrays, number_at, number_paths, path_name
+from ves_twin.data.formats.message_fields import (
+    element_names,
+    long_arrays,
+    number_at,
+    number_paths,
+    path_name,
+)
 from ves_twin.data.formats.ros1_messages import ros1_decoder
 
 try:
@@ -56,11 +62,41 @@ DECODED = "JSON, protobuf, ROS 2 (cdr with ros2msg) and ROS 1 (ros1msg)"
 
 @dataclass(frozen=True)
 class _Topic:
-    """One channel of the file: its id, its decoder, and the fields that are numbers."""
+    """One channel of the file.
+
+    Attributes:
+        id: of the channel.
+        decode: its decoder.
+        paths: fields that are numbers, by their names.
+        elements: what its first message calls the elements of its arrays.
+    """
 
     id: int
     decode: Callable[[bytes], Any] | None
     paths: dict[str, FieldPath]
+    elements: tuple[str, ...] = ()
+
+    def said(self, column: str) -> str:
+        """Element and field of an array's number: "elbow.position" is position[1]."""
+        match self.paths[column]:
+            case (str(field), int(number)) if number < len(self.elements):
+                return f"{self.elements[number]}.{field}"
+        return ""
+
+    def placed(self, message: Any) -> Callable[[FieldPath], FieldPath]:
+        """Where paths of the first message lie in another one, which may name others, or fewer."""
+        names = element_names(message) if self.elements else ()
+        if names == self.elements:
+            return lambda path: path
+        at = {name: number for number, name in enumerate(names)}
+
+        def moved(path: FieldPath) -> FieldPath:
+            match path:
+                case (str(field), int(number)) if number < len(self.elements):
+                    return field, at.get(self.elements[number], MANY)
+            return path
+
+        return moved
 
 
 class McapLog(Log):
@@ -224,7 +260,9 @@ class McapLog(Log):
             topic = self._with_fields(topic, name)
         self._topics[name] = topic
         columns = [Column(LOG, "s"), Column(PUBLISH, "s")]
-        columns += [Column(n, "s" if n.endswith("stamp") else "") for n in topic.paths]
+        columns += [
+            Column(n, "s" if n.endswith("stamp") else "", said=topic.said(n)) for n in topic.paths
+        ]
         return Table(name, tuple(columns), self._counts.get(channel.id, 0))
 
     def _decoder(
@@ -265,7 +303,7 @@ class McapLog(Log):
                 words = f"{name}: more than {WIDEST} numbers a message, left out"
                 self.note_fault(f"{name} numbers", words)
                 paths = {}
-            return _Topic(topic.id, topic.decode, paths)
+            return _Topic(topic.id, topic.decode, paths, element_names(decoded))
         return topic
 
     def _decoded(self, topic: _Topic, message: Message) -> Any:
@@ -288,10 +326,11 @@ class McapLog(Log):
             decoded = self._decoded(topic, message)
             if decoded is None:
                 return None
+        placed = topic.placed(decoded)
         return [
             (times[c] - self.origin) * 1e-9
             if c in times
-            else number_at(decoded, topic.paths[c], self.origin)
+            else number_at(decoded, placed(topic.paths[c]), self.origin)
             for c in columns
         ]
 

@@ -38,6 +38,14 @@ def long_arrays(message: Any, before: Path = ()) -> Iterator[Path]:
             yield from long_arrays(value, path)
 
 
+def element_names(message: Any) -> tuple[str, ...]:
+    """What a message calls the elements of its arrays, as joint states do; () if it does not."""
+    names: Any = next((value for key, value in fields_of(message) if key == "name"), ())
+    if not _is_array(names) or not all(isinstance(one, str) for one in names):
+        return ()
+    return tuple(names) if len(set(names)) == len(names) <= MOST else ()
+
+
 def path_name(path: Path) -> str:
     """A path as text."""
     text = "".join(f"[{part}]" if isinstance(part, int) else f".{part}" for part in path)

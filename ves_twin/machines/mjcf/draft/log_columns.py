@@ -61,6 +61,7 @@ class LogColumns:
         notes: what a reader of the draft should know, a sentence each.
         window: first and last time of the rows that are used [s]; None: all.
         logged: column -> the same rows as they stand in the log, whatever its steps.
+        called: column -> what the file calls it beside its name; of those that it does.
     """
 
     file: str
@@ -74,6 +75,7 @@ class LogColumns:
     notes: tuple[str, ...]
     window: tuple[float, float] | None = None
     logged: Mapping[str, FloatArray] = field(default_factory=dict)
+    called: Mapping[str, str] = field(default_factory=dict)
 
     @property
     def rows(self) -> int:
@@ -82,8 +84,8 @@ class LogColumns:
 
     @cached_property
     def said(self) -> Mapping[str, str]:
-        """What the name of each column says."""
-        return said(self.values)
+        """What the name of each column says, or what the file calls it."""
+        return {**said(self.values), **self.called}
 
     def column(self, text: str) -> FloatArray:
         """Rows (n,) of a column, or of a formula of columns as a machine's file may hold one."""
@@ -214,7 +216,8 @@ def _sorted(
             expected += " messages exports them, are put on one clock by ves-twin import --map"
         raise InvalidInputError(f"columns of {path.name}", came or "none", expected)
     told = tuple(constant), tuple(empty), tuple(notes)
-    return LogColumns(path.name, clock, scale, period, values, units, *told, window, used)
+    called = {c.name: c.said for c in columns if c.said and c.name in values}
+    return LogColumns(path.name, clock, scale, period, values, units, *told, window, used, called)
 
 
 def _few(names: list[str]) -> str:

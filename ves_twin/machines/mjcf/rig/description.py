@@ -281,7 +281,7 @@ class MultisineRange(Part):
 
 
 class RigDescription(Part):
-    """The whole file, see docs/bring-your-own-rig.md.
+    """The whole file, see docs/machine-file.md.
 
     `rate` is that of the analysis. Where positions are fed in and efforts compared, it follows from
     `drive.smoothing` if the file says none: `smoothing` takes from the motion what it does not from
