@@ -239,8 +239,7 @@ def _text(found: Diagnosis, folder: Path) -> str:
         lines += [f"  {text}" for text in inseparable_lines(verdict)]
     width = _width(verdict)
     head = f"  {'channel':<{width}}    before     tuned     after"
-    lines += ["", f"{head}   (rms, in the channel's unit;"]
-    lines += [f"{'':{len(head) + 3}}tuned: by tolerances alone)"]
+    lines += ["", f"{head}   (rms error; tuned: by tolerances alone)"]
     for name, error in verdict.residuals.items():
         tuned = error.after_si if error.tolerances_si is None else error.tolerances_si
         numbers = "".join(f"{e:10.3g}" for e in (error.before_si, tuned, error.after_si))
@@ -263,8 +262,8 @@ def held_out_table(verdict: Verdict) -> list[str]:
     beside = law.gain if law is not None and law.claimed and law.part else None
     width = _width(verdict)
     head = f"  {'held out':<{width}}    before     tuned     after"
-    lines = ["", f"{head}{'  with law' * (beside is not None)}   (all fitted elsewhere;"]
-    lines += [f"{'':{len(head) + 3}}the gain allows for what is new in each)"]
+    law_too = "  with law" * (beside is not None)
+    lines = ["", f"{head}{law_too}   (rms error; nothing was fitted to these data)"]
     for name, (tuned, after) in gain.errors.items():
         ends = [gain.given.get(name, math.nan), tuned, after]
         if beside is not None:
