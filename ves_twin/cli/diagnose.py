@@ -263,7 +263,7 @@ def held_out_table(verdict: Verdict) -> list[str]:
     width = _width(verdict)
     head = f"  {'held out':<{width}}    before     tuned     after"
     law_too = "  with law" * (beside is not None)
-    lines = ["", f"{head}{law_too}   (rms error; nothing was fitted to these data)"]
+    lines = ["", f"{head}{law_too}   (rms error; fitted elsewhere, but for each start)"]
     for name, (tuned, after) in gain.errors.items():
         ends = [gain.given.get(name, math.nan), tuned, after]
         if beside is not None:
