@@ -108,7 +108,9 @@ def _descended(evidence: Evidence, fit: Fit) -> FloatArray | None:
         return np.concatenate([z - columns @ (there - here), there])
 
     def left(sizes: FloatArray) -> FloatArray:
-        """What sizes leave, in their units."""
+        """What sizes leave, in their units; nan where slopes beyond all bounds led to no sizes."""
+        if not np.all(np.isfinite(sizes)):
+            return np.full(len(columns) + len(sd), np.nan)
         return beside(runs.one(at(sizes)))
 
     def slopes(sizes: FloatArray) -> FloatArray:

@@ -113,7 +113,8 @@ def chosen(
     noise = _noise(log, check, positions)
     if shaken:
         return _of_base(log, check, model, noise, shaken)
-    driven = {m.spot.joint for m in efforts if _is_plain(m, model)}
+    pushed = [m.spot.joint for m in efforts if _is_plain(m, model)]
+    driven, together = set(pushed), sorted({j for j in pushed if pushed.count(j) > 1})
     single = {model.joint(i).name for i in single_joints(model)} - {*check.locked}
     unknown = _moved_by(model) & single - {m.spot.joint for m in efforts}
     told = {m.spot.name for m in positions}
@@ -124,10 +125,13 @@ def chosen(
     if felt:
         moved_by = [m for m in positions if m.spot.name in felt]
         return _of_loops(log, moved_by, drives, model, noise, felt)
-    whole = check.motion is not None and single <= told and wide == len(single)
+    whole = check.motion is not None and single <= told and wide == len(single) and not together
     if not whole or driven | unknown != single or not driven:
         free = sorted(single - driven)
         why = f"no effort is told at {', '.join(free)}" if free else "not every position is told"
+        if together:
+            why = f"of what pushes {', '.join(together)} a motion tells the sum alone; write that"
+            why += ' sum as the column of one actuator (columns = ["a + b"]), and it is compared'
         return Chosen(Mode.CONTROL, why, RATES[1], check.corner, noise, imposed=imposed)
     positions = [m for m in positions if m.spot.name in driven]
     why = "every joint has a position and an effort"

@@ -1,4 +1,4 @@
-"""as_commanded: electrical columns taken as the model's own commands, in place of fitted ones."""
+"""as_commanded: columns with a constant taken as the model's own commands, not by a fitted one."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ def as_commanded(check: Checked) -> Checked | None:
     findings = [
         words
         for words in check.findings
-        if not any(words.startswith(f"{name} is electrical") for name in fitted)
+        if not any(words.startswith(f"{name} is {m.kind}") for name, m in fitted.items())
     ]
     findings += [
         f"{name} is taken as the command of {m.spot.label} as the model has it: simulated, that"

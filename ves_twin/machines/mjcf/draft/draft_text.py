@@ -188,7 +188,7 @@ def _signal(group: list[Match], mode: Chosen) -> str:
     first = group[0]
     keys = {"columns": json.dumps([m.column for m in group], ensure_ascii=False)}
     known = first.unit in SI_UNITS or first.unit in LAB_UNITS
-    keys["unit"] = _quoted(first.unit if known and not first.electrical else first.spot.unit)
+    keys["unit"] = _quoted(first.unit if known and not first.indirect else first.spot.unit)
     if first.scale != 1.0:
         keys["scale"] = f"{first.scale:g}"
     own = first.zero * first.scale / first.factor  # in the column's unit, as homes are

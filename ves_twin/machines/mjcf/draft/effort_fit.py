@@ -33,6 +33,9 @@ its joint, whatever a model says that lacks it. A pendulum that is swung up has 
 SPEED = 0.999
 """Share that friction alone explains of a column which is a speed, and no effort."""
 
+TURNS = 0.1
+"""Share of the rows in which a joint must move each way for a constant load to be told: assumed."""
+
 FAR = 3.0
 """Factor between an effort and the model's from which on it is told."""
 
@@ -129,8 +132,9 @@ class EffortFit:
         for basis in (whole, friction):
             rest = y - basis @ np.linalg.lstsq(basis, y, rcond=None)[0]
             shares.append(max(1.0 - float(rest @ rest) / power, 0.0))
-        most = float(np.linalg.norm(speed) * np.linalg.norm(y)) or 1.0
-        gain, work = shares[0] - shares[1], float(speed @ y) / most
+        moving = y - carried(y, speed)
+        most = float(np.linalg.norm(speed) * np.linalg.norm(moving)) or 1.0
+        gain, work = shares[0] - shares[1], float(speed @ moving) / most
         loads = float(slopes[0] * need.mean()), float(y.mean())
         heavy = min(map(abs, loads)) > LOADED * float(np.sqrt(np.mean(y**2)))
         against = gain > TELLS and heavy and loads[0] * loads[1] < 0.0
@@ -141,6 +145,17 @@ class EffortFit:
         pushes = bool(rubbed < -WORKS * most)
         told = float(slopes[0]), shares[0], gain, work, free, against, size, alone, pushes
         return EffortFit(*told)
+
+
+def carried(effort: FloatArray, speed: FloatArray) -> float:
+    """A constant load in an effort (m,), of a joint that turns round: else friction is one, too.
+
+    It does work where a log ends elsewhere than it began, and tells no sign (air on a piston: 245 N
+    beside 6 N of friction).
+    """
+    if min(np.mean(speed > 0.0), np.mean(speed < 0.0)) < TURNS:
+        return 0.0
+    return float(np.linalg.lstsq(friction_columns(speed), effort, rcond=None)[0][2])
 
 
 def friction_columns(speed: FloatArray) -> FloatArray:

@@ -19,6 +19,7 @@ from ves_twin.machines.mjcf.draft.effort_fit import (
     STRONG,
     TELLS,
     EffortFit,
+    carried,
 )
 from ves_twin.machines.mjcf.draft.late import Pushed, words_of_lag
 from ves_twin.machines.mjcf.draft.log_columns import LogColumns
@@ -204,7 +205,7 @@ class Judge:
             driven.add(dof)
             total += fit.share - TURN * (fit.sign < 0) - LOADED * fit.against
             total += SOUND * (fit.usable and fit.slope > 0.0 and not fit.free)
-            if not match.electrical and fit.gain > STRONG and fit.slope:
+            if not match.indirect and fit.gain > STRONG and fit.slope:
                 total -= OFF * min(abs(float(np.log10(abs(fit.slope)))), 3.0)
         still = {int(self.model.joint(name).dofadr[0]) for name in self.locked}
         for dof in set(range(self.model.nv)) - driven - self.pushed(found) - still:
@@ -256,7 +257,7 @@ class Judge:
                 self.smooth(m),
                 self.needed(m, motion),
                 motion.speed[:, self.dof(m)],
-                m.electrical,
+                m.indirect,
             )
             for m in self.driving(found)
         ]
@@ -268,7 +269,7 @@ class Judge:
         speed = motion.speed[:, dof]
         brakes = self.model.dof_damping[dof] * speed
         brakes = brakes + self.model.dof_frictionloss[dof] * np.sign(speed)
-        return EffortFit.of(y, need, speed, match.electrical, brakes / self.gain(match))
+        return EffortFit.of(y, need, speed, match.indirect, brakes / self.gain(match))
 
     def along(self, found: list[Match], motion: Motion) -> Iterator[tuple[Match, FloatArray]]:
         """Each effort that acts on one joint, with what it is there (m,)."""
@@ -277,12 +278,12 @@ class Judge:
 
     def power(self, found: list[Match], motion: Motion) -> float:
         """Mean of what all efforts give to their joints [W]: what friction takes, so above 0."""
-        rows = (motion.speed[:, self.dof(m)] * effort for m, effort in self.along(found, motion))
-        return sum(float(np.mean(row)) for row in rows)
+        pairs = ((motion.speed[:, self.dof(m)], y) for m, y in self.along(found, motion))
+        return sum(float(np.mean(speed * (y - carried(y, speed)))) for speed, y in pairs)
 
     def rough(self, found: list[Match], motion: Motion) -> list[str]:
         """Joints at which the model has more friction than what was measured."""
-        measured = (pair for pair in self.along(found, motion) if not pair[0].electrical)
+        measured = (pair for pair in self.along(found, motion) if not pair[0].indirect)
         along = {m.spot.joint: (effort, motion.speed[:, self.dof(m)]) for m, effort in measured}
         return too_much_friction(self.model, along)
 
@@ -293,13 +294,13 @@ class Judge:
             if match not in self.driving(found):
                 continue
             fit = self.fit(match, motion)
-            if match.electrical and (fit.gain > TELLS or self.log.is_coarse(match.column)):
+            if match.indirect and (fit.gain > TELLS or self.log.is_coarse(match.column)):
                 found[i], words = self.constant(match, fit, motion, found)
                 said += words
                 continue
             if match.fitted:
-                told = f"{match.column} is electrical: {match.constant}"
-                said.append(f"{told}; put the motor's constant there")
+                told = f"{match.column} is {match.kind}: {match.constant}"
+                said.append(f"{told}; put {match.asked} there")
             turns = fit.sign < 0 and (fit.by_slope or self.power(found, motion) <= 0.0)
             if fit.sign < 0 and not (turns or fit.strange):
                 said.append(
@@ -336,8 +337,8 @@ class Judge:
         how += self.by_inertia(match, motion)
         new = replace(match, scale=float(f"{scale:.3g}"))
         said = [
-            f"{match.column} is electrical: {abs(scale):.3g} {unit} makes it fit this model{how};"
-            " put the motor's constant there"
+            f"{match.column} is {match.kind}: {abs(scale):.3g} {unit} makes it fit this model{how};"
+            f" put {match.asked} there"
         ]
         others = [new if m is match else m for m in found]
         return new, [*said, *other_angle(self.log, others, match.spot.joint, scale, unit)]

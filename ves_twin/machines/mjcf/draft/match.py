@@ -15,8 +15,9 @@ from ves_twin.data.formats.unit_names import bare_name, spelled
 from ves_twin.data.mapping.column_expression import quoted
 from ves_twin.machines.mjcf.draft.log_columns import LogColumns
 from ves_twin.machines.mjcf.draft.names import (
-    ELECTRICAL,
     ENOUGH,
+    INDIRECT,
+    PRESSURES,
     Likeness,
     called,
     implied_unit,
@@ -60,15 +61,25 @@ class Match:
     zero: float = 0.0
 
     @property
-    def electrical(self) -> bool:
+    def indirect(self) -> bool:
         """Whether a constant that no unit tells stands between the column and the spot."""
         effort = self.spot.quantity is Quantity.EFFORT
-        return effort and self.told and self.unit in ELECTRICAL and self.spot.unit != self.unit
+        return effort and self.told and self.unit in INDIRECT and self.spot.unit != self.unit
+
+    @property
+    def kind(self) -> str:
+        """What such a column is, for people."""
+        return "a pressure" if self.unit in PRESSURES else "electrical"
+
+    @property
+    def asked(self) -> str:
+        """What its constant is on the machine."""
+        return "the piston's area" if self.unit in PRESSURES else "the motor's constant"
 
     @property
     def fitted(self) -> bool:
         """Whether that constant is one that the log gave, and no model's own command."""
-        return self.electrical and not (self.spot.unit == "1" and abs(self.scale) == self.prefix)
+        return self.indirect and not (self.spot.unit == "1" and abs(self.scale) == self.prefix)
 
     @property
     def constant(self) -> str:
@@ -90,7 +101,7 @@ class Match:
     @property
     def factor(self) -> float:
         """What the column is multiplied with to give the spot's number in SI."""
-        if self.electrical or LAB_UNITS.get(self.unit, self.unit) != self.spot.unit:
+        if self.indirect or LAB_UNITS.get(self.unit, self.unit) != self.spot.unit:
             return self.scale
         return self.scale * to_unit(self.unit, self.spot.unit, self.column)[0]
 

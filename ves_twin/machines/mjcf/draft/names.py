@@ -21,6 +21,7 @@ SPEED = (
 EFFORT = (
     "tau torque trq tq force f fx u effort load moment current i iq isq cur amp volt voltage vm pwm"
     " duty drive motor control ctrl command input kraft drehmoment strom motorstrom spannung"
+    " pressure druck"
 )
 MECHANICAL = "tau torque trq tq force effort load moment kraft drehmoment"
 KIND_WORDS = {
@@ -64,6 +65,8 @@ PLAIN_COMMANDS = frozenset(["pwm", "duty", "ctrl", "control", "input", "u", "ste
 """Words of what a controller puts out, beside those of what it asks for."""
 
 ELECTRICAL = frozenset({"V", "mV", "A", "mA", "%", "counts", "W", "1"})
+PRESSURES = frozenset({"Pa", "kPa", "MPa", "bar", "psi"})
+INDIRECT = ELECTRICAL | PRESSURES
 """Units of what drives an actuator when it is no effort: a constant stands between."""
 
 EFFORTS = frozenset({"N", "N*m", "kN", "mN*m", "cN*m", "rad", "m", "rad/s", "m/s"})
@@ -143,7 +146,7 @@ def likeness(column: str, unit: str, spot: Spot, only: bool, zero: bool) -> Like
     placed = KIND_WORDS[Quantity.POSITION] & words - AXES
     if spelled(unit) == "counts" and (placed or not KIND_WORDS[Quantity.EFFORT] & words):
         return None  # an encoder has counts, too
-    foreign = spelled(unit) in ELECTRICAL and spot.unit not in {"1", spelled(unit)}
+    foreign = spelled(unit) in INDIRECT and spot.unit not in {"1", spelled(unit)}
     evidence = [(CONSTANT if foreign else UNIT, f"unit {unit}")] if unit else []
     evidence += _of_kind(words, bool(unit), wish, spot) + _of_words(words, spot)
     numbers = [int(w) for w in words_of(bare_name(column)) if w.isdigit()]
@@ -262,7 +265,7 @@ def _unit_fits(unit: str, spot: Spot) -> bool:
     """Whether a unit can be a spot's; what drives a motor may be electrical."""
     if not unit:
         return True
-    if spot.quantity is Quantity.EFFORT and unit in ELECTRICAL:
+    if spot.quantity is Quantity.EFFORT and unit in INDIRECT:
         return spot.unit not in ("m", "rad")
     if spot.quantity is Quantity.EFFORT and spot.unit == "1":
         other = {"N": "N*m", "N*m": "N"}.get(spot.exerts)

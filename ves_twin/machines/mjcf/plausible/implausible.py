@@ -107,6 +107,8 @@ def implausible(rig: Rig, recording: Recording) -> Implausible | None:
     came = " or ".join(dict.fromkeys(reading.name for _, reading in best))
     keys = " or ".join(dict.fromkeys(reading.key for _, reading in best))
     what = f"{', '.join(names)} of {recording.info.scenario or 'the recording'}"
+    if any(reading.in_unit for _, reading in best):
+        keys += ", and the masses of the model"
     return Implausible(what, f"efforts that fit the model only with {came}", f"check {keys}")
 
 

@@ -27,3 +27,10 @@ class Reading:
     zeros: Mapping[str, float] = field(default_factory=dict)
     load: tuple[int, FloatArray] | None = None
     odd: bool = False
+
+    @property
+    def in_unit(self) -> bool:
+        """Whether some column is read in another unit, which a mass that is off would fit, too."""
+        return any(
+            abs(abs(by) - 1.0) > 1e-9 for by in (*self.positions.values(), *self.efforts.values())
+        )

@@ -22,6 +22,7 @@ from ves_twin.machines.mjcf.plausible.reading import Reading
 from ves_twin.machines.mjcf.plausible.readings import Readings
 from ves_twin.machines.mjcf.rig.machine import Rig
 from ves_twin.machines.mjcf.rig.places import SINGLE, driven_joint
+from ves_twin.machines.mjcf.rig.transmission import told_by_motion
 
 ROWS = 10_000
 """Rows of a recording that are looked at, about its middle."""
@@ -82,6 +83,7 @@ class Seen:
             if s in recording.signals and driven_joint(model, a) in {*places, *wheels}
             if not is_servo(model, model.actuator(a).id)  # a set-point is no effort
         }
+        sources = {a: sources[a] for a in told_by_motion(model, sources)}
         if not sources:
             return None
         count = len(recording.time)

@@ -66,6 +66,21 @@ class Transmission:
         return np.asarray(np.linalg.solve(self.arms(model), efforts)[at])
 
 
+def told_by_motion(model: mujoco.MjModel, actuators: Iterable[str]) -> list[str]:
+    """Those of some actuators whose own share of the efforts at their joints a motion tells.
+
+    Two that push one joint are known by their sum alone.
+    """
+    names, found = list(actuators), []
+    for name in names:
+        try:
+            Transmission.of(model, name, names)
+        except InvalidInputError:
+            continue
+        found.append(name)
+    return found
+
+
 def _singular(arms: FloatArray) -> bool:
     """Whether different commands give the same efforts."""
     values = np.linalg.svd(arms, compute_uv=False)
