@@ -238,7 +238,7 @@ def _text(found: Diagnosis, folder: Path) -> str:
         lines += [f"  {near_sentence(verdict)}"] if near_sentence(verdict) else []
         lines += [f"  {text}" for text in inseparable_lines(verdict)]
     width = _width(verdict)
-    head = f"  {'channel':<{width}}    before     tuned     after"
+    head = f"  {'channel':<{width}}    before     tuned  {_last(verdict)}"
     lines += ["", f"{head}   (rms error; tuned: by tolerances alone)"]
     for name, error in verdict.residuals.items():
         tuned = error.after_si if error.tolerances_si is None else error.tolerances_si
@@ -250,7 +250,9 @@ def _text(found: Diagnosis, folder: Path) -> str:
     files = ", ".join(sorted(p.name for p in folder.iterdir()))
     lines += ["", f"  files     {folder}/: {files}"]
     if (folder / PLANT).is_file():
-        lines.append(f"  as MJCF   ves-twin info --plant {folder / PLANT} --mjcf model.xml")
+        beside = verdict.law is not None and verdict.law.claimed and bool(verdict.proved)
+        why = "; its numbers are of beside the law, which MJCF lacks (--no-law)" * beside
+        lines.append(f"  as MJCF   ves-twin info --plant {folder / PLANT} --mjcf model.xml{why}")
     return "\n".join(lines)
 
 
@@ -261,7 +263,7 @@ def held_out_table(verdict: Verdict) -> list[str]:
         return []
     beside = law.gain if law is not None and law.claimed and law.part else None
     width = _width(verdict)
-    head = f"  {'held out':<{width}}    before     tuned     after"
+    head = f"  {'held out':<{width}}    before     tuned  {_last(verdict)}"
     law_too = "  with law" * (beside is not None)
     lines = ["", f"{head}{law_too}   (rms error; fitted elsewhere, but for each start)"]
     for name, (tuned, after) in gain.errors.items():
@@ -271,6 +273,11 @@ def held_out_table(verdict: Verdict) -> list[str]:
         numbers = "".join(f"{e:10.3g}" for e in ends)
         lines.append(f"  {name:<{width}}{numbers}   {verdict.residuals[name].unit}")
     return lines
+
+
+def _last(verdict: Verdict) -> str:
+    """Head of the last column: with the causes, or with what comes nearest, which is none."""
+    return f"{'after' if verdict.causes or verdict.law else 'nearest':>8}"
 
 
 def _width(verdict: Verdict) -> int:

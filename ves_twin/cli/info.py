@@ -115,6 +115,7 @@ def _told(name: str, out: str | None) -> dict[str, object]:
         "MJCF": out,
         "changes that the MJCF has": list(export.carried),
         "changes that it cannot carry": list(export.lost),
+        **({"look": export.note} if export.note else {}),
         "what no MJCF carries": {str(n): what for n, what in enumerate(export.never, 1)},
     }
 

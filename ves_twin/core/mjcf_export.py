@@ -10,6 +10,13 @@ from textwrap import fill
 from ves_twin.core.whole_file import write_whole
 
 
+TOGETHER = (
+    "What it has was found together with changes that it cannot carry: alone it may predict worse."
+    " ves-twin diagnose --no-law, or --exclude with their kinds, finds numbers that need none."
+)
+"""What is said where a file has a part of what was found."""
+
+
 @dataclass(frozen=True)
 class MjcfExport:
     """A machine as MJCF.
@@ -32,9 +39,15 @@ class MjcfExport:
     ) -> MjcfExport:
         """With a note at the head of the file that tells what is not in it."""
         lines = [title, "Not in this file:", *(f"- {what}" for what in (*lost, *never))]
+        lines += [TOGETHER] if carried and lost else []
         note = "\n".join(fill(line, 96, subsequent_indent="  ") for line in lines)
         note = note.replace("--", "- -")  # no comment of XML may hold two hyphens
         return MjcfExport(f"<!--\n{note}\n-->\n{body}", tuple(carried), tuple(lost), tuple(never))
+
+    @property
+    def note(self) -> str:
+        """What to know where the file has a part alone of what was found; else empty."""
+        return TOGETHER if self.carried and self.lost else ""
 
     def save(self, path: Path) -> None:
         """Write the file.

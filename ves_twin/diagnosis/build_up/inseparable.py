@@ -35,7 +35,7 @@ def inseparable(proof: Proof, others: dict[int, list[int]]) -> tuple[Inseparable
     unit = 1.0 / np.sqrt(np.maximum(np.diag(gram), 1e-30))
     values, vectors = np.linalg.eigh(gram * np.outer(unit, unit))
     owner = np.concatenate([np.full(len(gains.where[n]), n) for n in trials])
-    found = []
+    found: dict[frozenset[str], Inseparable] = {}  # of the same names the worst
     for value, vector in zip(values, vectors.T, strict=True):
         ratio = float(np.sqrt(values[-1] / max(float(value), 1e-12)))
         if ratio < WORSE:
@@ -44,5 +44,5 @@ def inseparable(proof: Proof, others: dict[int, list[int]]) -> tuple[Inseparable
             regression.trials[int(n)].cause.label for n in owner[np.abs(vector) > TAKES_PART]
         )
         if len(names) > 1:
-            found.append(Inseparable(tuple(names), ratio))
-    return tuple(found)
+            found.setdefault(frozenset(names), Inseparable(tuple(names), ratio))
+    return tuple(found.values())

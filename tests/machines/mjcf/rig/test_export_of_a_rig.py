@@ -126,7 +126,9 @@ def test_info_tells_a_machine_and_writes_it(tmp_path, capsys):
     text = capsys.readouterr().out
     (line,) = [one for one in text.splitlines() if "damping of joint rail" in one][:1]
     assert "4 -> 5.5 N*s/m" in line
-    assert "actuator_delay on drive" in text[text.index("cannot carry") :]
+    lost = text[text.index("cannot carry") :]
+    assert "actuator_delay on drive" in lost
+    assert "found together with changes that it cannot carry" in lost
     assert mujoco.MjModel.from_xml_path(str(out)).dof_damping[0] == pytest.approx(5.5)
 
 
