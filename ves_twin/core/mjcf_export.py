@@ -9,7 +9,6 @@ from textwrap import fill
 
 from ves_twin.core.whole_file import write_whole
 
-
 TOGETHER = (
     "What it has was found together with changes that it cannot carry: alone it may predict worse."
     " ves-twin diagnose --no-law, or --exclude with their kinds, finds numbers that need none."
