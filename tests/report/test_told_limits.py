@@ -204,3 +204,17 @@ def test_of_two_answers_that_share_a_cause_what_differs_is_told():
     )
     (said, *_) = next_sentences(told)
     assert said.startswith("To tell force offset at elbow from Coulomb friction at elbow:")
+
+
+@pytest.mark.parametrize(
+    ("alternatives", "said"),
+    [
+        (((1,), (1, 3)), "To tell force offset at elbow alone from Coulomb friction at elbow with"),
+        (((0,), (2,)), "To tell viscous friction at elbow: "),
+    ],
+)
+def test_answers_of_which_one_is_a_part_of_the_other_are_told_apart(alternatives, said):
+    kinds = ("viscous_friction", "force_offset", "viscous_friction", "coulomb_friction")
+    causes = tuple(Cause(kind, "elbow", {"size": SIZE}, 0.5, True, None) for kind in kinds)
+    told = replace(verdict(), verdict=Kind.AMBIGUOUS, causes=causes, alternatives=alternatives)
+    assert next_sentences(told)[0].startswith(said)

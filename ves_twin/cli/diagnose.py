@@ -188,7 +188,7 @@ def _plant_sentence(found: Diagnosis) -> str:
         return f"The extended plant is a candidate, plant.candidate.toml: {found.refused}."
     return (
         "The extended plant is plant.toml; it passed on held-out recordings. ves-twin info --plant"
-        " plant.toml --mjcf model.xml writes it as plain MJCF, and says what that cannot carry."
+        " plant.toml --mjcf improved.xml writes it as plain MJCF, and says what that cannot carry."
     )
 
 
@@ -252,7 +252,7 @@ def _text(found: Diagnosis, folder: Path) -> str:
     if (folder / PLANT).is_file():
         beside = verdict.law is not None and verdict.law.claimed and bool(verdict.proved)
         why = "; its numbers are of beside the law, which MJCF lacks (--no-law)" * beside
-        lines.append(f"  as MJCF   ves-twin info --plant {folder / PLANT} --mjcf model.xml{why}")
+        lines.append(f"  as MJCF   ves-twin info --plant {folder / PLANT} --mjcf improved.xml{why}")
     return "\n".join(lines)
 
 
@@ -277,7 +277,8 @@ def held_out_table(verdict: Verdict) -> list[str]:
 
 def _last(verdict: Verdict) -> str:
     """Head of the last column: with the causes, or with what comes nearest, which is none."""
-    return f"{'after' if verdict.causes or verdict.law else 'nearest':>8}"
+    law = verdict.law is not None and verdict.law.claimed
+    return f"{'after' if verdict.causes or law else 'nearest':>8}"
 
 
 def _width(verdict: Verdict) -> int:

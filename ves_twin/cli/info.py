@@ -102,12 +102,14 @@ def _told(name: str, out: str | None) -> dict[str, object]:
     from pathlib import Path
 
     from ves_twin.machines.machine import Machine
-    from ves_twin.plant.plant import NOMINAL
 
-    machine = Machine.load(name or NOMINAL)
+    machine = Machine.load(name)
     content = dict(machine.account())
     if out is None:
         return content
+    inputs = {Path(one).resolve() for one in (name, str(content.get("model", name)))}
+    if Path(out).resolve() in inputs or Path(out).suffix == ".toml":
+        raise InvalidInputError("--mjcf", out, "another file than those of the machine, OUT.xml")
     export = machine.mjcf(Path(out).parent)
     export.save(Path(out))
     return {

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -10,7 +11,7 @@ from textwrap import fill
 from ves_twin.core.whole_file import write_whole
 
 TOGETHER = (
-    "What it has was found together with changes that it cannot carry: alone it may predict worse."
+    "Changes that were found together predict together: with a part of them it may predict worse."
     " ves-twin diagnose --no-law, or --exclude with their kinds, finds numbers that need none."
 )
 """What is said where a file has a part of what was found."""
@@ -40,7 +41,7 @@ class MjcfExport:
         lines = [title, "Not in this file:", *(f"- {what}" for what in (*lost, *never))]
         lines += [TOGETHER] if carried and lost else []
         note = "\n".join(fill(line, 96, subsequent_indent="  ") for line in lines)
-        note = note.replace("--", "- -")  # no comment of XML may hold two hyphens
+        note = re.sub("-(?=-)", "- ", note)  # no comment of XML may hold two hyphens
         return MjcfExport(f"<!--\n{note}\n-->\n{body}", tuple(carried), tuple(lost), tuple(never))
 
     @property

@@ -42,23 +42,44 @@ def test_ros_2_messages_are_decoded(ros2_file):
     assert np.allclose(found["position[1]"], -0.1 * np.arange(100))
 
 
-def test_joint_states_are_called_by_their_joints_whatever_their_order(tmp_path):
-    """Several nodes may publish on one topic, each the joints that it knows."""
-    told = [(("a", "b"), [1.0, 2.0]), (("b", "a"), [4.0, 3.0]), (("b", "c"), [6.0, 7.0])] * 30
+def states(tmp_path, told):
+    """A log of joint states: names and positions of each message."""
     messages = (
         (10**15 + i * 5_000_000, 10**15, names, {"position": values})
         for i, (names, values) in enumerate(told)
     )
-    path = write_joint_states(tmp_path / "joints.mcap", messages)
-    log = open_log(path)
+    return open_log(write_joint_states(tmp_path / "joints.mcap", messages))
+
+
+def test_joint_states_are_called_by_their_joints_whatever_their_order(tmp_path):
+    """Several nodes may publish on one topic, each the joints that it knows."""
+    told = [(("a", "b"), [1.0, 2.0]), (("b", "a"), [4.0, 3.0]), (("b", "c"), [6.0, 7.0])] * 30
+    log = states(tmp_path, told)
     said = {c.name: c.said for c in log.table("/joint_states").columns}
-    assert said["position[0]"] == "a.position"
-    assert said["position[1]"] == "b.position"
+    columns = [f"position[{k}]" for k in range(3)]
+    assert [said[name] for name in columns] == ["a.position", "b.position", "c.position"]
     assert said["header.stamp"] == said["log_time"] == ""
-    found = log.read("/joint_states", ["position[0]", "position[1]"])
-    assert np.array_equal(found["position[0]"], [1.0, 3.0, np.nan] * 30, equal_nan=True)
-    assert np.array_equal(found["position[1]"], [2.0, 4.0, 6.0] * 30)
+    found = log.read("/joint_states", columns)
+    rows = ([1.0, 3.0, np.nan], [2.0, 4.0, 6.0], [np.nan, np.nan, 7.0])
+    for name, row in zip(columns, rows, strict=True):
+        assert np.array_equal(found[name], row * 30, equal_nan=True), name
     assert "b.position" in inspection_text(inspect_log(log))
+
+
+def test_names_that_come_with_some_messages_alone_are_of_all(tmp_path):
+    told = [((), [1.0, 2.0]), (("a", "b"), [3.0, 4.0]), ((), [5.0, 6.0])] * 30
+    log = states(tmp_path, told)
+    assert log.table("/joint_states").columns[-1].said == "b.position"
+    found = log.read("/joint_states", ["position[0]"])["position[0]"]
+    assert np.array_equal(found, [1.0, 3.0, 5.0] * 30)
+
+
+def test_an_array_of_another_length_than_the_names_keeps_its_places(tmp_path):
+    told = [(("a", "b"), [1.0, 2.0, 3.0]), (("b", "a"), [4.0, 5.0, 6.0])] * 30
+    log = states(tmp_path, told)
+    assert all(column.said == "" for column in log.table("/joint_states").columns)
+    found = log.read("/joint_states", ["position[0]"])["position[0]"]
+    assert np.array_equal(found, [1.0, 4.0] * 30)
 
 
 def test_ros_1_messages_are_decoded_without_running_their_definition(mcap_file):

@@ -6,7 +6,7 @@ import pytest
 
 from ves_twin.diagnosis.build_up.result import Proved
 from ves_twin.diagnosis.law.result import LawFinding
-from ves_twin.diagnosis.law.shaken import shaken
+from ves_twin.diagnosis.law.shaken import none_beside, shaken
 from ves_twin.diagnosis.unseen.gain import Gain
 
 CLEAR = Gain(0.04, 0.02, 0.07, 160.0, 154.0)
@@ -66,3 +66,15 @@ def test_a_name_that_may_be_none_beside_a_law_is_not_firm(law):
     one = spring(90.0, 8.7)
     assert shaken((one,), law, ["viscous_friction@slide"]) == (one,)
     assert shaken((one,), law, [one.label]) == (replace(one, firm=False),)
+
+
+@pytest.mark.parametrize(
+    ("ends", "given", "none"),
+    [((-6.3, 33.7), 0.0, True), ((9.0, 12.0), 0.0, False), ((9.0, 12.0), 10.0, True)],
+)
+def test_what_may_be_none_is_what_holds_the_number_of_the_model_as_given(ends, given, none):
+    """Not the size that was fitted without the law, which every interval about it holds."""
+    one = spring(90.0, 8.7)
+    name = f"{one.label}:stiffness"
+    found = none_beside((one,), {name: ends, "body_mass@x:mass": (0.0, 1.0)}, {name: given})
+    assert found == ([one.label] if none else [])

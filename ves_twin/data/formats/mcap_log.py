@@ -20,6 +20,7 @@ from ves_twin.data.formats.limits import Limits
 from ves_twin.data.formats.log import Block, Column, Extremes, KnownRanges, Log, Table
 from ves_twin.data.formats.message_fields import Path as FieldPath
 from ves_twin.data.formats.message_fields import (
+    all_elements,
     element_names,
     long_arrays,
     number_at,
@@ -51,6 +52,9 @@ SAMPLED = 2000
 
 MANY = 10_000
 
+NAMING = 64
+"""Messages whose names of elements are known: several nodes may publish on one topic in turn."""
+
 JSON_WEIGHT = 4
 """Times that a byte of JSON counts as one of a message: as Python's lists it takes twenty."""
 
@@ -68,31 +72,33 @@ class _Topic:
         id: of the channel.
         decode: its decoder.
         paths: fields that are numbers, by their names.
-        elements: what its first message calls the elements of its arrays.
+        elements: what its messages call the elements of their arrays; () if nothing.
+        named: arrays that have an element for each name.
     """
 
     id: int
     decode: Callable[[bytes], Any] | None
     paths: dict[str, FieldPath]
     elements: tuple[str, ...] = ()
+    named: frozenset[str] = frozenset()
 
     def said(self, column: str) -> str:
         """Element and field of an array's number: "elbow.position" is position[1]."""
         match self.paths[column]:
-            case (str(field), int(number)) if number < len(self.elements):
+            case (str(field), int(number)) if field in self.named and number < len(self.elements):
                 return f"{self.elements[number]}.{field}"
         return ""
 
     def placed(self, message: Any) -> Callable[[FieldPath], FieldPath]:
-        """Where paths of the first message lie in another one, which may name others, or fewer."""
+        """Where paths lie in a message, which may name elements in its own order, or fewer."""
         names = element_names(message) if self.elements else ()
-        if names == self.elements:
+        if not names or names == self.elements:
             return lambda path: path
         at = {name: number for number, name in enumerate(names)}
 
         def moved(path: FieldPath) -> FieldPath:
             match path:
-                case (str(field), int(number)) if number < len(self.elements):
+                case (str(field), int(number)) if field in self.named:
                     return field, at.get(self.elements[number], MANY)
             return path
 
@@ -290,21 +296,23 @@ class McapLog(Log):
         return None
 
     def _with_fields(self, topic: _Topic, name: str) -> _Topic:
-        """The topic with the columns of its first message."""
-        for message in self._messages(topic.id):
-            decoded = self._decoded(topic, message)
-            if decoded is None:
-                continue
-            for path in islice(long_arrays(decoded), WIDEST):
-                words = f"{name}.{path_name(path)}: a long array, left out"
-                self.note_fault(f"{name} {path}", words)
-            paths = {path_name(p): p for p in islice(number_paths(decoded), WIDEST + 1)}
-            if len(paths) > WIDEST:
-                words = f"{name}: more than {WIDEST} numbers a message, left out"
-                self.note_fault(f"{name} numbers", words)
-                paths = {}
-            return _Topic(topic.id, topic.decode, paths, element_names(decoded))
-        return topic
+        """The topic with the columns of its first message, and of what the next ones name."""
+        decoded = (self._decoded(topic, message) for message in self._messages(topic.id))
+        looked = list(islice((one for one in decoded if one is not None), NAMING))
+        if not looked:
+            return topic
+        first = looked[0]
+        for path in islice(long_arrays(first), WIDEST):
+            words = f"{name}.{path_name(path)}: a long array, left out"
+            self.note_fault(f"{name} {path}", words)
+        elements, named = all_elements(looked)
+        paths = {path_name(p): p for p in islice(number_paths(first), WIDEST + 1)}
+        paths |= {path_name((f, n)): (f, n) for f in sorted(named) for n in range(len(elements))}
+        if len(paths) > WIDEST:
+            words = f"{name}: more than {WIDEST} numbers a message, left out"
+            self.note_fault(f"{name} numbers", words)
+            paths = {}
+        return _Topic(topic.id, topic.decode, paths, elements, named)
 
     def _decoded(self, topic: _Topic, message: Message) -> Any:
         if topic.decode is None:

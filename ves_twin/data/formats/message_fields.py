@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
 Path = tuple[str | int, ...]
@@ -44,6 +44,22 @@ def element_names(message: Any) -> tuple[str, ...]:
     if not _is_array(names) or not all(isinstance(one, str) for one in names):
         return ()
     return tuple(names) if len(set(names)) == len(names) <= MOST else ()
+
+
+def all_elements(messages: Sequence[Any]) -> tuple[tuple[str, ...], frozenset[str]]:
+    """Names of elements of some messages, in the order in which they come, and their arrays.
+
+    Arrays that are as long as the names wherever they hold anything.
+    """
+    names: dict[str, None] = {}
+    named: dict[str, bool] = {}
+    for message in messages:
+        own = element_names(message)
+        names |= dict.fromkeys(own)
+        for key, value in fields_of(message) if own else ():
+            if key != "name" and _is_array(value) and len(value):
+                named[str(key)] = named.get(str(key), True) and len(value) == len(own)
+    return tuple(names), frozenset(key for key, fits in named.items() if fits)
 
 
 def path_name(path: Path) -> str:

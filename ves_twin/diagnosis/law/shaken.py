@@ -1,8 +1,8 @@
-"""shaken: proved names at a place where a law still takes more than a share of what they do."""
+"""shaken, none_beside: proved names whose work a law does, too."""
 
 from __future__ import annotations
 
-from collections.abc import Collection, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import replace
 
 from ves_twin.diagnosis.build_up.report import SHAKEN
@@ -37,3 +37,23 @@ def shaken(
         stands = one.label not in none_beside and not (there and more)
         found.append(replace(one, firm=one.firm and stands))
     return tuple(found)
+
+
+def none_beside(
+    proved: Sequence[Proved],
+    tuned: Mapping[str, tuple[float, float]],
+    nominal: Mapping[str, float],
+) -> list[str]:
+    """Labels of causes of which no size is clear of what the model has, beside a law.
+
+    Args:
+        proved: causes.
+        tuned: ends of the interval of each number that was fitted together with the law.
+        nominal: value of each parameter in the model as it was given.
+    """
+    found = []
+    for one in proved:
+        sizes = [name for name in tuned if name.rpartition(":")[0] == one.label]
+        if sizes and all(tuned[n][0] <= nominal[n] <= tuned[n][1] for n in sizes):
+            found.append(one.label)
+    return found

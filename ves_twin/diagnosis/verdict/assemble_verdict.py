@@ -20,7 +20,7 @@ from ves_twin.diagnosis.fit.explanation import Explanation
 from ves_twin.diagnosis.fit.null import Thresholds
 from ves_twin.diagnosis.fit.refine import Fit
 from ves_twin.diagnosis.law.result import LawFinding
-from ves_twin.diagnosis.law.shaken import shaken
+from ves_twin.diagnosis.law.shaken import none_beside, shaken
 from ves_twin.diagnosis.model.forward import Hypothesis
 from ves_twin.diagnosis.record.adequacy import cells
 from ves_twin.diagnosis.record.preprocess import Dataset
@@ -113,8 +113,13 @@ def assemble_verdict(
     row = _row(findings.seen)
     proved = sized(built, causes, ends, row, components) if built and named else ()
     tuned = _tuned(findings)
-    none = _none_beside(proved, tuned) if findings.beside else ()
-    proved = driving(shaken(proved, findings.law, none), {p.name: p.nominal for p in parameters})
+    nominal = {p.name: p.nominal for p in parameters}
+    none = (
+        none_beside(proved, {n: (e.low, e.high) for n, e in tuned.items()}, nominal)
+        if findings.beside
+        else ()
+    )
+    proved = driving(shaken(proved, findings.law, none), nominal)
     firm = {one.label: one.firm for one in proved}
     causes = tuple(replace(c, firm=firm.get(f"{c.effect}@{c.target}", c.firm)) for c in causes)
     worse = findings.gain is not None and bool(findings.gain.worse)
@@ -348,16 +353,6 @@ def _tuned(findings: Findings) -> dict[str, Estimate]:
         pull = float(fit.shift[i]) / parameter.sd if parameter.sd > 0.0 else None
         estimates[parameter.name] = Estimate(value, *ends, i in fit.held, pull)
     return estimates
-
-
-def _none_beside(proved: Sequence[Proved], tuned: Mapping[str, Estimate]) -> list[str]:
-    """Labels of causes of which no size is clear of what the model has, beside a law."""
-    found = []
-    for one in proved:
-        sizes = [e for name, e in tuned.items() if name.rpartition(":")[0] == one.label]
-        if sizes and all(e.low <= e.nominal <= e.high for e in sizes):
-            found.append(one.label)
-    return found
 
 
 def _residuals(findings: Findings, exhibit: ReportTraces) -> dict[str, ChannelError]:

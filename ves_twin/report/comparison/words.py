@@ -176,17 +176,20 @@ def _contrast(cells: list[Cell], mean: float) -> str:
     """Where one regime is clearly larger than the least one, or its mean clearly apart.
 
     As large as it is, with the mean of the whole, which the cells have taken off: dry friction of
-    a joint that mostly turns one way is not largest where it stands.
+    a joint that mostly turns one way is not largest where it stands. Else about that mean.
     """
     if len(cells) < 2:
         return ""
-    rms = [sqrt(max(c.rms**2 + 2.0 * mean * c.mean + mean**2, 0.0)) for c in cells]
-    most, fewest = max(rms), min(rms)
-    top, least = cells[rms.index(most)], cells[rms.index(fewest)]
-    if fewest > 0.0 and most > CONTRAST * fewest:
+    whole = [sqrt(max(c.rms**2 + 2.0 * mean * c.mean + mean**2, 0.0)) for c in cells]
+    beside = [c.rms for c in cells]  # an offset may hide it
+    for rms, about in ((whole, ""), (beside, "beside its mean ")):
+        most, fewest = max(rms), min(rms)
+        top, least = cells[rms.index(most)], cells[rms.index(fewest)]
+        if not fewest > 0.0 or most <= CONTRAST * fewest:
+            continue
         (name, _, state), other = top.label.rpartition(" "), least.label.rpartition(" ")[2]
         times = f"{most / fewest:.2g} times"
-        return f"; {times} as large while {name} is {state} as while it is {other}"
+        return f"; {about}{times} as large while {name} is {state} as while it is {other}"
     apart = max(cells, key=lambda c: abs(c.mean))
     if abs(apart.mean) > 0.6 * top.rms:
         name, _, state = apart.label.rpartition(" ")

@@ -166,10 +166,16 @@ def _enough(verdict: Verdict) -> list[str]:
 
 def _apart(alternatives: Sequence[set[str]]) -> str:
     """What the first of several answers has that the next other one has not, and the reverse."""
-    first, *others = alternatives
-    other = next((names for names in others if names != first), first)
-    sides = (first - other or first, other - first or other)
-    return " from ".join(" with ".join(sorted(side)) for side in sides)
+    first = alternatives[0] if alternatives else set()
+    other = next((names for names in alternatives if names != first), None)
+    if other is None:  # the same causes at other sizes
+        return " with ".join(sorted(first))
+    one, two = first - other, other - first
+    if not (one and two):
+        one, two = first, other
+    less = min(one, two, key=len) if one < two or two < one else None
+    ends = [" with ".join(sorted(side)) + " alone" * (side is less) for side in (one, two)]
+    return " from ".join(ends)
 
 
 def next_sentences(verdict: Verdict) -> tuple[str, ...]:

@@ -102,3 +102,14 @@ def test_of_a_joint_at_one_speed_positions_drown_no_torque(swing, write):
     told = rig.description
     assert told.drive.smoothing < 0.5 / 0.015
     assert told.signals["drive.effort"].noise < 1.0
+
+
+def test_a_machine_that_mostly_dwells_has_the_noise_of_its_motion():
+    rng = np.random.default_rng(1)
+    t = 0.005 * np.arange(4000)
+    moves = t % 10.0 < 3.0
+    values = np.where(moves, 5.0 * np.sin(3.0 * t), 0.0)
+    values += np.where(moves, 0.5, 1e-4) * rng.standard_normal(4000)
+    sd, how = noise_of(values, 0.005, None, effort=True)
+    assert how == "highest octave"
+    assert 0.15 < sd < 0.55  # stretches hold motion and rest

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 from drafted import drafted
 
+from ves_twin.core.errors import InvalidInputError
 from ves_twin.diagnosis.model.forward import Excitation
 from ves_twin.machines.mjcf.motion.forward import MjcfForward
 from ves_twin.machines.mjcf.recordings.columns import read_rig_recording
@@ -75,3 +76,14 @@ def test_a_pressure_is_what_drives_a_piston_by_an_area_that_is_asked(tmp_path, w
     (words,) = [words for words in found.look if "is a pressure" in words]
     assert words.startswith("pressure_bar is a pressure: ")
     assert words.endswith("put the piston's area there")
+
+
+def test_a_barometer_beside_a_hinge_is_no_torque(swing, write):
+    path, columns = swing
+    weather = 1013.0 + 0.1 * np.random.default_rng(2).standard_normal(len(columns["t"]))
+    log = {"t": columns["t"], "q": columns["q"], "tau": columns["tau"], "pressure_bar": weather}
+    found, rig = drafted(path, write(log))
+    assert "pressure_bar" in found.left
+    assert rig.description.signals["drive.effort"].columns == ("tau",)
+    with pytest.raises(InvalidInputError, match="an effort of drive"):
+        drafted(path, write({name: log[name] for name in ("t", "q", "pressure_bar")}))

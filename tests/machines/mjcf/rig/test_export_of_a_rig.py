@@ -10,6 +10,7 @@ import servo_rig
 import two_link
 
 from ves_twin.cli.main import main
+from ves_twin.core.errors import InvalidInputError
 from ves_twin.machines.mjcf.motion.forward import MjcfForward
 from ves_twin.machines.mjcf.rig.description import Mode, Setting
 from ves_twin.machines.mjcf.rig.machine import Rig
@@ -128,7 +129,7 @@ def test_info_tells_a_machine_and_writes_it(tmp_path, capsys):
     assert "4 -> 5.5 N*s/m" in line
     lost = text[text.index("cannot carry") :]
     assert "actuator_delay on drive" in lost
-    assert "found together with changes that it cannot carry" in lost
+    assert "Changes that were found together" in lost
     assert mujoco.MjModel.from_xml_path(str(out)).dof_damping[0] == pytest.approx(5.5)
 
 
@@ -139,3 +140,25 @@ def test_a_model_that_is_gone_is_one_line(tmp_path, capsys):
     assert main(["info", "--plant", str(machine), "--mjcf", str(tmp_path / "out.xml")]) == 2
     assert "two_link.xml" in capsys.readouterr().err
     assert not (tmp_path / "out.xml").exists()
+
+
+def test_an_export_goes_over_no_file_of_its_machine(tmp_path, capsys):
+    two_link.write_files(tmp_path)
+    (machine,) = tmp_path.glob("*.toml")
+    before = {path: path.read_text() for path in (machine, tmp_path / "two_link.xml")}
+    for out in before:
+        assert main(["info", "--plant", str(machine), "--mjcf", str(out)]) == 2
+        assert "another file than those of the machine" in capsys.readouterr().err
+    assert {path: path.read_text() for path in before} == before
+
+
+@pytest.mark.parametrize("compiler", ["boundmass='3'", "inertiafromgeom='true'"])
+def test_a_model_that_would_be_read_otherwise_is_not_written(tmp_path, compiler):
+    rig = two_link.rig(tmp_path)
+    path = tmp_path / "two_link.xml"
+    text = path.read_text().replace('<mujoco model="two_link">', f"<mujoco><compiler {compiler}/>")
+    path.write_text(text)
+    light = Setting.model_validate({"body": "hook", "attribute": "mass", "value": 0.3})
+    told = rig.description.model_copy(update={"parameters": (light,)})
+    with pytest.raises(InvalidInputError, match=compiler.partition("=")[0]):
+        mjcf_of(Rig(told, tmp_path), tmp_path)

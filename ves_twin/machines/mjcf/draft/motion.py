@@ -70,12 +70,10 @@ def motion_of(
     return Motion(rows, v, effort, steady)
 
 
-def spectrum(
-    values: FloatArray, period: float, average: str = "mean"
-) -> tuple[FloatArray, FloatArray]:
-    """Frequencies [Hz] and power per Hz of a column; over its stretches the mean or median."""
-    rows, level = min(len(values) // 4, 1024), values.mean()
-    found = welch(values - level, 1 / period, nperseg=rows, detrend="linear", average=average)
+def spectrum(values: FloatArray, period: float) -> tuple[FloatArray, FloatArray]:
+    """Frequencies [Hz] and power per Hz of a column."""
+    rows = min(len(values) // 4, 1024)
+    found = welch(values - values.mean(), 1.0 / period, nperseg=rows, detrend="linear")
     return np.asarray(found[0]), np.asarray(found[1])
 
 

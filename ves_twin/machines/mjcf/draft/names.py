@@ -265,6 +265,12 @@ def _unit_fits(unit: str, spot: Spot) -> bool:
     """Whether a unit can be a spot's; what drives a motor may be electrical."""
     if not unit:
         return True
+    if (
+        spot.quantity is Quantity.EFFORT
+        and unit in PRESSURES
+        and "N" not in (spot.unit, spot.exerts)
+    ):
+        return False  # of a hinge: an area makes no torque
     if spot.quantity is Quantity.EFFORT and unit in INDIRECT:
         return spot.unit not in ("m", "rad")
     if spot.quantity is Quantity.EFFORT and spot.unit == "1":

@@ -95,7 +95,7 @@ def _pairs(single: Sequence[LawPlace]) -> list[LawPlace]:
     """Two joints of one sort together, or against one another, by their sum or difference."""
     found = []
     for (one, two), sign in product(combinations(single, 2), SIGNS):
-        if one.unit != two.unit:
+        if one.unit != two.unit or not (_told(one) and _told(two)):
             continue
         name = f"{one.name}{sign}{two.name}"
         units = {v.what: v.unit for v in reversed(one.variables)}
@@ -103,6 +103,11 @@ def _pairs(single: Sequence[LawPlace]) -> list[LawPlace]:
         scale = min(one.scale, two.scale)
         found.append(LawPlace(name, LawKind.EFFORT, one.unit, scale, of))
     return found
+
+
+def _told(place: LawPlace) -> bool:
+    """Whether a column tells the motion of the joint itself."""
+    return {f"position@{place.name}", f"speed@{place.name}"} <= {v.name for v in place.variables}
 
 
 def _commands(rig: Rig, joint: str, mode: Mode) -> tuple[Variable, ...]:

@@ -24,6 +24,19 @@ NEVER = (
 )
 """What no MJCF file of a machine has."""
 
+SIZES = ("nq", "nv", "nu", "nbody", "njnt", "ngeom", "nsite", "nmesh", "ntendon", "neq")
+NUMBERS = (
+    *("body_mass", "body_inertia", "body_pos", "body_ipos", "dof_damping", "dof_frictionloss"),
+    *("dof_armature", "jnt_stiffness", "actuator_gear", "actuator_gainprm", "actuator_biasprm"),
+)
+"""Of a model, that are held against what was written."""
+
+DIGITS = 1e-5
+"""Relative error of a number with six digits."""
+
+COMPILER = "attached models, boundmass, boundinertia, settotalmass, inertiafromgeom"
+"""What writes another model than it is, or none."""
+
 
 def mjcf_of(rig: Rig, folder: Path) -> MjcfExport:
     """The model's file with all numbers that the machine's file changes, at MJCF's six digits.
@@ -36,7 +49,7 @@ def mjcf_of(rig: Rig, folder: Path) -> MjcfExport:
         folder: that the new file will lie in, from which it finds meshes and textures.
 
     Raises:
-        InvalidInputError: numbers that no rigid body can have.
+        InvalidInputError: a model that MuJoCo cannot write so that it reads the same again.
     """
     model = copy.copy(rig.model)
     carried = [f"{name}: {values}" for name, values in changed_numbers(rig)]
@@ -61,18 +74,51 @@ def _numbers(model: mujoco.MjModel) -> NDArray[np.uint8]:
 
 def _xml(path: Path, model: mujoco.MjModel, folder: Path) -> str:
     """A model's file with the numbers of another model of the same sizes."""
-    try:
-        mujoco.MjModel.from_xml_path(str(path))  # MuJoCo writes over what it read last
-        with tempfile.TemporaryDirectory() as place:
-            written = Path(place) / "model.xml"
+    with tempfile.TemporaryDirectory() as place:
+        written = Path(place) / "model.xml"
+        try:
+            mujoco.MjModel.from_xml_path(str(path))  # MuJoCo writes over what it read last
             mujoco.mj_saveLastXML(str(written), model)
             root = ElementTree.parse(written).getroot()
-    except (ValueError, mujoco.FatalError) as error:
-        raise InvalidInputError(str(path), one_line(error), "a model that can be written") from None
-    compiler = root.find("compiler")
-    if compiler is not None and root.find("asset") is not None:
-        for name in ("meshdir", "texturedir"):
-            there = path.parent / compiler.get(name, "")
-            compiler.set(name, Path(os.path.relpath(there, folder)).as_posix())
+            _assets(root, path.parent.resolve())
+            written.write_text(ElementTree.tostring(root, encoding="unicode"), encoding="utf-8")
+            _check(mujoco.MjModel.from_xml_path(str(written)), model)
+        except (ValueError, mujoco.FatalError) as error:
+            expected = f"a model that MuJoCo writes and reads again, without {COMPILER}"
+            raise InvalidInputError(str(path), one_line(error), expected) from None
+    _assets(root, path.parent, folder)
     ElementTree.indent(root)
     return ElementTree.tostring(root, encoding="unicode") + "\n"
+
+
+def _assets(root: ElementTree.Element, there: Path, folder: Path | None = None) -> None:
+    """Let a file find what lies in a model's folder, absolute, or from another folder."""
+    compiler = root.find("compiler")
+    if compiler is None or root.find("asset") is None:
+        return
+    for name in ("meshdir", "texturedir"):
+        old = Path(compiler.get(name, ""))
+        if folder is None:
+            compiler.set(name, (there / old).as_posix())
+        else:
+            own = old if old.is_absolute() else there / old
+            compiler.set(name, Path(os.path.relpath(own, folder)).as_posix())
+
+
+def _check(read: mujoco.MjModel, model: mujoco.MjModel) -> None:
+    """Hold what was written against what was meant.
+
+    Raises:
+        ValueError: with what differs.
+    """
+    for name in SIZES:
+        if getattr(read, name) != getattr(model, name):
+            raise ValueError(f"{name} is {getattr(read, name)}, was {getattr(model, name)}")
+    if read.names != model.names:
+        raise ValueError("names differ")
+    for name in NUMBERS:
+        one, two = getattr(read, name), getattr(model, name)
+        if not np.allclose(
+            one, two, rtol=DIGITS, atol=DIGITS * float(np.max(np.abs(two), initial=0))
+        ):
+            raise ValueError(f"{name} is not written as it is")
