@@ -5,8 +5,9 @@ from __future__ import annotations
 from collections.abc import Sequence
 from pathlib import Path
 
-from ves_twin.core.errors import InvalidInputError
+from ves_twin.core.errors import InvalidInputError, UnknownNameError
 from ves_twin.core.recording.recording import Recording
+from ves_twin.core.resources import resource_folder
 from ves_twin.data.mapping.import_map import ImportMap
 from ves_twin.machines.machine import Machine, Named
 from ves_twin.machines.mjcf.mjcf_machine import MjcfMachine
@@ -42,7 +43,15 @@ def open_machine(
         raise InvalidInputError(f"plant {name_or_path}", "a model", expected)
     if is_rig(name_or_path):
         return MjcfMachine(Rig.load(name_or_path), mapping, folder)
+    path, plants = Path(name_or_path), shipped_plants()
+    if not path.suffix and len(path.parts) == 1 and name_or_path not in plants:
+        raise UnknownNameError("plant", name_or_path, (*plants, *shipped_rigs()))
     return Ves2Machine(Plant.load(name_or_path), mapping=mapping, folder=folder)
+
+
+def shipped_plants() -> list[str]:
+    """Names of the plants of VES II that come with the twin."""
+    return sorted(path.stem for path in resource_folder("models").glob("*.toml"))
 
 
 def shipped_machines() -> list[str]:
