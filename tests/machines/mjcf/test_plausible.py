@@ -17,6 +17,7 @@ from ves_twin.machines.mjcf.motion.forward import MjcfForward
 from ves_twin.machines.mjcf.plausible.implausible import implausible
 from ves_twin.machines.mjcf.rig.description import Mode
 from ves_twin.machines.mjcf.rig.machine import Rig
+from ves_twin.machines.mjcf.rig.transmission import told_by_motion
 
 
 @pytest.fixture(scope="module")
@@ -68,6 +69,8 @@ def test_a_column_with_another_sign_or_unit_is_named(machine, factors, words):
     found = implausible(machine, scaled(recorded(machine), **factors))
     assert found is not None
     assert words in found.came
+    of_unit = any(abs(factor) != 1.0 for factor in factors.values())
+    assert ("masses of the model" in found.expected) is of_unit  # which may be as far off
     assert "check" in str(found.error)
 
 
@@ -177,3 +180,14 @@ def test_a_usual_unit_is_told_without_the_factor(machine):
     assert found is not None
     assert "N mm" in found.came
     assert "times" not in found.came
+
+
+def test_of_two_motors_at_one_joint_a_motion_tells_none(tmp_path):
+    """Where commands are fed in that is no reason to refuse a recording."""
+    one = rig(tmp_path)
+    path = tmp_path / "two_link.xml"
+    second = '<motor name="drive" joint="rail"/>'
+    path.write_text(path.read_text().replace(second, f'{second}<motor name="help" joint="rail"/>'))
+    told = Rig(one.description, tmp_path)
+    assert told_by_motion(told.model, ["drive", "hinge"]) == ["drive", "hinge"]
+    assert told_by_motion(told.model, ["drive", "help", "hinge"]) == ["hinge"]
