@@ -26,7 +26,7 @@ from ves_twin.report.diagnosis.answer import (
     next_step,
     verdict_sentence,
 )
-from ves_twin.report.diagnosis.basis import rests_on
+from ves_twin.report.diagnosis.basis import gain_words, rests_on
 from ves_twin.report.diagnosis.limits import blind_causes, next_sentences
 from ves_twin.report.diagnosis.out_of_step import out_of_step_sentence
 from ves_twin.report.diagnosis.proved import standing_words
@@ -218,3 +218,12 @@ def test_answers_of_which_one_is_a_part_of_the_other_are_told_apart(alternatives
     causes = tuple(Cause(kind, "elbow", {"size": SIZE}, 0.5, True, None) for kind in kinds)
     told = replace(verdict(), verdict=Kind.AMBIGUOUS, causes=causes, alternatives=alternatives)
     assert next_sentences(told)[0].startswith(said)
+
+
+@pytest.mark.parametrize("given", [8.0, 9.5])
+def test_who_has_a_better_model_is_not_sent_to_the_extended_one(given):
+    """A spring took 6 % from what tuning had left of two arms, and both were better as given."""
+    gain = Gain(0.2, 0.1, 0.3, 9.0, 8.0, {"force": (10.0, 9.0)}, given={"force": given})
+    told = replace(verdict(firm=False), gain=gain)
+    assert next_step(told).startswith("Keep the model as it was given") is (given < 9.0)
+    assert ("as well or better" in gain_words(told)) is (given < 9.0)

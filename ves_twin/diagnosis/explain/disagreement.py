@@ -85,7 +85,7 @@ def disagreement(
         units = [part.base.runs.coordinates[int(i)].parameter.unit for i in free]
         causes = tuple(h.label for fit in best.chosen for h in fit.causes)
         sizes = tuple((float(s), u) for s, u in zip(best.best.sizes, units, strict=True))
-        found.append(Alone(name, best.adequate, causes, sizes))
+        found.append(Alone(name, bool(best.adequate), causes, sizes))
     return tuple(found)
 
 

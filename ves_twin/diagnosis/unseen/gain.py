@@ -58,6 +58,16 @@ class Gain:
     given: Mapping[str, float] = field(default_factory=dict)
 
     @property
+    def lost(self) -> bool:
+        """Whether no channel is predicted better than by the model as it was given.
+
+        Of two swinging arms with a wrong mass a spring took 6 % from what tuning had left, and left
+        both worse than their owner's own model.
+        """
+        pairs = [(after, self.given.get(name, 0.0)) for name, (_, after) in self.errors.items()]
+        return bool(pairs) and all(after >= given > 0.0 for after, given in pairs)
+
+    @property
     def over(self) -> Mapping[str, tuple[float, float]]:
         """The errors, over the model as it was given where its tuning predicts far worse.
 

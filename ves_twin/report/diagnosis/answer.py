@@ -131,6 +131,11 @@ def next_step(verdict: Verdict) -> str:
 
 def _with_proved(verdict: Verdict) -> str:
     """What to do with causes that are proved to predict better."""
+    if verdict.gain is not None and verdict.gain.lost:
+        return (
+            "Keep the model as it was given: no held-out channel is predicted better than by it."
+            " Look at numbers of the model and their tolerances, and diagnose again."
+        )
     firm = [spoken(one.label) for one in verdict.proved if one.firm]
     if firm:
         return f"Simulate with the extended model, and look at {listed(firm[:TOLD])}."

@@ -90,7 +90,8 @@ def gain_words(verdict: Verdict) -> str:
         square = "its square in units of noise, where fast errors count most, does not fall"
     if _open(gain):
         square = "counted in units of noise it may be a loss as well"
-    return f"{rms_words(gain)}; {square}{_lost_words(verdict)}"
+    lost = "; the model as it was given predicts every channel as well or better" * gain.lost
+    return f"{rms_words(gain)}; {square}{lost}{_lost_words(verdict)}"
 
 
 def _open(gain: Gain) -> bool:

@@ -26,7 +26,7 @@ def by_number(log: LogColumns, matches: Matches, spots: tuple[Spot, ...]) -> Mat
     """
     told = {m.spot for m in matches.found}
     free = [s for s in spots if s.quantity is Quantity.EFFORT and s not in told]
-    columns = {c: bare_name(c) for c in matches.left if c in log.values}
+    columns = {c: bare_name(log.called.get(c, c)) for c in matches.left if c in log.values}
     plain = [c for c in columns if log.units.get(c, "") in ("", "1", "%")]
     ours = _families((c, columns[c]) for c in plain)
     theirs = _families((s, s.name) for s in free)

@@ -157,9 +157,10 @@ def matched(log: LogColumns, spots: Sequence[Spot]) -> Matches:
 
 def _likeness(log: LogColumns, column: str, spot: Spot, spots: Sequence[Spot]) -> Likeness | None:
     rivals = [s for s in spots if (s.quantity, s.unit) == (spot.quantity, spot.unit)]
-    stem = re.sub(r"\d+", "#", bare_name(column))
-    family = [c for c in log.values if re.sub(r"\d+", "#", bare_name(c)) == stem]
-    zero = any(re.findall(r"\d+", bare_name(c))[-1:] == ["0"] for c in family)
+    names = {c: bare_name(log.called.get(c, c)) for c in log.values}
+    stem = re.sub(r"\d+", "#", names[column])
+    family = [name for name in names.values() if re.sub(r"\d+", "#", name) == stem]
+    zero = any(re.findall(r"\d+", name)[-1:] == ["0"] for name in family)
     zero = zero and not any(re.findall(r"\d+", s.name)[-1:] == ["0"] for s in rivals)
     spot = _numbered(spot, rivals, len(family))
     return likeness(log.said[column], _unit(log, column), spot, len(rivals) == 1, zero)

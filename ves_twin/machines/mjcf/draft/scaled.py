@@ -27,4 +27,4 @@ def words_of_scale(scales: Mapping[Match, float]) -> list[str]:
     if not any(abs(np.log(times)) > np.log(TOLD) for times in scales.values()):
         return []
     told = ", ".join(f"{times:.2f} times ({match.column})" for match, times in scales.items())
-    return [f"beside friction the log has {told} what the model needs: its masses, or a gain?"]
+    return [f"beside friction the log has {told} what the model needs: masses, rotors, or a gain?"]
