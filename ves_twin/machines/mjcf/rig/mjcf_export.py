@@ -97,12 +97,10 @@ def _assets(root: ElementTree.Element, there: Path, folder: Path | None = None) 
     if compiler is None or root.find("asset") is None:
         return
     for name in ("meshdir", "texturedir"):
-        old = Path(compiler.get(name, ""))
-        if folder is None:
-            compiler.set(name, (there / old).as_posix())
-        else:
-            own = old if old.is_absolute() else there / old
-            compiler.set(name, Path(os.path.relpath(own, folder)).as_posix())
+        own = there / compiler.get(name, "")  # what is absolute stays so
+        compiler.set(
+            name, (own if folder is None else Path(os.path.relpath(own, folder))).as_posix()
+        )
 
 
 def _check(read: mujoco.MjModel, model: mujoco.MjModel) -> None:
