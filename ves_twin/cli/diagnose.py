@@ -186,6 +186,11 @@ def _plant_sentence(found: Diagnosis) -> str:
         return "No extended plant was written: no cause is named."
     if found.refused:
         return f"The extended plant is a candidate, plant.candidate.toml: {found.refused}."
+    if found.verdict.gain is not None and found.verdict.gain.lost:
+        return (
+            "The extended plant is plant.toml. The model as it was given predicts every held-out"
+            " channel as well or better."
+        )
     return (
         "The extended plant is plant.toml; it passed on held-out recordings. ves-twin info --plant"
         " plant.toml --mjcf improved.xml writes it as plain MJCF, and says what that cannot carry."
