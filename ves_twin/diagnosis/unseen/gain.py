@@ -88,6 +88,18 @@ class Gain:
         return {name: (base, after) for (name, (_, after)), base in pairs}
 
     @property
+    def told(self) -> Mapping[str, tuple[float, float]]:
+        """The errors over the better of both models that there are without an extension.
+
+        In each channel: by the model as it was given, which is what its owner has, or as tuned.
+        """
+        found = {}
+        for name, (tuned, after) in self.over.items():
+            given = self.given.get(name, 0.0)
+            found[name] = (min(given, tuned) if given > 0.0 else tuned, after)
+        return found
+
+    @property
     def passed(self) -> bool:
         """The gate for writing an extended plant: the whole interval is a gain, by the causes.
 

@@ -114,15 +114,15 @@ def _lost_words(verdict: Verdict) -> str:
 
 def rms_words(gain: Gain) -> str:
     """What happens to the rms error on held-out recordings, where it falls most and least."""
-    falls = {name: 1.0 - after / before for name, (before, after) in gain.over.items() if before}
+    falls = {name: 1.0 - after / before for name, (before, after) in gain.told.items() if before}
     ends = sorted(falls, key=lambda name: falls[name])
-    told = [_moved(falls[name], name) for name in dict.fromkeys((*ends[-1:], *ends[:1]))]
+    told_of = dict.fromkeys((*ends[-1:], *ends[:1]))
+    told = [_moved(falls[name], name) for name in told_of]
     words = " and ".join(told) or "stays"
     if len(told) > 1 and all(one.startswith("falls ") for one in told):
         words = f"{told[0]} and {told[1].removeprefix('falls ')}"
-    given = (
-        "" if gain.over is gain.errors else ", over the model as given where its tuning is worse"
-    )
+    bent = any(gain.told[name][0] < gain.errors[name][0] for name in told_of)
+    given = ", over the model as given where its tuning is worse" * bent
     return f"the rms error on held-out recordings {words}{given}"
 
 

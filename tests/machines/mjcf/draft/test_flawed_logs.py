@@ -34,6 +34,13 @@ def test_the_stretches_that_are_advised_are_two_at_least(arm, columns, write):
     assert found.stretch == 0.0 or 1.5 * found.stretch < 3.0
 
 
+@pytest.mark.parametrize(("rows", "stretch"), [(401, 1.0), (601, 1.5), (1401, 2.0)])
+def test_a_short_log_is_cut_into_four_stretches_that_are_alike(swing, write, rows, stretch):
+    path, columns = swing
+    log = write({name: values[:rows] for name, values in columns.items()})
+    assert drafted(path, log)[0].stretch == stretch
+
+
 def test_a_position_that_drops_out_is_told_first(arm, columns, write):
     q2 = columns["q2"].copy()
     q2[300:307] = 9.0

@@ -34,6 +34,10 @@ from ves_twin.machines.mjcf.rig.machine import Rig
 STRETCH = 2.0
 """Usual length of a stretch that is held out [s]."""
 
+STRETCHES = 4
+"""Stretches that a short log is cut into at least, where each has rows enough: of two alone one is
+the slow half of a chirp, or what comes before an arm takes its load."""
+
 
 @dataclass(frozen=True)
 class Guess:
@@ -132,8 +136,8 @@ def draft(model: Path, logs: Sequence[Path], out: Path, rate: float | None = Non
 def _stretch(now: Version, log: LogColumns) -> float:
     """Length of stretches to hold out [s]; a last one of half a length is one, too.
 
-    The shortest that is enough where the usual one is not; 0 where none is, or the log is in pieces
-    already.
+    Shorter than usual where few would be had, and the shortest that is enough where the usual one
+    is not; 0 where none is, or the log is in pieces already.
     """
     length = max(STRETCH, float(np.ceil(ROWS / now.mode.rate)))
     if now.mode.horizon:
@@ -143,8 +147,10 @@ def _stretch(now: Version, log: LogColumns) -> float:
         return length
     if len(part.time) < FEWEST:
         return 0.0
-    usable = (one for one in (length, enough(part, now.mode.rate)) if _splits(now.rig, part, one))
-    return next(usable, 0.0)
+    shortest = enough(part, now.mode.rate)
+    few = float(f"{max(shortest, float(np.ptp(part.time)) / STRETCHES):.2g}")
+    lengths = (min(length, few), length, shortest)
+    return next((one for one in lengths if _splits(now.rig, part, one)), 0.0)
 
 
 def _splits(rig: Rig, part: Recording, length: float) -> bool:
