@@ -564,6 +564,9 @@ def test_what_ends_its_range_is_not_counted_as_proved(proven):
     assert ", accepted)" not in diagnosis_page(replace(ended, p_limit=0.05))
     assert next_step(ended).startswith("Look for what else is wrong")
     assert next_step(verdict).startswith("Simulate with the extended model")
+    both = replace(verdict, proved=(*verdict.proved, *ended.proved))
+    assert "The range of friction at plant ended the fit" in next_step(both)
+    assert "range" not in next_step(verdict)
     assert "0 extensions proved" in ended.words
     assert said.partition(":")[0] in ended.words
     assert said not in headline(verdict)

@@ -86,6 +86,20 @@ def test_columns_without_a_name_are_numbered_and_doubles_told_apart(table):
     assert names == ["t", "x", "x.2", "column_4"]
 
 
+@pytest.mark.parametrize(
+    "text",
+    [
+        "Friday\t17:15\tperiod 4 ms\nt\tU\tphi\n0\t1\t2\t\n1\t1\t3\t\n",  # rows alone
+        "Friday\t17:15\tperiod 4 ms\nt\tU\tphi\t\n0\t1\t2\n1\t1\t3\n",  # the header alone
+    ],
+)
+def test_a_header_is_found_where_it_or_the_rows_alone_end_with_a_separator(table, text):
+    """A recorder's rows had a tab at their ends, and all names were lost without a word."""
+    log = table(text)
+    assert [c.name for c in log.tables[0].columns][:3] == ["t", "U", "phi"]
+    assert np.array_equal(log.read("", ["phi"])["phi"], [2, 3])
+
+
 def test_rows_that_are_cut_and_cells_that_are_no_numbers_are_counted(table):
     log = table("t,x,y\n0,1,2\n1,OVL,3\n2,4,5\n3,6\n4,,7\n5,8")
     found = log.read("", ["t", "x", "y"])

@@ -150,15 +150,16 @@ def _columns(texts: list[str], split: _Split) -> tuple[tuple[Column, ...], froze
     heads = [_COMMENT.sub("", texts[i]) for i in above]
     if split.separator == SPACES:  # "x [mm]" is one name
         heads = [re.sub(r"\s+(?=[\[(])", "", head) for head in heads]
-    rows = [split_line(head, split.separator) for head in heads]
+    sample = [split_line(t, split.separator) for t in texts[split.first : split.first + SAMPLE]]
+    sample = [row for row in sample if len(row) == split.width]
+    closed = all(row[-1] == "" for row in sample)
+    rows = [_as_wide(split_line(head, split.separator), split.width, closed) for head in heads]
     rows = [row for row in rows if len(row) == split.width]
     units = [""] * split.width
     if len(rows) > 1 and _is_unit_row(rows[-1]):
         units = [spelled(cell.strip("[]()")) for cell in rows.pop()]
     names = rows[-1] if rows else [f"column_{i + 1}" for i in range(split.width)]
     names = unique_names([name or f"column_{i + 1}" for i, name in enumerate(names)])
-    sample = [split_line(t, split.separator) for t in texts[split.first : split.first + SAMPLE]]
-    sample = [row for row in sample if len(row) == split.width]
     columns, zoned = [], set()
     for i, (name, unit) in enumerate(zip(names, units, strict=True)):
         cells = [row[i] for row in sample if row[i] not in MISSING]
@@ -172,6 +173,19 @@ def _columns(texts: list[str], split: _Split) -> tuple[tuple[Column, ...], froze
                 zoned.add(name)
         columns.append(Column(name, unit or unit_of_name(name), kind))
     return tuple(columns), frozenset(zoned)
+
+
+def _as_wide(row: list[str], width: int, closed: bool) -> list[str]:
+    """Cells of a header, where it or the rows alone end with a separator.
+
+    Args:
+        row: its cells.
+        width: of the rows of numbers.
+        closed: whether each of those ends with a separator.
+    """
+    if len(row) == width - 1 and closed and any(row):
+        return [*row, ""]
+    return row[:-1] if len(row) == width + 1 and not row[-1] else row
 
 
 def _is_unit_row(cells: list[str]) -> bool:

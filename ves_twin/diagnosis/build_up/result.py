@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 TOGETHER = " + "
 """Between names of causes that only together do what another one does."""
@@ -59,6 +59,9 @@ class Proved:
             explains as well.
         unfollowed: channels where it acts that the extended model still predicts worse than their
             own mean: what makes a simulation out of step smaller improves it.
+        spoils: channels where it acts that the extended model predicts worse with it than without.
+        rests_on: causes without which its size is less than half. It is not firm where the size of
+            one of them ended: a motor that is too strong asked for a heavier wheel.
         bent: whether it is one of STRAIGHT, and one of SUBLINEAR of negative size is proved at its
             place: with it, its size is that of a line through a curve.
         drives: whether the friction of its place would push the joint on with it.
@@ -77,6 +80,8 @@ class Proved:
     wide: bool = False
     below_row: bool = False
     unfollowed: tuple[str, ...] = ()
+    spoils: tuple[str, ...] = ()
+    rests_on: tuple[str, ...] = ()
     bent: bool = False
     drives: bool = False
     one_way: bool = False
@@ -106,11 +111,20 @@ class Proved:
         other = (n for n in self.acts_like if n.partition("@")[0] not in none)
         return next(other, "") if self.drives else ""
 
-    def bent_by(self, others: Iterable[Proved]) -> bool:
-        """Whether it is a friction beside which one of others shows that it is sublinear."""
+    def beside(self, others: Iterable[Proved]) -> Proved:
+        """Itself as firm as the others leave it.
+
+        Not where it is a friction beside which one shows that it is sublinear, nor where it rests
+        on one whose size ended.
+        """
+        others = list(others)
+        out = {o.label for o in others if o.ended}
+        rests = tuple(name for name in self.rests_on if name in out)
         beside = [o for o in others if o.target == self.target and o.sublinear]
         known = any(next(iter(o.parameters.values())).high < 0.0 for o in beside)
-        return self.effect in STRAIGHT and known
+        bent = self.effect in STRAIGHT and known
+        firm = self.firm and not (bent or rests)
+        return replace(self, rests_on=rests, bent=bent, firm=firm)
 
 
 @dataclass(frozen=True)

@@ -198,9 +198,9 @@ def sized(
     and no interval holds the value that the model has already: a shape that is known so little is
     not known by name; of a vector one size must be away from it. Nor where an interval reaches an
     end of its range, which then says the size in place of the record, nor a delay below a row,
-    which the clock of the recordings may have, nor a kind of SUBLINEAR that is less than none, nor
-    a friction beside one. What full simulation fits to nothing is left out: its column improved
-    the prediction, its effect does not.
+    which the clock of the recordings may have, nor a kind of SUBLINEAR that is less than none; and
+    as others leave it (`Proved.beside`). What full simulation fits to nothing is left out: its
+    column improved the prediction, its effect does not.
 
     Args:
         built: what is proved.
@@ -228,7 +228,7 @@ def sized(
         firm = one.firm and cause.firm and known and not (ended or wide or below)
         told = replace(one, parameters=sizes, ended=ended, wide=wide, below_row=below)
         found.append(replace(told, firm=firm and not told.sublinear))
-    return tuple(replace(o, firm=False, bent=True) if o.bent_by(found) else o for o in found)
+    return tuple(one.beside(found) for one in found)
 
 
 def _ended(size: Estimate, low: float, high: float) -> bool:

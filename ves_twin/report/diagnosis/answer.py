@@ -105,8 +105,8 @@ def _otherwise(verdict: Verdict) -> str:
         return ""
     return (
         f" With all that, held-out recordings are {times[most]:.2g} times as far off as the fitted"
-        f" ones ({most}): what only these show is not proved there. --alternate with short stretches"
-        " holds out some of each motion."
+        f" ones ({most}): what only these show is not proved there. --alternate with short"
+        " stretches holds out some of each motion."
     )
 
 
@@ -137,14 +137,21 @@ def _with_proved(verdict: Verdict) -> str:
             " Look at numbers of the model and their tolerances, and diagnose again."
         )
     firm = [spoken(one.label) for one in verdict.proved if one.firm]
+    out = [spoken(one.label) for one in verdict.proved if one.ended]
+    wider = (
+        f" The range of {listed(out[:TOLD])} ended the fit: if the machine may be farther off than"
+        " that, widen it (`largest` of the effect) and diagnose again."
+        if out
+        else ""
+    )
     if firm:
-        return f"Simulate with the extended model, and look at {listed(firm[:TOLD])}."
+        return f"Simulate with the extended model, and look at {listed(firm[:TOLD])}.{wider}"
     if all(one.ended for one in verdict.proved):
         return "Look for what else is wrong: what was fitted ends its range and stands for that."
     turns = sorted({one.target for one in verdict.proved if one.one_way})
     turn = "turns" if len(turns) == 1 else "turn"
     motion = f"in which {listed(turns)} {turn} round as well" if turns else "in which they differ"
-    return f"Simulate with the extended model. A motion {motion} settles the names."
+    return f"Simulate with the extended model. A motion {motion} settles the names.{wider}"
 
 
 def tone(verdict: Verdict) -> str:

@@ -97,17 +97,31 @@ def standing_words(one: Proved) -> str:
         return "less than a row of the log: its clock explains that as well"
     if one.drives:
         return _driving_words(one)
-    if one.sublinear:
-        return "acts like it: friction that grows less than in proportion to speed reads so"
-    if one.bent:
-        return "acts like it: at its place friction grows less than in proportion to speed"
-    if one.unfollowed:
-        return f"acts like it: {', '.join(one.unfollowed[:SHOWN])} is still not followed at all"
-    if one.acts_like:
+    why = next((words for holds, words in _reasons(one) if holds), "")
+    if one.acts_like and not why:
         return f"acts like it,{_or(one.acts_like)}"
-    if one.wide:
-        return "acts like it: its interval reaches the end of its range"
-    return "acts like it: what is left, a tolerance or another cause follows the same motion"
+    other = "what is left, a tolerance or another cause follows the same motion"
+    return f"acts like it: {why or next((w for holds, w in _further(one) if holds), other)}"
+
+
+def _reasons(one: Proved) -> list[tuple[bool, str]]:
+    """Why it may not be the mechanism, whatever else acts like it."""
+    slow, lost = "friction grows less than in proportion to speed", one.unfollowed[:SHOWN]
+    return [
+        (one.sublinear, f"{slow.replace('friction', 'friction that')} reads so"),
+        (one.bent, f"at its place {slow}"),
+        (bool(lost), f"{', '.join(lost)} is still not followed at all"),
+    ]
+
+
+def _further(one: Proved) -> list[tuple[bool, str]]:
+    """Why not, where nothing else acts like it."""
+    rests = " and ".join(map(spoken, one.rests_on))
+    return [
+        (bool(rests), f"it rests on {rests}, whose range ends"),
+        (bool(one.spoils), f"{', '.join(one.spoils[:SHOWN])} is predicted worse with it"),
+        (one.wide, "its interval reaches the end of its range"),
+    ]
 
 
 def _driving_words(one: Proved) -> str:

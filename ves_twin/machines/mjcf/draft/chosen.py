@@ -215,10 +215,12 @@ def _noise(
     moved = [m.factor * log.column(m.column) for m in positions]
     rest, found = rest_of(moved, log.period), {}
     for m in check.found:
-        values = log.as_logged(m.column) if rest is None else log.column(m.column)
+        values, period = log.readings(m.column)
+        still = None if m.column in log.slower else rest
+        values = values if still is None else log.column(m.column)
         effort = m.spot.quantity is Quantity.EFFORT
         put_out = effort and is_command(log.said.get(m.column, m.column))
-        sd, how = noise_of(values, log.period, rest, put_out, effort and not put_out)
+        sd, how = noise_of(values, period, still, put_out, effort and not put_out)
         found[m.column] = (abs(m.factor) * sd, how)
     return found
 

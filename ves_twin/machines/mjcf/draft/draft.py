@@ -22,7 +22,8 @@ from ves_twin.machines.mjcf.draft.log_columns import LogColumns
 from ves_twin.machines.mjcf.draft.match import matched
 from ves_twin.machines.mjcf.draft.predicted import FEWEST
 from ves_twin.machines.mjcf.draft.shape import by_shape
-from ves_twin.machines.mjcf.draft.spots import spots_of
+from ves_twin.machines.mjcf.draft.spots import Quantity, spots_of
+from ves_twin.machines.mjcf.draft.steady import with_steady
 from ves_twin.machines.mjcf.draft.untold import untold
 from ves_twin.machines.mjcf.motion.forward import MjcfForward
 from ves_twin.machines.mjcf.motion.pieces import pieces
@@ -101,6 +102,8 @@ def draft(model: Path, logs: Sequence[Path], out: Path, rate: float | None = Non
     given, log = GivenModel.read(model), LogColumns.read(logs[0], rate)
     spots = spots_of(given.model)
     matches = by_number(log, by_shape(log, matched(log, spots), spots), spots)
+    log, matches = with_steady(log, matches, spots)
+    log = log.between([m.column for m in matches.found if m.spot.quantity is not Quantity.EFFORT])
     drafting = Drafting(model, logs[0], out, given, log, matches)
     now = drafting.best()
     for further in logs[1:]:
@@ -114,7 +117,7 @@ def draft(model: Path, logs: Sequence[Path], out: Path, rate: float | None = Non
     short, smooth = _short(now.rig, now.part), _smooth(now.mode)
     words = f"{now.mode.mode}: {now.mode.why}"
     stretch = 0.0 if short else _stretch(now, log)
-    found = (*given.notes, *log.notes, *now.check.findings)
+    found = (*given.notes, *log.notes, *_slower(log), *now.check.findings)
     look = (*found, *silent, *turned, *coarse, *smooth, *short)
     told = {name: max(share, 0.0) for name, share in now.explained.items()}
     return Draft(
@@ -160,6 +163,18 @@ def _splits(rig: Rig, part: Recording, length: float) -> bool:
     except InvalidInputError:
         return False
     return not any(_short(rig, one) for one in (*fit, *held))
+
+
+def _slower(log: LogColumns) -> list[str]:
+    """That readings come more slowly than rows, if they do."""
+    if not log.slower:
+        return []
+    rate = min(1.0 / log.readings(name)[1] for name in log.slower)
+    most = max(one.repeats for one in log.slower.values())
+    return [
+        f"{', '.join(log.slower)}: a reading is repeated for up to {most} rows until the next one"
+        f" comes, {rate:.2g} Hz in all: rows between are taken straight (`repeats`)"
+    ]
 
 
 def _smooth(mode: Chosen) -> list[str]:

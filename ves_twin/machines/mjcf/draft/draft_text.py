@@ -83,7 +83,7 @@ def draft_text(
         "",
         "[signals]",
     ]
-    lines = [*head, *_signals(check, mode)]
+    lines = [*head, *_signals(check, mode, log)]
     needed = [m for m in check.found if m.spot.joint and m.spot.joint in mode.imposed]
     lines += ["", "[compare]   # what drives must give; no drive is fed in"] if needed else []
     lines += [
@@ -172,19 +172,19 @@ def _unused(matches: Matches, check: Checked, mode: Chosen) -> Iterator[tuple[st
             yield match.column, "a speed, where positions are fed in"
 
 
-def _signals(check: Checked, mode: Chosen) -> Iterator[str]:
+def _signals(check: Checked, mode: Chosen, log: LogColumns) -> Iterator[str]:
     """A line for each signal: where the model has it, unit, constant, noise."""
     sensors: dict[str, list[Match]] = {}
     for match in check.found:
         if match.spot.quantity is Quantity.SENSOR:
             sensors.setdefault(match.spot.name, []).append(match)
         elif used(match, mode):
-            yield _signal([match], mode)
+            yield _signal([match], mode, log)
     for group in sensors.values():
-        yield _signal(sorted(group, key=lambda m: m.spot.axis), mode)
+        yield _signal(sorted(group, key=lambda m: m.spot.axis), mode, log)
 
 
-def _signal(group: list[Match], mode: Chosen) -> str:
+def _signal(group: list[Match], mode: Chosen, log: LogColumns) -> str:
     first = group[0]
     keys = {"columns": json.dumps([m.column for m in group], ensure_ascii=False)}
     known = first.unit in SI_UNITS or first.unit in LAB_UNITS
@@ -195,6 +195,8 @@ def _signal(group: list[Match], mode: Chosen) -> str:
     zero = mode.homes[first.column][0] if first.column in mode.homes else own
     if zero:
         keys["offset"] = f"{zero:.7g}"
+    slower = [log.slower[m.column].repeats for m in group if m.column in log.slower]
+    keys |= {"repeats": f"{max(slower)}"} if slower else {}
     if first.spot.quantity in (Quantity.POSITION, Quantity.SPEED):
         keys["joint"] = _quoted(first.spot.name)
         if first.spot.quantity is Quantity.SPEED:

@@ -291,7 +291,7 @@ class Judge:
         """With signs and constants of efforts as the motion needs them."""
         found, said = list(found), []
         for i, match in enumerate(found):
-            if match not in self.driving(found):
+            if match not in self.driving(found) or match.column in self.log.steady:
                 continue
             fit = self.fit(match, motion)
             if match.indirect and (fit.gain > TELLS or self.log.is_coarse(match.column)):

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from pathlib import Path
@@ -19,6 +19,7 @@ from ves_twin.data.empty_cells import FEW, filled, lone
 from ves_twin.data.formats.log import Column, Kind
 from ves_twin.data.formats.open_log import open_log
 from ves_twin.data.mapping.column_expression import ColumnExpression
+from ves_twin.data.repeats import read_at, repeats, unheld
 from ves_twin.machines.mjcf.draft.said import said
 
 FEWEST = 64
@@ -46,6 +47,21 @@ has two or three, and volts in steps hold theirs."""
 
 
 @dataclass(frozen=True)
+class Readings:
+    """What a column says whose readings stand in the log until the next one comes.
+
+    Attributes:
+        repeats: rows that each stands for.
+        values: at even steps, straight between readings.
+        alone: the readings.
+    """
+
+    repeats: int
+    values: FloatArray
+    alone: FloatArray
+
+
+@dataclass(frozen=True)
 class LogColumns:
     """Columns of numbers of a log.
 
@@ -57,6 +73,8 @@ class LogColumns:
         values: column -> rows (n,) at even steps.
         units: column -> unit as the file or the name says it; empty if neither does.
         constant: columns that never change.
+        steady: rows of those that hold a number, as the volts of a step.
+        slower: column -> its readings, of those that come more slowly than the rows.
         empty: columns that hold no number in many rows.
         notes: what a reader of the draft should know, a sentence each.
         window: first and last time of the rows that are used [s]; None: all.
@@ -76,6 +94,8 @@ class LogColumns:
     window: tuple[float, float] | None = None
     logged: Mapping[str, FloatArray] = field(default_factory=dict)
     called: Mapping[str, str] = field(default_factory=dict)
+    steady: Mapping[str, FloatArray] = field(default_factory=dict)
+    slower: Mapping[str, Readings] = field(default_factory=dict)
 
     @property
     def rows(self) -> int:
@@ -85,7 +105,7 @@ class LogColumns:
     @cached_property
     def said(self) -> Mapping[str, str]:
         """What the name of each column says, or what the file calls it."""
-        return {**said(self.values), **self.called}
+        return {**said([*self.values, *self.steady]), **self.called}
 
     def column(self, text: str) -> FloatArray:
         """Rows (n,) of a column, or of a formula of columns as a machine's file may hold one."""
@@ -95,6 +115,19 @@ class LogColumns:
     def as_logged(self, text: str) -> FloatArray:
         """The same without interpolation, which takes half of the noise of jittering rows away."""
         return replace(self, values=self.logged or self.values).column(text)
+
+    def between(self, columns: Collection[str]) -> LogColumns:
+        """With those of some columns that come more slowly than rows taken between readings."""
+        slower = {name: one for name, one in self.slower.items() if name in columns}
+        values = {**self.values, **{name: one.values for name, one in slower.items()}}
+        return replace(self, values=values, slower=slower)
+
+    def readings(self, text: str) -> tuple[FloatArray, float]:
+        """Rows of a column without any that is repeated, and the step between them [s]."""
+        slower = self.slower.get(text)
+        if slower is None:
+            return self.as_logged(text), self.period
+        return slower.alone, self.period * self.rows / len(slower.alone)
 
     def is_coarse(self, text: str) -> bool:
         """Whether a column's sd is less than STEPS of its resolution: it hardly tells anything.
@@ -137,7 +170,11 @@ class LogColumns:
         if rate is None:
             clock, scale = fields[0].column, fields[0].scale
             if fields[0].guessed:
-                notes.append(f"clock {clock}: no unit is given, {fields[0].unit} is a guess")
+                ones = bool(np.all(np.diff(read[clock]) == 1.0))
+                counts = ": if it counts rows, --rate says how many a second" * ones
+                notes.append(
+                    f"clock {clock}: no unit is given, {fields[0].unit} is a guess{counts}"
+                )
             period = _period(scale * read[clock], clock, notes)
         full = {c.name: table.full_name(c.name) for c in table.columns}
         named = [replace(c, name=full[c.name]) for c in table.columns]
@@ -216,8 +253,19 @@ def _sorted(
             expected += " messages exports them, are put on one clock by ves-twin import --map"
         raise InvalidInputError(f"columns of {path.name}", came or "none", expected)
     told = tuple(constant), tuple(empty), tuple(notes)
-    called = {c.name: c.said for c in columns if c.said and c.name in values}
-    return LogColumns(path.name, clock, scale, period, values, units, *told, window, used, called)
+    called = {c.name: c.said for c in columns if c.said and c.name in used}
+    steady = {n: np.full(len(even), used[n][0]) for n in constant if used[n][0] != 0.0}
+    found = LogColumns(path.name, clock, scale, period, values, units, *told, window, used, called)
+    slower = {n: (v, repeats(v)) for n, v in used.items()}
+    return replace(
+        found,
+        steady=steady,
+        slower={
+            n: Readings(most, np.interp(even, own, unheld(v, most)), v[read_at(v, most)])
+            for n, (v, most) in slower.items()
+            if most > 1
+        },
+    )
 
 
 def _few(names: list[str]) -> str:

@@ -19,6 +19,7 @@ from ves_twin.data.empty_cells import FEW, MOST, filled, lone
 from ves_twin.data.formats.log import Kind, Log
 from ves_twin.data.formats.open_log import open_log
 from ves_twin.data.mapping.column_expression import ColumnExpression
+from ves_twin.data.repeats import unheld
 from ves_twin.machines.mjcf.parts.joint_units import joint_units
 from ves_twin.machines.mjcf.parts.turned import turned
 from ves_twin.machines.mjcf.recordings.signals import rig_signals
@@ -61,6 +62,7 @@ def read_rig_recording(path: Path, rig: Rig) -> Recording:
     time, signals, said = time[inside], dict[str, FloatArray](), list[str]()
     for name, column in told.signals.items():
         whole = [table.column(c, inside, path, held(rig, name), poses) for c in column.columns]
+        whole = [unheld(values, column.repeats) for values in whole]
         signals[name] = np.asarray(column.scale * np.stack(whole, axis=1) + column.offset)
         if not poses and _turns(rig, name):
             angle, wraps = unwrapped(signals[name][:, 0], 2.0 * np.pi)

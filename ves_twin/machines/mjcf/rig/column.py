@@ -32,13 +32,15 @@ class Column(Part):
     the frame of a signal that holds a quaternion x, y, z, w (sensor to world). A column may be a
     formula of columns. Where the signal says `joint`, `actuator` or `sensor`, it needs no entry in
     `compare` and none in `drive`: that mode and place decide whether it is fed in or compared.
-    `axis`: the one number of three that is measured of the sensor, in its own frame.
+    `repeats`: rows that a reading stands for until the next one comes; those between are taken
+    straight. `axis`: the one number of three that is measured of the sensor, in its own frame.
     """
 
     columns: tuple[str, ...] = Field(min_length=1)
     unit: Unit
     scale: float = 1.0
     offset: float = 0.0
+    repeats: int = Field(default=1, ge=1)
     noise: Number | tuple[Number, ...] = 0.0
     into: str = ""
     joint: str = ""
