@@ -60,9 +60,11 @@ attack: .venv/.dev
 mutation: .venv/.dev
 	$(BIN)/python benchmarks/mutation.py runs/mutation.jsonl
 
-# Compiles the inner loop, which takes most of a minute where no cache has it.
+# Compiles the inner loops, which takes most of a minute where no cache has them.
 loop: .venv/.run
 	$(BIN)/ves-twin run beam_horizontal_truth --no-rrd --set run.duration=0.1 --out runs/loop
+	rm -rf runs/loop-pendulum runs/loop-pendulum.key
+	$(BIN)/ves-twin blind make --machine pendulum --cases 1 --none 0 --outside 0 --pair 0 --out runs/loop-pendulum
 
 lint: .venv/.dev
 	$(BIN)/ruff check . && $(BIN)/ruff format --check .

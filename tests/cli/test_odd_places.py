@@ -54,7 +54,7 @@ def test_an_empty_argument_is_refused_and_nothing_is_touched(words, tmp_path, mo
 def test_letters_that_the_locale_lacks_harm_no_command(tmp_path):
     commands = [
         ["run", "position_sine", *SHORT, "--out", "versé"],
-        ["compare", "versé", "--out", "versé/c"],
+        ["compare", "versé", "--against", "versé", "--out", "versé/c"],
         ["export", "versé", "--out", "versé/é.csv"],
         ["export", "versé", "--out", "versé/é.parquet"],
         ["sweep", "position_sine", *SHORT, "--vary", "seed=1", "--workers=1", "--out", "versé/s"],

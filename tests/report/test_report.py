@@ -2,9 +2,11 @@
 
 import re
 from dataclasses import replace
+from html import escape
 
 import numpy as np
 import pytest
+from matplotlib.text import Text
 from rerun.chunk import RrdReader
 from toy import Toy, programme, record
 
@@ -34,6 +36,7 @@ from ves_twin.report.diagnosis.page import diagnosis_page
 from ves_twin.report.diagnosis.pictures import answer_figure
 from ves_twin.report.diagnosis.proved import FEW, inseparable_lines, near_sentence
 from ves_twin.report.diagnosis.words import interval_words, size_words, spoken
+from ves_twin.report.html import Html, markup
 from ves_twin.report.rerun.diagnosis import (
     diagnosis_blueprint,
     onset_of,
@@ -67,6 +70,17 @@ def proven(settings):
 @pytest.fixture(scope="module")
 def proven_page(proven):
     return diagnosis_page(proven, "Diagnosis of <run>", "The plant is plant.toml.")
+
+
+@pytest.fixture
+def undrawn(monkeypatch):
+    """Pictures of their words alone, for tests of words: drawing takes most of a page's time."""
+
+    def spelled(figure, name, caption):
+        told = " ".join(text.get_text() for text in figure.findobj(Text))
+        return Html(f"<figure>{escape(told)}<figcaption>{markup(caption)}</figcaption></figure>")
+
+    monkeypatch.setattr("ves_twin.report.diagnosis.pictures.svg", spelled)
 
 
 def first_screen(page):
@@ -113,6 +127,7 @@ def test_the_figures_behind_it_have_size_interval_gain_and_basis(proven, proven_
     assert "declared, not measured" in top
 
 
+@pytest.mark.usefixtures("undrawn")
 def test_without_held_out_data_the_first_screen_says_so_and_is_no_surer(friction):
     top = first_screen(diagnosis_page(friction))
     assert "Best explained by friction at plant" in top
@@ -140,6 +155,7 @@ def test_a_gain_that_is_not_clear_takes_the_word_found_away(proven):
     assert "Found" not in headline(loose)
 
 
+@pytest.mark.usefixtures("undrawn")
 def test_nothing_is_good_news_only_as_far_as_the_recording_can_show(settings):
     nothing = said(settings, {}, seed=1)
     assert nothing.verdict is Kind.NOTHING
@@ -167,6 +183,7 @@ def test_every_rival_has_a_reason(friction):
         assert rival.standing is not Standing.LOST or lost_by_data or rival.pull > 3.0
 
 
+@pytest.mark.usefixtures("undrawn")
 def test_a_pair_tells_what_each_alone_would_leave(settings):
     pair = said(settings, {"friction.size": 0.02, "bump.size": -0.15})
     assert pair.verdict is Kind.SEVERAL
@@ -176,6 +193,7 @@ def test_a_pair_tells_what_each_alone_would_leave(settings):
     assert "alone it leaves" in diagnosis_page(pair)
 
 
+@pytest.mark.usefixtures("undrawn")
 def test_an_unknown_shows_the_nearest_and_does_not_accept_it(settings):
     u = HELD.drive["drive.u"][:, 0]
     data = record(np.random.default_rng(3), added=(u**3)[:, None] * [0.02, 0.0], fed=HELD)
@@ -192,6 +210,7 @@ def test_an_unknown_shows_the_nearest_and_does_not_accept_it(settings):
     assert size_words(next(iter(near.parameters.values()))) in suspect_words(verdict)
 
 
+@pytest.mark.usefixtures("undrawn")
 def test_what_predicts_held_out_data_worse_than_the_given_model_is_no_candidate(settings):
     u = HELD.drive["drive.u"][:, 0]
     data = record(np.random.default_rng(3), added=(u**3)[:, None] * [0.02, 0.0], fed=HELD)
@@ -360,6 +379,7 @@ def twins(settings):
     return diagnose(plant, [data], next_programmes=lambda: [programme(8)], settings=settings)
 
 
+@pytest.mark.usefixtures("undrawn")
 def test_an_ambiguous_group_is_told_as_one_of_several_with_what_to_record_next(twins):
     assert twins.verdict is Kind.AMBIGUOUS
     page = diagnosis_page(twins)
@@ -457,6 +477,7 @@ def test_a_tolerance_that_gives_way_to_a_fault_is_told_with_what_was_proved(prov
     assert "by up to 7 sd: inertia at hub" in headline(replace(other, tuned=listed))
 
 
+@pytest.mark.usefixtures("undrawn")
 def test_a_proved_extension_that_is_not_firm_acts_like_its_name_and_its_stand_ins(proven):
     verdict = proof_of(proven, firm=False)
     assert "Something that acts like friction at plant" in headline(verdict)
@@ -479,6 +500,7 @@ def test_the_terminal_tells_a_few_combinations_that_are_not_separated_and_each_o
     assert lines[-1] == "3 more combinations are in report.html"
 
 
+@pytest.mark.usefixtures("undrawn")
 def test_where_more_is_wrong_sizes_of_noise_alone_are_not_promised(proven):
     verdict = proof_of(proven, firm=False)
     page, sure = diagnosis_page(verdict), diagnosis_page(proven)
@@ -498,6 +520,7 @@ def test_where_more_is_wrong_sizes_of_noise_alone_are_not_promised(proven):
     assert "Intervals count what is left unexplained" in said
 
 
+@pytest.mark.usefixtures("undrawn")
 def test_numbers_of_the_model_that_the_fit_moved_are_told_beside_what_they_alone_leave(proven):
     """A fault within a wide tolerance is no cause, and takes most of the error away."""
     surely, maybe = Estimate(3e-4, 2e-4, 4e-4, "1", 1e-4), Estimate(3e-4, 0.0, 4e-4, "1", 1e-4)
@@ -510,6 +533,7 @@ def test_numbers_of_the_model_that_the_fit_moved_are_told_beside_what_they_alone
         assert error.after_si <= error.tolerances_si <= error.before_si
 
 
+@pytest.mark.usefixtures("undrawn")
 def test_what_is_left_is_told_with_the_few_signals_that_it_follows_most(proven):
     verdict = proof_of(proven, firm=True)
     many = {f"drive.{k}": 0.1 * k for k in range(1, 7)}
@@ -519,6 +543,7 @@ def test_what_is_left_is_told_with_the_few_signals_that_it_follows_most(proven):
     assert "out.1 (+0.70)" in page
 
 
+@pytest.mark.usefixtures("undrawn")
 def test_a_number_that_its_limit_holds_is_told_first_and_without_an_interval(proven):
     """Held at 5 sd it stands for a cause that was not found: noise alone says nothing of it."""
     sure = Estimate(3e-4, 2.9e-4, 3.1e-4, "1", 1e-4)
@@ -544,6 +569,7 @@ def test_a_number_that_its_limit_holds_is_told_first_and_without_an_interval(pro
     assert "limit of its tolerance" not in headline(replace(verdict, tuned={"inertia@hub:x": sure}))
 
 
+@pytest.mark.usefixtures("undrawn")
 def test_what_is_accepted_since_every_error_falls_is_not_called_no_clear_gain(proven):
     verdict = proof_of(proven, firm=False)
     gain = Gain(-0.16, -0.19, -0.13, 4.0, 4.6, {"out.0": (2.9, 2.0)})
@@ -554,6 +580,7 @@ def test_what_is_accepted_since_every_error_falls_is_not_called_no_clear_gain(pr
     assert "no clear gain" in diagnosis_page(replace(verdict, gain=gain, proved=()))
 
 
+@pytest.mark.usefixtures("undrawn")
 def test_what_ends_its_range_is_not_counted_as_proved(proven):
     verdict = proof_of(proven, firm=False)
     ended = replace(verdict, proved=(replace(verdict.proved[0], ended=True),))
@@ -599,6 +626,7 @@ def test_where_tolerances_explain_the_record_the_next_step_is_to_say_what_is_kno
     assert step.startswith("Narrow the tolerances of what you know better than declared")
 
 
+@pytest.mark.usefixtures("undrawn")
 def test_the_page_tells_how_many_were_tried_what_is_left_and_what_is_not_separated(proven):
     page = diagnosis_page(proof_of(proven, firm=True))
     said = re.sub(r"<[^>]*>", " ", page)
@@ -640,6 +668,7 @@ def test_a_gain_that_leaves_more_than_a_channel_moves_by_says_so(proven, spread,
     assert ("rail is still predicted worse than by a constant" in words) is told
 
 
+@pytest.mark.usefixtures("undrawn")
 def test_causes_whose_p_one_stretch_of_time_may_turn_are_told_on_both_sides_of_the_limit(proven):
     sure = proof_of(proven, firm=True)
     assert not near_sentence(sure)  # p is 1e-5, of 0.02 that are allowed
@@ -661,6 +690,7 @@ def test_what_is_proved_stands_in_the_verdict_file(proven):
     assert told["left"]["out.0"]["rms"] == 0.02
 
 
+@pytest.mark.usefixtures("undrawn")
 def test_no_loud_cell_is_said_beside_the_threshold_and_not_as_noise(proven):
     quiet = replace(proven, leftover=replace(proven.leftover, loud=()))
     page = diagnosis_page(quiet)
@@ -672,6 +702,7 @@ def factor(verdict, name):
     return next(one for one in credibility(verdict) if one.name == name)
 
 
+@pytest.mark.usefixtures("undrawn")
 def test_validated_is_said_of_external_held_out_recordings_with_a_gain_and_of_nothing_else(
     proven, proven_page
 ):
@@ -710,6 +741,7 @@ def test_what_is_declared_is_called_assumed_and_what_is_flawed_is_not_called_mea
     assert len(credibility(proven)) == 8
 
 
+@pytest.mark.usefixtures("undrawn")
 def test_flaws_that_repeat_unfold_behind_the_first_of_each_sort(friction):
     repeats = [failed("repeats", f"recording {n}: 5 rows repeat") for n in range(1, 61)]
     stays = [failed("saturation", "recording 3: duty stays at its end")]

@@ -65,6 +65,12 @@ def standing(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("ves_twin.machines.ves2.loop_noise.simulate", partial(once, simulate))
 
 
+@pytest.fixture
+def unpictured(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A comparison without its page, whose pictures take most of its time; others draw it."""
+    monkeypatch.setattr("ves_twin.report.comparison.page.comparison_page", lambda comparison: "")
+
+
 def pytest_configure(config: pytest.Config) -> None:
     if not hasattr(config, "workerinput"):
         os.environ[FOLDER] = tempfile.mkdtemp(prefix="ves_twin-tests-")

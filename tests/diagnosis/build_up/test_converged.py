@@ -90,7 +90,7 @@ def evidence(tmp_path_factory):
     (folder / "oscillator.toml").write_text(DESCRIPTION)
     forward = MjcfForward.of(Rig.load(str(folder / "oscillator.toml")))
     rng = np.random.default_rng(1)
-    time = 0.01 * np.arange(2500)
+    time = 0.01 * np.arange(1500)
     phases = rng.uniform(0.0, 2.0 * np.pi, 30)
     tones = np.cos(2.0 * np.pi * np.outer(time, np.linspace(0.2, 2.5, 30)) + phases)
     fed = Excitation("tones", time, {"u": 0.8 * tones.sum(axis=1, keepdims=True)}, rate=50.0)

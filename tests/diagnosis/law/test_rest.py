@@ -33,7 +33,7 @@ def root_of_speed(speed: np.ndarray) -> np.ndarray:
 
 def recorded(rig: Rig, seed: int, lawful: bool) -> Recording:
     forward = MjcfForward.of(rig)
-    time, angles = motion(20.0, seed)
+    time, angles = motion(12.0, seed)
     fed = Excitation("", time, {"qa": angles[:, :1], "qb": angles[:, 1:]})
     rows = forward.simulate(fed, HIDDEN)
     path = forward.visited(fed, {})

@@ -171,9 +171,9 @@ def test_rigs_in_order_are_left_in_peace(settings):
     nightly_but(
         1,
         [
+            ("joint_spring", {SPRING: 0.02}),
             ("sensor_offset", {BIAS: -0.013}),
             ("coulomb_friction", {FRICTION: 0.004}),
-            ("joint_spring", {SPRING: 0.02}),
             ("sensor_delay", {LATE: 0.0024}),
         ],
     ),

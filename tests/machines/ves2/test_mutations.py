@@ -99,8 +99,11 @@ def score(cases, settings, plant=None, **material) -> dict[str, tuple[int, int]]
 @pytest.mark.slow
 @pytest.mark.parametrize(
     ("suite", "row"),
-    [(NONE, QUIET), (SINGLE, EXACT), (LACKING, ABSTAINS)],
-    ids=["in order", "one cause", "outside"],
+    [
+        pytest.param(NONE, QUIET, id="in order"),
+        pytest.param(SINGLE, EXACT, id="one cause"),
+        pytest.param(LACKING, ABSTAINS, id="outside", marks=pytest.mark.nightly),
+    ],
 )
 def test_intact_the_suite_has_full_marks(suite, row, settings, cases):
     count = cases(3)

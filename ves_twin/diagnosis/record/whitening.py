@@ -180,16 +180,27 @@ class Whitening:
             return np.asarray(rows @ self.mixing[k].T)
         if rows.size == 0:  # a bank whose every entry is a column has no shapes of its own
             return np.zeros((*rows.shape[:-2], rows.shape[-2] - ORDER, rows.shape[-1]))
-        count, filters = rows.shape[-2] - ORDER, self.filters[k]
-        shaped = rows[..., ORDER:, :] * filters[:, 0]
+        width, count = rows.shape[-1], rows.shape[-2] - ORDER
+        flat, taps = _in_line(rows), np.tile(self.filters[k].T, count)
+        shaped = flat[..., ORDER * width :] * taps[0]
         for lag in range(1, ORDER + 1):
-            shaped += rows[..., ORDER - lag : ORDER - lag + count, :] * filters[:, lag]
-        return np.asarray(shaped @ self.mixing[k].T)
+            begin = (ORDER - lag) * width
+            shaped += flat[..., begin : begin + count * width] * taps[lag]
+        return np.asarray(shaped.reshape(*rows.shape[:-2], count, width) @ self.mixing[k].T)
 
     def _levelled(self, k: int, white: FloatArray) -> FloatArray:
         if self.runs.programmes[k].poses:
             return np.asarray(white / self.level[k])
-        return np.asarray((white[..., 1:, :] - self.colour[k] * white[..., :-1, :]) / self.level[k])
+        width, count = white.shape[-1], max(white.shape[-2] - 1, 0)
+        flat, colour = _in_line(white), np.tile(self.colour[k], count)
+        left = flat[..., width:] - colour * flat[..., : count * width]
+        left /= np.tile(self.level[k], count)
+        return np.asarray(left.reshape(*white.shape[:-2], count, width))
+
+
+def _in_line(rows: FloatArray | SingleArray) -> FloatArray | SingleArray:
+    """Rows (..., n, c) as (..., n c): lines are several times as fast as rows of few channels."""
+    return rows.reshape(*rows.shape[:-2], rows.shape[-2] * rows.shape[-1])
 
 
 def whitening_of(runs: Runs, standstill: Recording | None) -> Whitening:

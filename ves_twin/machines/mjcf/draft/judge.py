@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import mujoco
 import numpy as np
@@ -102,9 +102,19 @@ class Judge:
     corner: float
     locked: tuple[str, ...] = ()
     cyclic: tuple[str, ...] = ()
+    _kept: dict[tuple[Match, ...], Motion] = field(default_factory=dict, init=False, compare=False)
 
     def motion(self, found: list[Match]) -> Motion:
-        """Along the positions as they are matched, and the speeds of joints without one."""
+        """Along the positions as they are matched, and the speeds of joints without one.
+
+        It is kept: a change of an effort's sign leaves it, and who weighs a change asks twice.
+        """
+        moving = tuple(m for m in found if m.spot.quantity is not Quantity.EFFORT)
+        if moving not in self._kept:
+            self._kept[moving] = self._motion(moving)
+        return self._kept[moving]
+
+    def _motion(self, found: tuple[Match, ...]) -> Motion:
         positions = {}
         for m in found:
             if m.spot.quantity is Quantity.POSITION:

@@ -60,11 +60,14 @@ def motion_of(
     try:
         data = mujoco.MjData(model)
         effort, steady = np.zeros((2, len(rows), model.nv))
+        position, speed, pull, needed = data.qpos, data.qvel, data.qacc, data.qfrc_inverse
         for k in range(len(rows)):
-            for pull, into in ((a[k], effort), (np.zeros(model.nv), steady)):
-                data.qpos[:], data.qvel[:], data.qacc[:] = q[k], v[k], pull
-                mujoco.mj_inverse(model, data)
-                into[k] = data.qfrc_inverse
+            position[:], speed[:], pull[:] = q[k], v[k], a[k]
+            mujoco.mj_inverse(model, data)
+            effort[k] = needed
+            pull[:] = 0.0
+            mujoco.mj_inverseSkip(model, data, mujoco.mjtStage.mjSTAGE_VEL, 1)
+            steady[k] = needed
     finally:
         model.opt.disableflags = quiet
     return Motion(rows, v, effort, steady)

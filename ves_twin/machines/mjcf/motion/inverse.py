@@ -276,5 +276,12 @@ def smoothed(column: FloatArray, period: float, corner: float) -> FloatArray:
     share = 2.0 * corner * period
     if share >= 0.9:
         return column
-    b, a = butter(ORDER, share)
+    b, a = _low_pass(share)
     return np.asarray(filtfilt(b, a, column))
+
+
+@lru_cache
+def _low_pass(share: float) -> tuple[FloatArray, FloatArray]:
+    """Of a corner as a share of half the rate; its design takes longer than its use."""
+    b, a = butter(ORDER, share)
+    return b, a
