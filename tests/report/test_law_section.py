@@ -142,3 +142,10 @@ def test_a_law_of_what_causes_leave_has_a_column_of_the_held_out_table():
     assert "after  with law" in rows[1]
     assert rows[-1].split()[-3:] == ["0.59", "0.136", "rad"]
     assert "with law" not in " ".join(held_out_table(replace(told, law=LAW)))
+
+
+def test_a_law_beside_a_cause_whose_range_ended_may_stand_for_the_rest_of_it():
+    """A reaction wheel's friction had a law beside a rod of which the range let half a kilogram go."""
+    said = " ".join(law_sentences(LAW, ["body mass at rod"]))
+    assert "the range of body mass at rod ended: it may stand for the rest of that" in said
+    assert "ended" not in " ".join(law_sentences(LAW))

@@ -210,6 +210,7 @@ def _text(found: Diagnosis, folder: Path) -> str:
     from ves_twin.report.diagnosis.law import law_sentences
     from ves_twin.report.diagnosis.out_of_step import out_of_step_sentence
     from ves_twin.report.diagnosis.proved import (
+        ended,
         inseparable_lines,
         near_sentence,
         proof_sentence,
@@ -235,7 +236,7 @@ def _text(found: Diagnosis, folder: Path) -> str:
     said = {"tuned": tuned_words(verdict), "gain": gain_words(verdict)}
     lines += [f"{name:<10}{words}" for name, words in said.items() if words]
     if verdict.law is not None:
-        every = law_sentences(verdict.law)
+        every = law_sentences(verdict.law, ended(verdict))
         first, *rest = every[2:] if verdict.law.claimed else every
         lines += [f"law       {first}", *(f"          {text}" for text in rest)]
     if verdict.put_to_proof is not None:

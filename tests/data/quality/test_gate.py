@@ -61,6 +61,7 @@ def test_rows_that_a_logger_held_are_repeats(healthy):
     words = found(vt.Recording(healthy.time, held, healthy.info))["repeats"]
     count = len(healthy)
     assert words.startswith(f"{count // 2} of {count} rows repeat the one before, first at 0.013 s")
+    assert "stand for up to 2: `repeats = 2`" in words
     once = {n: np.r_[values[:6], values[5:-1]] for n, values in healthy.signals.items()}
     assert "repeats" not in found(vt.Recording(healthy.time, once, healthy.info))  # harms nothing
 
@@ -76,6 +77,7 @@ def test_rows_of_a_slow_encoder_repeat_by_its_resolution_and_no_fault(speed, hel
     words = {c.name: c.message for c in check_clock(recording) if c.grade is Grade.FAILED}
     assert ("repeats" in words) == held
     assert not held or words["repeats"].startswith("2 of 400 rows repeat")
+    assert "come more slowly" not in words.get("repeats", "")
 
 
 def test_another_rate_than_declared_is_found(healthy):

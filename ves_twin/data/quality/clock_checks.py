@@ -7,6 +7,7 @@ import numpy as np
 from ves_twin.core.recording.recording import Recording
 from ves_twin.data.clock.usual_period import is_usual
 from ves_twin.data.quality.check import Check, failed, passed, unknown
+from ves_twin.data.repeats import repeats
 
 JITTER = 0.05
 """Rows that lie off the even clock by more than this share of a period are jitter."""
@@ -77,5 +78,15 @@ def _repeats(recording: Recording) -> Check:
     if len(held) > 1 and np.any((held > first) & (held < last)):
         begin, said = recording.time[held[0] + 1], f"{len(held)} of {len(recording)} rows"
         said += " repeat the one before"
-        return failed("repeats", f"{said}, first at {begin:.3f} s")
+        most = max(_stands(values) for values in recording.signals.values())
+        slow = (
+            f"; readings come more slowly than rows and stand for up to {most}: `repeats = {most}`"
+            " in the file of a machine of yours takes them straight between"
+        )
+        return failed("repeats", f"{said}, first at {begin:.3f} s{slow * (most > 1)}")
     return passed("repeats", "none")
+
+
+def _stands(values: np.ndarray) -> int:
+    """Rows that a reading stands for at most, in any column of a signal (n, c)."""
+    return max((repeats(column) for column in values.T if np.all(np.isfinite(column))), default=1)

@@ -164,7 +164,7 @@ class Builder:
         for last in range(ROUNDS):
             if budget.skips(ANEW):
                 break
-            self.desk.progress(0.0, f"fitting {len(chosen)} causes together")
+            self.desk.progress(0.0, f"fitting {_counted(chosen)} together")
             regression = halves.regression
             evidence = self.evidence(regression.fit(chosen).residual)
             fit = in_full(regression, chosen, point, evidence)
@@ -192,7 +192,7 @@ class Builder:
         self, halves: Halves, point: FloatArray, chosen: list[int], known: frozenset[str]
     ) -> Offer:
         """What is proved of a choice, fitted in full."""
-        self.desk.progress(0.0, f"putting {len(chosen)} causes to proof")
+        self.desk.progress(0.0, f"putting {_counted(chosen)} to proof")
         labels = frozenset(halves.regression.trials[n].cause.label for n in chosen)
         more = len(known - labels)
         proof = next_of_kin(weighed(halves.regression, halves.held, chosen, more))
@@ -347,6 +347,10 @@ class Builder:
         if set(again.proved) == set(proof.proved):
             return replace(offer, proof=again, known=known)
         return self._fitted(offer.halves, offer.point, again, known)
+
+
+def _counted(chosen: Sequence[int]) -> str:
+    return "1 cause" if len(chosen) == 1 else f"{len(chosen)} causes"
 
 
 def _places(halves: Halves, present: Sequence[Trial]) -> list[int]:

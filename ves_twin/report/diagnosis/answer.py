@@ -13,6 +13,7 @@ from ves_twin.report.diagnosis.coarse_step import finer
 from ves_twin.report.diagnosis.law import worth_sentence
 from ves_twin.report.diagnosis.limits import next_sentences
 from ves_twin.report.diagnosis.out_of_step import shorter
+from ves_twin.report.diagnosis.proved import ended
 from ves_twin.report.diagnosis.strained import check_sentence, strained_sentence
 from ves_twin.report.diagnosis.words import (
     TOLD,
@@ -137,7 +138,7 @@ def _with_proved(verdict: Verdict) -> str:
             " Look at numbers of the model and their tolerances, and diagnose again."
         )
     firm = [spoken(one.label) for one in verdict.proved if one.firm]
-    out = [spoken(one.label) for one in verdict.proved if one.ended]
+    out = ended(verdict)
     wider = (
         f" The range of {listed(out[:TOLD])} ended the fit: if the machine may be farther off than"
         " that, widen it (`largest` of the effect) and diagnose again."

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -12,7 +12,7 @@ from ves_twin.core.types import FloatArray
 from ves_twin.diagnosis.law.result import LawFinding, LawRival
 from ves_twin.report.colours import AFTER, MEASURED
 from ves_twin.report.diagnosis.basis import rms_words, taken_words
-from ves_twin.report.diagnosis.words import capital
+from ves_twin.report.diagnosis.words import capital, listed
 from ves_twin.report.figure import new_figure, svg
 from ves_twin.report.html import Html, bullets, folded, paragraph, table
 
@@ -33,10 +33,14 @@ DRAWN = 400
 """Places at which a law is drawn, from end to end of what was seen."""
 
 
-def law_sentences(law: LawFinding) -> list[str]:
+def law_sentences(law: LawFinding, out: Sequence[str] = ()) -> list[str]:
     """What was found, what it is worth, where it was seen, what else it could be.
 
     Of a law that is not claimed, and not worth a look, the first alone.
+
+    Args:
+        law: that was found.
+        out: names of the causes beside it whose range ended.
     """
     said = [capital(f"{law.words}.") if law.claimed else _missing(law)]
     if not (law.claimed or _likely(law)):
@@ -55,6 +59,10 @@ def law_sentences(law: LawFinding) -> list[str]:
         )
     if law.transient:
         said.append("It depends on time: it holds for these recordings, and foretells nothing.")
+    if out:
+        said.append(
+            f"Beside it the range of {listed(out)} ended: it may stand for the rest of that."
+        )
     said.append(_else(law))
     return said
 
@@ -109,9 +117,9 @@ def law_heading(law: LawFinding) -> str:
     return "A law of what the causes leave" if law.part else "A law in place of a cause"
 
 
-def law_parts(law: LawFinding) -> list[Html]:
-    """The section of a report."""
-    lines = law_sentences(law)
+def law_parts(law: LawFinding, out: Sequence[str] = ()) -> list[Html]:
+    """The section of a report; arguments as of `law_sentences`."""
+    lines = law_sentences(law, out)
     parts = [paragraph(lines[0], "lead open" if law.claimed else "")]
     parts += [bullets(lines[1:])] if lines[1:] else []
     if law.shape == "table":

@@ -35,7 +35,7 @@ from ves_twin.report.diagnosis.pictures import (
     residuals_figure,
     trace_figure,
 )
-from ves_twin.report.diagnosis.proved import proved_parts
+from ves_twin.report.diagnosis.proved import ended, proved_parts
 from ves_twin.report.diagnosis.strained import moved, moved_words
 from ves_twin.report.diagnosis.words import (
     alone_sentences,
@@ -94,7 +94,8 @@ def diagnosis_page(verdict: Verdict, title: str = "Diagnosis", plant: str = "") 
         parts += _pictures(verdict, exhibit)
     parts += proved_parts(verdict)
     if verdict.law is not None:
-        parts.insert(1, section(law_heading(verdict.law), *law_parts(verdict.law)))
+        law = law_parts(verdict.law, ended(verdict))
+        parts.insert(1, section(law_heading(verdict.law), *law))
     if verdict.rivals:
         note = paragraph(CHI2, "note")
         parts.append(section("Rivals, and why they lost", note, _rivals(verdict.rivals)))

@@ -84,6 +84,11 @@ def near_sentence(verdict: Verdict) -> str:
     )
 
 
+def ended(verdict: Verdict) -> list[str]:
+    """Names of the causes whose range ended the fit."""
+    return [spoken(one.label) for one in verdict.proved if one.ended]
+
+
 def standing_words(one: Proved) -> str:
     """How sure a name is."""
     if one.firm:
@@ -94,7 +99,7 @@ def standing_words(one: Proved) -> str:
             " too narrow (`largest` of the effect, or `typical`)"
         )
     if one.below_row:
-        return "less than a row of the log: its clock explains that as well"
+        return "less than a row of the log, or may be: its clock explains that as well"
     if one.drives:
         return _driving_words(one)
     why = next((words for holds, words in _reasons(one) if holds), "")

@@ -63,6 +63,19 @@ def test_readings_that_rows_repeat_are_taken_straight_between(swing, write):
     assert rig.description.signals["joint.position"].noise == pytest.approx(0.003, rel=0.7)
 
 
+def test_the_only_column_of_a_position_left_is_that_of_the_only_joint_left(arm, columns, write):
+    """`rw angle` of a reaction wheel, its unit in no header, had been left out."""
+    named = {"turn angle": "q1", "lift angle": "q2", "third angle": "q3"}
+    log = {"t": columns["t"], **{name: columns[q] for name, q in named.items()}}
+    log |= {name: rows for name, rows in columns.items() if name.startswith("tau")}
+    found, rig = drafted(arm, write(log))
+    assert rig.description.signals["bend.position"].columns == ("third angle",)
+    assert any("the only one left" in guess.why for guess in found.guesses)
+    two = {"other angle" if name == "lift angle" else name: rows for name, rows in log.items()}
+    rig = drafted(arm, write(two))[1]
+    assert not {"lift.position", "bend.position"} & set(rig.description.signals)
+
+
 def test_of_a_clock_that_may_count_rows_the_draft_says_how_to_tell(swing, write):
     path, columns = swing
     rows = {**columns, "t": np.arange(1500.0)}

@@ -342,7 +342,7 @@ class Judge:
                 f" has it{', turned' * (scale < 0.0)}; by the model's inertia and weight"
                 f" {scale / own:.3g} times it would fit best"
             ]
-        unit = f"{match.spot.unit} per {match.unit}"
+        unit = match.per
         how = ", turned (or its joint's position counts the other way)" * (scale < 0.0)
         how += self.by_inertia(match, motion)
         new = replace(match, scale=float(f"{scale:.3g}"))

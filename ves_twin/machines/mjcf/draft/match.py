@@ -17,6 +17,7 @@ from ves_twin.machines.mjcf.draft.log_columns import LogColumns
 from ves_twin.machines.mjcf.draft.names import (
     ENOUGH,
     INDIRECT,
+    PLACED,
     PRESSURES,
     Likeness,
     called,
@@ -84,8 +85,14 @@ class Match:
     @property
     def constant(self) -> str:
         """What the column is multiplied with, where `fitted`, and whether the log told it."""
-        told = f"{abs(self.scale):.3g} {self.spot.unit} per {self.unit}"
+        told = f"{abs(self.scale):.3g} {self.per}"
         return f"{told}, as nothing tells it" if abs(self.scale) == 1.0 else f"fitted: {told}"
+
+    @property
+    def per(self) -> str:
+        """Unit of that constant; a command of the model may have none."""
+        own = "of the model's command" if self.spot.unit == "1" else self.spot.unit
+        return f"{own} per {self.unit}"
 
     @property
     def prefix(self) -> float:
@@ -143,8 +150,13 @@ def matched(log: LogColumns, spots: Sequence[Spot]) -> Matches:
     chosen = {
         columns[i]: spots[k] for i, k in zip(rows, places, strict=True) if score[i, k] >= ENOUGH
     }
-    chosen = _whole_sensors(chosen, spots)
+    last = _last(columns, spots, alike, chosen)
+    chosen = _whole_sensors(chosen | last, spots)
     found_ = [_match(log, c, s, alike, chosen) for c, s in chosen.items()]
+    left_over = "the only one left, as is its joint"
+    found_ = [
+        replace(m, reasons=(*m.reasons, left_over)) if m.column in last else m for m in found_
+    ]
     order = {spot: i for i, spot in enumerate(spots)}
     found_.sort(key=lambda m: order[m.spot])
     rest = [c for c in columns if c not in chosen]
@@ -153,6 +165,22 @@ def matched(log: LogColumns, spots: Sequence[Spot]) -> Matches:
     left |= dict.fromkeys(log.constant, "never changes")
     left |= dict.fromkeys(log.empty, "has rows without a number")
     return Matches(tuple(found_), setpoints, left)
+
+
+def _last(
+    columns: Sequence[str],
+    spots: Sequence[Spot],
+    alike: Mapping[tuple[str, Spot], Likeness],
+    chosen: Mapping[str, Spot],
+) -> dict[str, Spot]:
+    """The one column left whose name is of a position, for the one joint left without one."""
+    open_ = [
+        s for s in spots if s.quantity is Quantity.POSITION and s not in chosen.values() and s.moves
+    ]
+    named = [c for c in columns if c not in chosen and not is_setpoint(c)]
+    named = [c for c in named if any((c, s) in alike and alike[c, s].score > 0.0 for s in open_)]
+    named = [c for c in named if PLACED & set(words_of(bare_name(c)))]
+    return dict(zip(named, open_, strict=True)) if len(named) == len(open_) == 1 else {}
 
 
 def _likeness(log: LogColumns, column: str, spot: Spot, spots: Sequence[Spot]) -> Likeness | None:

@@ -101,6 +101,9 @@ SORTS = frozenset({"joint", "axis", "motor", "actuator"})
 AXES, AXIS = frozenset("xyz"), 1.0
 """Letters of axes in the names of joints, and the weight of one that is shared."""
 
+PLACED = KIND_WORDS[Quantity.POSITION] - AXES
+"""Words of a position; a letter alone is an axis."""
+
 CONSTANT = 1.5
 """Weight of an electrical unit where the spot has another: a column in the spot's own unit is
 nearer, and a supply's voltage is in volts, too."""
@@ -143,7 +146,7 @@ def likeness(column: str, unit: str, spot: Spot, only: bool, zero: bool) -> Like
     wish = is_setpoint(column) and not MEASURED & words
     if _ruled_out(words, wish, spot) or not _unit_fits(spelled(unit), spot):
         return None
-    placed = KIND_WORDS[Quantity.POSITION] & words - AXES
+    placed = PLACED & words
     if spelled(unit) == "counts" and (placed or not KIND_WORDS[Quantity.EFFORT] & words):
         return None  # an encoder has counts, too
     foreign = spelled(unit) in INDIRECT and spot.unit not in {"1", spelled(unit)}
@@ -197,7 +200,7 @@ def _of_kind(words: frozenset[str], told: bool, wish: bool, spot: Spot) -> list[
         return [(KIND, "asked for, as the command of a servo")]
     if spot.quantity is Quantity.SENSOR and spot.unit == "rad/s" and Quantity.SPEED in named:
         return [(KIND, "name of a rate")]
-    place = KIND_WORDS[Quantity.POSITION] & words - AXES
+    place = PLACED & words
     if spot.quantity is Quantity.SENSOR and spot.unit == "m" and place:
         return [(KIND, "name of a place")]
     other = SLIDES if spot.unit.startswith("rad") else TURNS
