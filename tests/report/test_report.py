@@ -577,6 +577,9 @@ def test_what_is_accepted_since_every_error_falls_is_not_called_no_clear_gain(pr
     assert "fast ones, which noise weighs most, grow" in gain_words(replace(verdict, gain=gain))
     grown = replace(gain, errors={"out.0": (2.0, 2.2)})
     assert "slow errors fall" not in gain_words(replace(verdict, gain=grown))
+    worse = headline(replace(verdict, gain=replace(gain, errors={"out.0": (2.0, 4.0)})))
+    assert "improves the prediction of held-out data, but rms errors there grow" in worse
+    assert "grow" not in headline(replace(verdict, gain=gain))
     assert "no clear gain" in diagnosis_page(replace(verdict, gain=gain, proved=()))
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+from math import isfinite
 from pathlib import Path
 
 from ves_twin.core.json_text import json_text
@@ -16,6 +17,13 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("logs", metavar="LOG", nargs="+", help="logs; the first is matched")
     parser.add_argument("--out", metavar="FILE", help="the draft (default: MODEL's name, .toml)")
     parser.add_argument("--rate", metavar="HZ", help="rows a second, where no column is a time")
+    parser.add_argument(
+        "--scale",
+        metavar="COLUMN=NUMBER",
+        action="append",
+        default=[],
+        help="a constant that is known, as a motor's in N m per A, gear included; may be repeated",
+    )
     parser.add_argument("--json", action="store_true", help="what was guessed as JSON on stdout")
 
 
@@ -33,7 +41,8 @@ def execute(arguments: argparse.Namespace) -> int:
 
     out = Path(arguments.out or f"{model.stem}.toml")
     rate = None if arguments.rate is None else _positive(to_si(arguments.rate, "Hz", "--rate"))
-    found = new_machine(model, logs, out, rate)
+    scales = dict(_scale(text) for text in arguments.scale)
+    found = new_machine(model, logs, out, rate, scales=scales)
     print(json_text(found.to_dict()) if arguments.json else new_text(found, model, logs))
     return 0
 
@@ -44,3 +53,16 @@ def _positive(rate: float) -> float:
     if rate <= 0.0:
         raise InvalidInputError("--rate", rate, "rows a second, above zero")
     return rate
+
+
+def _scale(text: str) -> tuple[str, float]:
+    from ves_twin.core.errors import InvalidInputError
+
+    column, _, number = text.rpartition("=")
+    try:
+        scale = float(number)
+    except ValueError:
+        scale = float("nan")
+    if not column or not isfinite(scale):
+        raise InvalidInputError("--scale", text, "COLUMN=NUMBER, as u_V=0.035")
+    return column, scale

@@ -39,6 +39,10 @@ def new_text(found: NewMachine, model: Path, logs: Sequence[Path]) -> str:
     if draft.gravity:
         file = found.model or model.name
         first = f"see to the gravity in {file}, and draft again from it; then "
+    if draft.untold:
+        unit = next(iter(draft.untold.values()))
+        asked = " ".join(f"--scale {column}=..." for column in draft.untold)
+        first = f"draft again with what the motors give ({asked}, in {unit}); then "
     if draft.short:
         first = f"see to the rows that a diagnosis lacks (look); then {first}"
     if draft.one_only and not fitted:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from contextlib import nullcontext
 from dataclasses import asdict, dataclass
 from pathlib import Path
@@ -39,6 +39,7 @@ def new_machine(
     out: Path,
     rate: float | None = None,
     held: HeldFolder | None = None,
+    scales: Mapping[str, float] | None = None,
 ) -> NewMachine:
     """Draft a machine's file and write it; of a URDF the model as MJCF beside it.
 
@@ -48,6 +49,7 @@ def new_machine(
         out: the file to write.
         rate: rows a second [Hz], where no column tells the time.
         held: the folder of `out`, where the caller holds it already.
+        scales: constants that are known, as of a motor: column -> what one of its unit is.
 
     Raises:
         FileAccessError: a file that is missing, or one that a draft would be written over.
@@ -55,7 +57,7 @@ def new_machine(
     """
     _refuse_existing(out)
     with hold_file(out) if held is None else nullcontext():
-        found = draft(model, logs, out, rate)
+        found = draft(model, logs, out, rate, scales)
         beside = out.with_suffix(".xml") if found.model_text else None
         if beside is not None:
             _refuse_existing(beside)

@@ -239,7 +239,9 @@ def _proved(verdict: Verdict) -> str:
     ended = [spoken(one.label) for one in verdict.proved if one.ended]
     count = len(firm) + len(like)
     what = "1 cause improves" if count == 1 else f"{count or 'No'} causes improve"
-    said = f"{what} the prediction of held-out data."
+    grown = verdict.gain is not None and verdict.gain.grown
+    said = f"{what} the prediction of held-out data"
+    said += ", but rms errors there grow with all of it." if grown else "."
     begins = ("Firm:", "Something that acts like", "At the end of its range, so not proved:")
     for begin, names in zip(begins, (firm, like, ended), strict=True):
         more = f" and {len(names) - TOLD} more" if len(names) > TOLD else ""

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
 from pathlib import Path
 
 import numpy as np
@@ -14,6 +14,7 @@ from ves_twin.diagnosis.record.preprocess import check_lengths
 from ves_twin.machines.mjcf.draft.by_number import by_number
 from ves_twin.machines.mjcf.draft.check import Checked
 from ves_twin.machines.mjcf.draft.chosen import Chosen
+from ves_twin.machines.mjcf.draft.constants import with_constants
 from ves_twin.machines.mjcf.draft.draft_text import compared, signal_name, used
 from ves_twin.machines.mjcf.draft.drafting import ROWS, Drafting, Version
 from ves_twin.machines.mjcf.draft.estimates import LOW_PASSED
@@ -67,6 +68,7 @@ class Draft:
         rubs: columns of efforts that friction explains, and the model does not.
         gravity: that the model should have, as its file has it; empty where it is right.
         short: whether a diagnosis would find the log, or a piece of it, too short.
+        untold: column -> unit of a constant that nothing tells, where 1 is taken.
         one_only: whether no length of stretches was found that has rows enough in each.
     """
 
@@ -82,9 +84,16 @@ class Draft:
     gravity: str = ""
     short: bool = False
     one_only: bool = False
+    untold: Mapping[str, str] = field(default_factory=dict)
 
 
-def draft(model: Path, logs: Sequence[Path], out: Path, rate: float | None = None) -> Draft:
+def draft(
+    model: Path,
+    logs: Sequence[Path],
+    out: Path,
+    rate: float | None = None,
+    scales: Mapping[str, float] | None = None,
+) -> Draft:
     """Draft the file that makes a model and logs of it a machine.
 
     Args:
@@ -92,6 +101,7 @@ def draft(model: Path, logs: Sequence[Path], out: Path, rate: float | None = Non
         logs: the first is matched; the others must have the columns that it needs.
         out: where the file will lie: paths in it start from there.
         rate: rows a second, where no column tells the time.
+        scales: constants that are known, as of a motor: column -> what one of its unit is.
 
     Raises:
         FileAccessError: a file that is missing.
@@ -103,11 +113,11 @@ def draft(model: Path, logs: Sequence[Path], out: Path, rate: float | None = Non
     spots = spots_of(given.model)
     matches = by_number(log, by_shape(log, matched(log, spots), spots), spots)
     log, matches = with_steady(log, matches, spots)
+    matches = with_constants(matches, scales or {})
     log = log.between([m.column for m in matches.found if m.spot.quantity is not Quantity.EFFORT])
     drafting = Drafting(model, logs[0], out, given, log, matches)
     now = drafting.best()
-    for further in logs[1:]:
-        read_rig_recording(further, now.rig)
+    others = [read_rig_recording(further, now.rig) for further in logs[1:]]
     left = dict(matches.left)
     left |= {c: "says what was asked for" for c in matches.setpoints}
     left |= {m.column: "is a speed" for m in now.check.found if not used(m, now.mode)}
@@ -115,6 +125,7 @@ def draft(model: Path, logs: Sequence[Path], out: Path, rate: float | None = Non
     turned = drafting.other_way(now)
     coarse = [] if turned else now.coarse
     short, smooth = _short(now.rig, now.part), _smooth(now.mode)
+    short += [words for one in others for words in _short(now.rig, one)]
     words = f"{now.mode.mode}: {now.mode.why}"
     stretch = 0.0 if short else _stretch(now, log)
     found = (*given.notes, *log.notes, *_slower(log), *now.check.findings)
@@ -133,6 +144,7 @@ def draft(model: Path, logs: Sequence[Path], out: Path, rate: float | None = Non
         gravity=now.check.gravity,
         short=bool(short),
         one_only=not (stretch or short or now.mode.horizon),
+        untold={m.column: m.per for m in now.check.found if m.fitted and abs(m.scale) == 1.0},
     )
 
 

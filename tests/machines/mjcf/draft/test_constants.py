@@ -1,0 +1,67 @@
+"""A constant that an owner gives makes a column what it stands for, and all that follows from it."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from drafted import changed
+
+from ves_twin.cli.main import main
+from ves_twin.cli.new_text import new_text
+from ves_twin.core.errors import InvalidInputError, UnknownNameError
+from ves_twin.machines.mjcf.draft.draft import draft
+from ves_twin.machines.new_machine import new_machine
+
+
+@pytest.fixture
+def amperes(columns, write):
+    """The arm's log with the third drive in amperes of 0.05 N m."""
+    log = changed(columns, tau3=columns["tau3"] / 0.05)
+    return write({"i3_A" if name == "tau3" else name: rows for name, rows in log.items()})
+
+
+def test_a_draft_with_the_constant_is_that_of_the_torque(arm, amperes, columns, write):
+    """Written into the file afterwards it left a low-pass of 52 Hz where 14 is right."""
+    told = draft(arm, [amperes], arm.with_name("a.toml"), scales={"i3_A": 0.05})
+    plain = draft(arm, [write(columns, "plain.csv")], arm.with_name("b.toml"))
+    assert told.explained["i3_A"] == pytest.approx(plain.explained["tau3"])
+    assert told.mode == plain.mode
+    for line in ("drive =", "tolerances =", "lift = {", "bend = {"):
+        one, other = (next(t for t in d.text.splitlines() if line in t) for d in (told, plain))
+        assert one.split("#")[0] == other.split("#")[0]
+    assert "scale = 0.05" in told.text
+    assert not told.untold
+    assert not any("i3_A is electrical" in words for words in told.look)
+
+
+def test_a_constant_that_nothing_tells_is_asked_for_first(arm, columns, write):
+    noise = np.random.default_rng(5).standard_normal(len(columns["t"]))
+    told = changed(columns, tau3=noise)
+    log = write({"i3_A" if name == "tau3" else name: rows for name, rows in told.items()})
+    made = new_machine(arm, [log], arm.with_name("my.toml"))
+    text = new_text(made, arm, [log])
+    assert made.draft.untold == {"i3_A": "N*m per A"}
+    assert (
+        "next      draft again with what the motors give (--scale i3_A=..., in N*m per A)" in text
+    )
+
+
+def test_a_constant_of_no_column_or_no_number_is_one_line(arm, amperes, capsys):
+    with pytest.raises(UnknownNameError, match="did you mean 'i3_A'"):
+        draft(arm, [amperes], arm.with_name("a.toml"), scales={"i3": 0.05})
+    with pytest.raises(InvalidInputError, match="constant of i3_A"):
+        draft(arm, [amperes], arm.with_name("a.toml"), scales={"i3_A": 0.0})
+    asked = ["new", str(arm), str(amperes), "--out", str(arm.with_name("c.toml")), "--scale"]
+    for text in ("i3_A", "=2", "i3_A=much", "i3_A=nan"):
+        assert main([*asked, text]) == 2
+        assert "expected COLUMN=NUMBER" in capsys.readouterr().err
+    assert main([*asked, "i3_A=0.05"]) == 0
+    assert "N*m per A is given" in capsys.readouterr().out
+
+
+def test_a_second_log_that_is_too_short_is_told(swing, write):
+    path, columns = swing
+    short = write({name: rows[:90] for name, rows in columns.items()}, "check.csv")
+    found = draft(path, [write(columns), short], path.with_name("my.toml"))
+    assert found.short
+    assert any("rows of check" in words for words in found.look)
