@@ -36,6 +36,12 @@ def test_steps_of_a_coarse_encoder_and_noise_are_no_repeats():
     assert repeats(np.repeat([0.0, 1.0], 50)) == 1
 
 
+def test_residue_of_rounding_is_no_step_of_an_encoder():
+    slow = np.round(np.sin(0.002 * np.arange(4000)) / COUNT) * COUNT
+    off = 1.1 * (np.arange(4000) % 7)
+    assert repeats((slow + off) - off) == 1
+
+
 def test_between_readings_an_angle_is_nearer_to_what_it_was():
     """Held for 5 rows it is 2 rows late in the mean."""
     angle, held = swing(1000, 5)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shlex
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -37,12 +38,13 @@ def new_text(found: NewMachine, model: Path, logs: Sequence[Path]) -> str:
     given = " ".join(fitted or [last])
     first = _first({k: v for k, v in draft.explained.items() if k not in draft.rubs})
     if draft.gravity:
-        file = found.model or model.name
-        first = f"see to the gravity in {file}, and draft again from it; then "
+        first = "draft again from it; then "
     if draft.untold:
-        unit = next(iter(draft.untold.values()))
-        asked = " ".join(f"--scale {column}=..." for column in draft.untold)
+        unit = ", ".join(dict.fromkeys(draft.untold.values()))
+        asked = " ".join(f"--scale {shlex.quote(c + '=...')}" for c in draft.untold)
         first = f"draft again with what the motors give ({asked}, in {unit}); then "
+    if draft.gravity:
+        first = f"see to the gravity in {found.model or model.name}, and {first}"
     if draft.short:
         first = f"see to the rows that a diagnosis lacks (look); then {first}"
     if draft.one_only and not fitted:

@@ -13,6 +13,9 @@ STEPS = 3.0
 FEWEST = 20
 """Readings between two such changes by which the length of repeats is told."""
 
+RESIDUE = 1e-6
+"""Share of a usual step below which two levels differ by rounding alone."""
+
 TOGETHER, LEAST = 21, 5
 """Readings in a row whose mean step is theirs: many, to average rounding, and few beside the drift
 of a clock; and fewest that tell one."""
@@ -31,6 +34,7 @@ def repeats(values: FloatArray) -> int:
     steps = np.abs(np.diff(values))
     changes = np.flatnonzero(steps > 0.0)
     levels = np.diff(np.unique(values))
+    levels = levels[levels > RESIDUE * np.median(steps[changes])] if len(changes) else levels
     if len(changes) <= FEWEST or not len(levels):
         return 1
     large = steps[changes] >= STEPS * np.min(levels)
@@ -62,14 +66,15 @@ def unheld(values: FloatArray, most: int) -> FloatArray:
     if most < 2:
         return values
     read = np.flatnonzero(read_at(values, most))
-    return np.asarray(np.interp(np.arange(len(values)), _even(read, most), values[read]))
+    return np.asarray(np.interp(np.arange(len(values)), _even(read, values[read]), values[read]))
 
 
-def _even(read: IntArray, most: int) -> FloatArray:
-    """Rows of readings with the rounding to whole rows taken out, stretch by stretch."""
-    found, steps = np.asarray(read, float), np.diff(read)
-    broken = np.flatnonzero(steps > most) + 1
-    for part in np.split(np.arange(len(read)), broken):
+def _even(read: IntArray, readings: FloatArray) -> FloatArray:
+    """Rows of readings with the rounding to whole rows taken out, between standstills."""
+    found = np.asarray(read, float)
+    stands = np.flatnonzero(np.diff(readings, prepend=np.nan) == 0.0)
+    for whole in np.split(np.arange(len(read)), stands):
+        part = whole[1:]  # its first is where it stood, or where the log begins
         about = min(TOGETHER, (len(part) - 1) // 2 * 2 + 1)
         if about >= LEAST:
             found[part] = savgol_filter(found[part], about, 1)

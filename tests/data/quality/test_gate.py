@@ -61,7 +61,7 @@ def test_rows_that_a_logger_held_are_repeats(healthy):
     words = found(vt.Recording(healthy.time, held, healthy.info))["repeats"]
     count = len(healthy)
     assert words.startswith(f"{count // 2} of {count} rows repeat the one before, first at 0.013 s")
-    assert "stand for up to 2: `repeats = 2`" in words
+    assert "(`repeats = 2`)" in words
     once = {n: np.r_[values[:6], values[5:-1]] for n, values in healthy.signals.items()}
     assert "repeats" not in found(vt.Recording(healthy.time, once, healthy.info))  # harms nothing
 

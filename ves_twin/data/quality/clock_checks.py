@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from ves_twin.core.recording.recording import Recording
+from ves_twin.core.signals import SIGNALS, Role
 from ves_twin.data.clock.usual_period import is_usual
 from ves_twin.data.quality.check import Check, failed, passed, unknown
 from ves_twin.data.repeats import repeats
@@ -78,13 +79,25 @@ def _repeats(recording: Recording) -> Check:
     if len(held) > 1 and np.any((held > first) & (held < last)):
         begin, said = recording.time[held[0] + 1], f"{len(held)} of {len(recording)} rows"
         said += " repeat the one before"
-        most = max(_stands(values) for values in recording.signals.values())
-        slow = (
-            f"; readings come more slowly than rows and stand for up to {most}: `repeats = {most}`"
-            " in the file of a machine of yours takes them straight between"
-        )
-        return failed("repeats", f"{said}, first at {begin:.3f} s{slow * (most > 1)}")
+        return failed("repeats", f"{said}, first at {begin:.3f} s{_slower(recording)}")
     return passed("repeats", "none")
+
+
+def _slower(recording: Recording) -> str:
+    """Which measurements come more slowly than rows, and their key; commands are held."""
+    known = {**SIGNALS, **{own.name: own for own in recording.info.own_signals}}
+    most = {
+        name: _stands(values)
+        for name, values in recording.signals.items()
+        if name not in known or known[name].role is not Role.COMMAND
+    }
+    slow = ", ".join(f"{name} (`repeats = {rows}`)" for name, rows in most.items() if rows > 1)
+    if not slow:
+        return ""
+    return (
+        f"; readings come more slowly than rows in {slow}: that key in the file of a machine of"
+        " yours takes them straight between"
+    )
 
 
 def _stands(values: np.ndarray) -> int:

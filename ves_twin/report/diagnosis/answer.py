@@ -239,7 +239,7 @@ def _proved(verdict: Verdict) -> str:
     ended = [spoken(one.label) for one in verdict.proved if one.ended]
     count = len(firm) + len(like)
     what = "1 cause improves" if count == 1 else f"{count or 'No'} causes improve"
-    grown = verdict.gain is not None and verdict.gain.grown
+    grown = bool(count) and verdict.gain is not None and verdict.gain.grown
     said = f"{what} the prediction of held-out data"
     said += ", but rms errors there grow with all of it." if grown else "."
     begins = ("Firm:", "Something that acts like", "At the end of its range, so not proved:")

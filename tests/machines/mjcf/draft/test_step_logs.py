@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 
 import mujoco
@@ -11,6 +12,7 @@ from drafted import changed, drafted
 
 from ves_twin.core.errors import InvalidInputError
 from ves_twin.machines.mjcf.recordings.columns import read_rig_recording
+from ves_twin.machines.mjcf.rig.machine import Rig
 
 
 @pytest.fixture
@@ -61,6 +63,61 @@ def test_readings_that_rows_repeat_are_taken_straight_between(swing, write):
     off = [np.std(one - columns["q"]) for one in (read, held)]
     assert off[0] < 0.25 * off[1]
     assert rig.description.signals["joint.position"].noise == pytest.approx(0.003, rel=0.7)
+
+
+@pytest.mark.parametrize("damping", [0.05, 0.5])
+def test_a_step_in_volts_of_a_model_that_is_wrong_is_drafted_open_loop(step, write, damping):
+    """Motion was given, its band followed from an effort of no size, and that was a traceback."""
+    path, columns = step
+    path.write_text(path.read_text().replace('damping="0.05"', f'damping="{damping}"'))
+    rows = {
+        ("U_V" if k == "tau" else k): v * (40.0 if k == "tau" else 1.0) for k, v in columns.items()
+    }
+    found, rig = drafted(path, write(rows))
+    assert rig.description.drive.mode.value == "control"
+    assert found.mode.startswith("control: U_V never changes")
+
+
+@pytest.mark.parametrize("name", ["supply_V", "battery_voltage", "current_limit_A"])
+def test_what_is_set_once_is_no_command(step, write, name):
+    path, columns = step
+    rows = {(name if key == "tau" else key): values for key, values in columns.items()}
+    with pytest.raises(InvalidInputError, match="an effort of drive"):
+        drafted(path, write(rows))
+
+
+def test_an_angle_that_wraps_is_unwound_before_its_readings_are_joined(swing, write):
+    """A line through each wrap hid it, and a wheel was 408 rad off."""
+    path, columns = swing
+    turns = 0.1 * np.arange(1500) + 0.3 * np.sin(0.05 * np.arange(1500))
+    held = turns[5 * (np.arange(1500) // 5)]
+    rows = {"t": columns["t"], "tau": columns["tau"], "q": (held + np.pi) % (2.0 * np.pi) - np.pi}
+    log = write(rows)
+    path.with_name("my.toml").write_text(drafted(path, write(columns, "plain.csv"))[0].text)
+    text = (
+        path.with_name("my.toml")
+        .read_text()
+        .replace('columns = ["q"]', 'repeats = 5, columns = ["q"]')
+    )
+    path.with_name("own.toml").write_text(re.sub(r'(?m)^"joint.speed".*$', "", text))
+    read = read_rig_recording(log, Rig.load(str(path.with_name("own.toml"))))
+    off = (read["joint.position"][:, 0] - turns)[:-5]  # no reading ends the last ones
+    assert np.max(np.abs(off - np.median(off))) < 0.1
+    poses = (
+        path.with_name("own.toml").read_text().replace('column = "t"', 'column = "t", poses = true')
+    )
+    path.with_name("poses.toml").write_text(poses)
+    with pytest.raises(InvalidInputError, match="repeats"):
+        Rig.load(str(path.with_name("poses.toml")))
+
+
+def test_efforts_that_are_measured_are_joined_as_positions_are(arm, columns, write):
+    """Held beside positions that are not they lagged, and two clocks were suspected."""
+    at = 5 * (np.arange(1600) // 5)
+    held = {k: v[at] if k != "t" else v for k, v in columns.items() if not k.startswith("dq")}
+    found, rig = drafted(arm, write(held))
+    assert not any("lag" in words for words in found.look)
+    assert rig.description.signals["m2.effort"].repeats == 5
 
 
 def test_the_only_column_of_a_position_left_is_that_of_the_only_joint_left(arm, columns, write):

@@ -122,7 +122,8 @@ def chosen(
     drives = [m for m in efforts if _is_plain(m, model) and m.spot.joint in told]
     wide = model.nv - len(check.locked)
     felt = closed_chain(model, [m.spot.joint for m in drives])
-    if felt:
+    steady = [m.column for m in efforts if m.column in log.steady]
+    if felt and not steady:
         moved_by = [m for m in positions if m.spot.name in felt]
         return _of_loops(log, moved_by, drives, model, noise, felt)
     whole = check.motion is not None and single <= told and wide == len(single) and not together
@@ -132,6 +133,9 @@ def chosen(
         if together:
             why = f"of what pushes {', '.join(together)} a motion tells the sum alone; write that"
             why += ' sum as the column of one actuator (columns = ["a + b"]), and it is compared'
+        return Chosen(Mode.CONTROL, why, RATES[1], check.corner, noise, imposed=imposed)
+    if steady:
+        why = f"{', '.join(steady)} never changes, and what never changes is a command"
         return Chosen(Mode.CONTROL, why, RATES[1], check.corner, noise, imposed=imposed)
     positions = [m for m in positions if m.spot.name in driven]
     why = "every joint has a position and an effort"

@@ -21,6 +21,7 @@ from ves_twin.machines.mjcf.draft.estimates import LOW_PASSED
 from ves_twin.machines.mjcf.draft.given_model import GivenModel
 from ves_twin.machines.mjcf.draft.log_columns import LogColumns
 from ves_twin.machines.mjcf.draft.match import matched
+from ves_twin.machines.mjcf.draft.names import is_command
 from ves_twin.machines.mjcf.draft.predicted import FEWEST
 from ves_twin.machines.mjcf.draft.shape import by_shape
 from ves_twin.machines.mjcf.draft.spots import Quantity, spots_of
@@ -114,7 +115,11 @@ def draft(
     matches = by_number(log, by_shape(log, matched(log, spots), spots), spots)
     log, matches = with_steady(log, matches, spots)
     matches = with_constants(matches, scales or {})
-    log = log.between([m.column for m in matches.found if m.spot.quantity is not Quantity.EFFORT])
+    measured = [m for m in matches.found if m.spot.quantity is not Quantity.EFFORT]
+    measured += [
+        m for m in matches.of(Quantity.EFFORT) if not is_command(log.said.get(m.column, m.column))
+    ]
+    log = log.between([m.column for m in measured])
     drafting = Drafting(model, logs[0], out, given, log, matches)
     now = drafting.best()
     others = [read_rig_recording(further, now.rig) for further in logs[1:]]
@@ -163,7 +168,7 @@ def _stretch(now: Version, log: LogColumns) -> float:
     if len(part.time) < FEWEST:
         return 0.0
     shortest = enough(part, now.mode.rate)
-    few = float(f"{max(shortest, float(np.ptp(part.time)) / STRETCHES):.2g}")
+    few = max(shortest, float(f"{float(np.ptp(part.time)) / STRETCHES:.2g}"))
     lengths = (min(length, few), length, shortest)
     return next((one for one in lengths if _splits(now.rig, part, one)), 0.0)
 

@@ -195,7 +195,9 @@ def _signal(group: list[Match], mode: Chosen, log: LogColumns) -> str:
     zero = mode.homes[first.column][0] if first.column in mode.homes else own
     if zero:
         keys["offset"] = f"{zero:.7g}"
-    slower = [log.slower[m.column].repeats for m in group if m.column in log.slower]
+    slower = [
+        log.slower[c].repeats for c in (m.alone or m.column for m in group) if c in log.slower
+    ]
     keys |= {"repeats": f"{max(slower)}"} if slower else {}
     if first.spot.quantity in (Quantity.POSITION, Quantity.SPEED):
         keys["joint"] = _quoted(first.spot.name)

@@ -7,7 +7,12 @@ from dataclasses import replace
 
 from ves_twin.machines.mjcf.draft.log_columns import LogColumns
 from ves_twin.machines.mjcf.draft.match import Matches, matched
-from ves_twin.machines.mjcf.draft.spots import Quantity, Spot
+from ves_twin.machines.mjcf.draft.spots import Quantity, Spot, words_of
+
+SETTINGS = frozenset(
+    ["supply", "battery", "bus", "limit", "max", "min", "rated", "nominal", "offset", "gain"]
+)
+"""Words of what is set once, and drives nothing."""
 
 
 def with_steady(
@@ -26,7 +31,8 @@ def with_steady(
     if not log.steady or matches.of(Quantity.EFFORT):
         return log, matches
     efforts = [s for s in spots if s.quantity is Quantity.EFFORT]
-    found = matched(replace(log, values=log.steady), efforts).found
+    steady = {c: rows for c, rows in log.steady.items() if not SETTINGS & {*words_of(log.said[c])}}
+    found = matched(replace(log, values=steady), efforts).found
     if not found:
         return log, matches
     held = {m.column: log.steady[m.column] for m in found}

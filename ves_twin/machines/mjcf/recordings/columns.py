@@ -62,7 +62,6 @@ def read_rig_recording(path: Path, rig: Rig) -> Recording:
     time, signals, said = time[inside], dict[str, FloatArray](), list[str]()
     for name, column in told.signals.items():
         whole = [table.column(c, inside, path, held(rig, name), poses) for c in column.columns]
-        whole = [unheld(values, column.repeats) for values in whole]
         signals[name] = np.asarray(column.scale * np.stack(whole, axis=1) + column.offset)
         if not poses and _turns(rig, name):
             angle, wraps = unwrapped(signals[name][:, 0], 2.0 * np.pi)
@@ -70,6 +69,8 @@ def read_rig_recording(path: Path, rig: Rig) -> Recording:
             said += [f"{path.name}: {name} wraps {wraps} times: whole turns are added"] * (
                 wraps > 0
             )
+        read = [unheld(values, column.repeats) for values in signals[name].T]
+        signals[name] = np.stack(read, axis=1)
     for name, column in told.signals.items():
         if column.into:
             signals[name] = turned(signals[name], signals, name, column.into)

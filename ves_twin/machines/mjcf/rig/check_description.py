@@ -45,6 +45,11 @@ def _signals(told: RigDescription) -> None:
     ):
         if name not in told.signals:
             raise UnknownNameError(f"signal in {where}", name, told.signals)
+    for name, column in told.signals.items():
+        if column.repeats > 1 and told.clock.poses:
+            raise InvalidInputError(
+                f"signals.{name}.repeats", column.repeats, "none of poses at rest"
+            )
     if told.drive.mode is Mode.REFERENCE and not told.controllers:
         raise InvalidInputError("controllers", "none", "one where drive.mode is 'reference'")
 
