@@ -67,5 +67,5 @@ def test_readings_are_even_whatever_rows_show_them_first():
 def test_what_stands_still_is_read_on():
     """Else a line would be drawn from where a machine stopped to where it moved again."""
     still = np.concatenate([np.zeros(40), np.arange(1.0, 9.0).repeat(4), np.full(30, 8.0)])
-    assert np.all(unheld(still, 4)[:37] == 0.0)
+    assert np.all(np.abs(unheld(still, 4)[:37]) < 1e-12)  # rounding of times of readings
     assert read_at(still, 4)[:12].tolist() == [True, False, False, False] * 3

@@ -72,9 +72,9 @@ def unheld(values: FloatArray, most: int) -> FloatArray:
 def _even(read: IntArray, readings: FloatArray) -> FloatArray:
     """Rows of readings with the rounding to whole rows taken out, between standstills."""
     found = np.asarray(read, float)
-    stands = np.flatnonzero(np.diff(readings, prepend=np.nan) == 0.0)
-    for whole in np.split(np.arange(len(read)), stands):
-        part = whole[1:]  # its first is where it stood, or where the log begins
+    same = np.diff(readings, prepend=np.nan) == 0.0
+    stands = np.flatnonzero(same[1:] & same[:-1]) + 1  # one alone is where a motion turns round
+    for part in np.split(np.arange(len(read)), stands):
         about = min(TOGETHER, (len(part) - 1) // 2 * 2 + 1)
         if about >= LEAST:
             found[part] = savgol_filter(found[part], about, 1)
