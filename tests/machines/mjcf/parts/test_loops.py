@@ -11,9 +11,9 @@ import pytest
 
 from ves_twin.machines.compare import compare
 from ves_twin.machines.load import open_machine
-from ves_twin.machines.mjcf.draft.chosen import _home
 from ves_twin.machines.mjcf.draft.closed_chain import closed_chain
 from ves_twin.machines.mjcf.draft.draft import draft
+from ves_twin.machines.mjcf.draft.home_of import home_of
 from ves_twin.machines.mjcf.draft.log_columns import LogColumns
 from ves_twin.machines.mjcf.draft.match import Match
 from ves_twin.machines.mjcf.draft.spots import Quantity, Spot
@@ -154,7 +154,7 @@ def test_what_makes_a_length_a_position_is_told_in_its_unit_whatever_its_sign(tm
     match = Match("piston length", spot, "mm", True, scale, ())
     name = next(column for column in values if column.startswith(match.column))
     match = replace(match, column=name)
-    offset, _ = _home(match, model("piston"), replace(log, values=values))
+    offset, _ = home_of(match, model("piston"), replace(log, values=values))
     begun = scale * values[name][0] + offset
     assert abs(begun) < 30.0  # within the piston's motion of home, not two lengths away
     assert offset == pytest.approx(-1e3 * place(HOME), abs=1e-3)

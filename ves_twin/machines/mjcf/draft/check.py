@@ -8,6 +8,7 @@ from dataclasses import dataclass, field, replace
 import mujoco
 
 from ves_twin.machines.mjcf.draft.angles import counted
+from ves_twin.machines.mjcf.draft.closed_chain import closed_chain, words_of_open
 from ves_twin.machines.mjcf.draft.judge import Judge
 from ves_twin.machines.mjcf.draft.lifted import Load, lifted
 from ves_twin.machines.mjcf.draft.locked import locked_joints, words_of_locked
@@ -22,6 +23,7 @@ from ves_twin.machines.mjcf.draft.servos import followed
 from ves_twin.machines.mjcf.draft.spots import Quantity
 from ves_twin.machines.mjcf.draft.stops import beyond, beyond_control, in_degrees_by_stops
 from ves_twin.machines.mjcf.parts.cyclic import is_cyclic
+from ves_twin.machines.mjcf.parts.loops import freedom
 
 
 @dataclass(frozen=True)
@@ -66,7 +68,9 @@ def checked(log: LogColumns, matches: Matches, model: mujoco.MjModel) -> Checked
     positions = matches.of(Quantity.POSITION)
     locked, cyclic = locked_joints(model, matches.found), _cyclic(matches, model)
     moved = {*(m.spot.name for m in positions), *locked, *cyclic}
+    drives = _drives(matches, model)
     every = [model.joint(i).name for i in range(model.njnt)]
+    moved |= {*every} if drives else set()
     absent = [name for name in every if name not in moved]
     moving = positions or [m for m in matches.found if m.spot.name in cyclic]
     band = max((band_of(log.column(m.column), log.period, 0.99) for m in moving), default=1.0)
@@ -82,13 +86,14 @@ def checked(log: LogColumns, matches: Matches, model: mujoco.MjModel) -> Checked
         words = ", ".join(name or "one without a name" for name in absent)
         findings.append(f"signs are not checked: no column tells the position of {words}")
     else:
-        judge = Judge(log, model, corner, locked, cyclic)
+        judge = Judge(log, model, corner, locked, cyclic, drives)
         plain = judge
         found, said, other = judge.corrected(found)
         findings += said
         if other is not None:  # columns are held against the machine as it stands
             judge, gravity = replace(judge, model=other.model), other.numbers
         motion = judge.motion(found)
+        findings += words_of_open(motion)
         found, said = in_milli(found, {m: judge.fit(m, motion) for m in judge.driving(found)})
         findings += said
         found, said = judge.efforts(found, motion)
@@ -116,6 +121,17 @@ def checked(log: LogColumns, matches: Matches, model: mujoco.MjModel) -> Checked
     return Checked(
         tuple(found), told, explained, motion, corner, dofs, locked, times, lifts, rubs, gravity
     )
+
+
+def _drives(matches: Matches, model: mujoco.MjModel) -> tuple[str, ...]:
+    """Joints of a parallel machine that have effort and position, where these leave no motion.
+
+    None where drives are more than motions: efforts against each other show in none.
+    """
+    told = {m.spot.name for m in matches.of(Quantity.POSITION)}
+    both = [m.spot.joint for m in matches.of(Quantity.EFFORT) if m.spot.joint in told]
+    felt = closed_chain(model, tuple(dict.fromkeys(both)))
+    return tuple(felt) if felt and len(felt) == freedom(model) else ()
 
 
 def _cyclic(matches: Matches, model: mujoco.MjModel) -> tuple[str, ...]:

@@ -11,6 +11,7 @@ import numpy as np
 from ves_twin.machines.mjcf.draft.check import Checked
 from ves_twin.machines.mjcf.draft.closed_chain import closed_chain
 from ves_twin.machines.mjcf.draft.estimates import noise_of, rest_of, travel
+from ves_twin.machines.mjcf.draft.home_of import FIRST, home_of
 from ves_twin.machines.mjcf.draft.log_columns import LogColumns
 from ves_twin.machines.mjcf.draft.match import Match, Matches
 from ves_twin.machines.mjcf.draft.motion import band_of
@@ -32,9 +33,6 @@ ENOUGH = 115
 
 LOST = 0.1
 """Share of an effort's power above the band of a diagnosis that is told."""
-
-FIRST = 10
-"""Rows that tell where a log begins."""
 
 DROWNED = 0.05
 """Share of an effort that noise of positions may make once they are differentiated twice."""
@@ -318,31 +316,9 @@ def _of_loops(
     for m in drives:
         noise[m.column] = _with_position(noise[m.column], of_joint[m.spot.joint])
     why = "the model's loops leave no motion but that of its drives, which have positions"
-    homes = {m.column: home for m in positions if (home := _home(m, model, log))}
+    homes = {m.column: home for m in positions if (home := home_of(m, model, log))}
     names = tuple(m.spot.name for m in positions)
     return Chosen(Mode.CONTROL, why, 2.0 * band, CORNER * band, noise, imposed=names, homes=homes)
-
-
-def _home(position: Match, model: mujoco.MjModel, log: LogColumns) -> tuple[float, str] | None:
-    """What makes a joint's position of a length that is told from elsewhere [its unit], and why.
-
-    The length that a sliding part has in the model, if the log begins near it; else where it
-    begins. None where the log begins near the joint's own zero.
-    """
-    values = position.factor * log.column(position.column)
-    joint, near = model.joint(position.spot.name), 2.0 * travel(values)
-    body, begin = int(joint.bodyid[0]), float(np.mean(values[:FIRST]))
-    zero = float(model.qpos0[int(joint.qposadr[0])])
-    if abs(begin - zero) < near:
-        return None
-    along = np.zeros(3)
-    mujoco.mju_rotVecQuat(along, joint.axis, model.body_quat[body])
-    length = abs(float(along @ model.body_pos[body]))
-    unit = position.factor / position.scale
-    slides = int(joint.type[0]) == int(mujoco.mjtJoint.mjJNT_SLIDE)
-    if slides and abs(begin - length) < near:
-        return (zero - length) / unit, "offset: the length that the model has at home"
-    return (zero - begin) / unit, "offset: as if the log began where the model stands"
 
 
 def _is_plain(match: Match, model: mujoco.MjModel) -> bool:

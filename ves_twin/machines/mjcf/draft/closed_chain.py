@@ -7,7 +7,11 @@ from collections.abc import Collection
 import mujoco
 import numpy as np
 
+from ves_twin.machines.mjcf.draft.motion import Motion
 from ves_twin.machines.mjcf.parts.loops import dense_copy, has_loops, loop_rows
+
+OPEN = 0.02
+"""Share of rows in which loops may stay open untold: a noisy row beside the end of a reach."""
 
 
 def closed_chain(model: mujoco.MjModel, driven: Collection[str]) -> dict[str, float]:
@@ -40,3 +44,13 @@ def closed_chain(model: mujoco.MjModel, driven: Collection[str]) -> dict[str, fl
     mujoco.mj_fullM(dense, data, mass)
     felt = np.diag(ways.T @ mass @ ways)
     return {name: float(inertia) for name, inertia in zip(driven, felt, strict=True)}
+
+
+def words_of_open(motion: Motion) -> list[str]:
+    """That loops of the model do not close along a motion of its drives; none where they do."""
+    if motion.open < OPEN:
+        return []
+    return [
+        f"in {motion.open:.0%} of the rows the loops of the model do not close: look at lengths of"
+        " its links, and at zeros, units and signs of the drives' positions"
+    ]

@@ -9,11 +9,8 @@ import mujoco
 import numpy as np
 
 from ves_twin.core.types import FloatArray
-from ves_twin.data.clock.usual_period import is_usual
-from ves_twin.machines.mjcf.draft.angles import other_angle
 from ves_twin.machines.mjcf.draft.changes import changes
 from ves_twin.machines.mjcf.draft.effort_fit import (
-    FAR,
     LOADED,
     MOST,
     STRONG,
@@ -21,6 +18,8 @@ from ves_twin.machines.mjcf.draft.effort_fit import (
     EffortFit,
     carried,
 )
+from ves_twin.machines.mjcf.draft.effort_sizes import ODD, constant_of, words_of_size
+from ves_twin.machines.mjcf.draft.home_of import home_of
 from ves_twin.machines.mjcf.draft.late import Pushed, words_of_lag
 from ves_twin.machines.mjcf.draft.log_columns import LogColumns
 from ves_twin.machines.mjcf.draft.match import Match
@@ -57,24 +56,16 @@ tip mass that its model lacks an angle from the world, degrees and a quarter tur
 TURN = 0.02
 """Weight against turning an effort's sign, so that where all else is equal none is turned."""
 
-ODD = 50.0
-"""Times what the model needs from which on an effort is in another unit, whatever friction does."""
-
 CLEAR = 0.7
 """Share of each effort that must be explained after a swap, friction and all, where less than MOST
-was before: it is right, however little the model itself needs there (wrists of a UR10e)."""
-
-FOREIGN = 1e5
-"""Times from which on a column is likely of another quantity: no usual unit is as far off."""
+was before: it is right, however little the model itself needs there (wrists of a UR10e). Of a unit
+the size tells: in degrees any motion fits, by a slope of 20."""
 
 NEAR = 1.5
 """Factor within which efforts fit a model under another gravity: its masses are about right."""
 
 TOOL = 10.0
 """Factor within which efforts are those of a model that lacks a tool, in its own unit."""
-
-LITTLE = " Where the model needs next to nothing (a balanced wrist), friction does that, too"
-"""What is said of an effort that is large and not like that of the model."""
 
 
 def _is_turned(new: list[Match], found: list[Match]) -> bool:
@@ -95,13 +86,23 @@ def _against(new: list[Match], found: list[Match]) -> float:
 
 @dataclass(frozen=True)
 class Judge:
-    """Efforts of a log against those of a model."""
+    """Efforts of a log against those of a model.
+
+    Attributes:
+        log: the columns.
+        model: the machine.
+        corner: of the low-pass [Hz].
+        locked: joints that are taken as standing still.
+        cyclic: joints of which a speed is enough.
+        drives: of a parallel machine the joints that all others follow; empty: there are no loops.
+    """
 
     log: LogColumns
     model: mujoco.MjModel
     corner: float
     locked: tuple[str, ...] = ()
     cyclic: tuple[str, ...] = ()
+    drives: tuple[str, ...] = ()
     _kept: dict[tuple[Match, ...], Motion] = field(default_factory=dict, init=False, compare=False)
 
     def motion(self, found: list[Match]) -> Motion:
@@ -117,13 +118,17 @@ class Judge:
     def _motion(self, found: tuple[Match, ...]) -> Motion:
         positions = {}
         for m in found:
-            if m.spot.quantity is Quantity.POSITION:
-                positions[m.spot.name] = m.factor * self.log.column(m.column) + m.zero
+            follows = self.drives and m.spot.name not in self.drives
+            if m.spot.quantity is Quantity.POSITION and not follows:
+                home = home_of(m, self.model, self.log) if self.drives else None
+                zero = home[0] * m.factor / m.scale if home else m.zero
+                positions[m.spot.name] = m.factor * self.log.column(m.column) + zero
             elif m.spot.quantity is Quantity.SPEED and m.spot.name in self.cyclic:
                 speed = m.factor * self.log.column(m.column)
                 time = np.arange(len(speed), dtype=float) * self.log.period
                 positions[m.spot.name] = turned_by(speed, time)
-        return motion_of(self.model, positions, self.log.period, self.corner)
+        loops = bool(self.drives)
+        return motion_of(self.model, positions, self.log.period, self.corner, loops)
 
     def corrected(self, found: list[Match]) -> tuple[list[Match], list[str], Mounted | None]:
         """With the changes of positions that explain more, the best first, and words for them.
@@ -201,7 +206,8 @@ class Judge:
         swapped = any(a.column != b.column for a, b in zip(new, found, strict=True))
         if swapped and any(fit.pushes and not was[c].pushes for c, fit in now.items()):
             return False
-        if now and all(fit.share > CLEAR and was[c].share < MOST for c, fit in now.items()):
+        clear = all(fit.share > CLEAR and was[c].share < MOST for c, fit in now.items())
+        if now and clear and all(a.unit == b.unit for a, b in zip(new, found, strict=True)):
             return True
         right = [fit.right for fit in now.values()]
         return not right or sum(right) > MAJORITY * len(right)
@@ -305,7 +311,8 @@ class Judge:
                 continue
             fit = self.fit(match, motion)
             if match.indirect and (fit.gain > TELLS or self.log.is_coarse(match.column)):
-                found[i], words = self.constant(match, fit, motion, found)
+                alone = self.by_inertia(match, motion)
+                found[i], words = constant_of(self.log, match, fit, found, alone)
                 said += words
                 continue
             if match.fitted:
@@ -324,51 +331,8 @@ class Judge:
                     f"{match.column} has the wrong sign for this model ({why}): it is turned; or"
                     " the position of its joint counts the other way"
                 )
-            said += self.odd(match, fit)
+            said += words_of_size(self.log, match, fit)
         return found, said
-
-    def constant(
-        self, match: Match, fit: EffortFit, motion: Motion, found: list[Match]
-    ) -> tuple[Match, list[str]]:
-        """An electrical column with the constant that fits the model, or its own command."""
-        if fit.gain <= STRONG and self.log.is_coarse(match.column):
-            coarse = "moves by a few steps of its resolution: no constant is read off it"
-            return match, [f"{match.column} {coarse}"]
-        scale = 1.0 / fit.slope
-        if match.spot.unit == "1" and 1.0 / FAR < abs(scale) / match.prefix < FAR:
-            own = float(np.copysign(match.prefix, scale))
-            return replace(match, scale=own), [
-                f"{match.column} is taken as the command of {match.spot.label} as the model"
-                f" has it{', turned' * (scale < 0.0)}; by the model's inertia and weight"
-                f" {scale / own:.3g} times it would fit best"
-            ]
-        unit = match.per
-        how = ", turned (or its joint's position counts the other way)" * (scale < 0.0)
-        how += self.by_inertia(match, motion)
-        new = replace(match, scale=float(f"{scale:.3g}"))
-        said = [
-            f"{match.column} is {match.kind}: {abs(scale):.3g} {unit} makes it fit this model{how};"
-            f" put {match.asked} there"
-        ]
-        others = [new if m is match else m for m in found]
-        return new, [*said, *other_angle(self.log, others, match.spot.joint, scale, unit)]
-
-    def odd(self, match: Match, fit: EffortFit) -> list[str]:
-        """That an effort is of another size than the model's, if it is; of friction no size is."""
-        strong, times = fit.strange, abs(fit.slope) if fit.strange else fit.size
-        if not (strong or not 1.0 / ODD < times < ODD) or fit.free:
-            return []
-        if not is_usual(self.log.period):
-            return []
-        if not strong and times > ODD and fit.rubs:
-            little = "and the model needs next to nothing there: nothing tells its unit"
-            return [f"{match.column} is friction, {fit.share:.0%} of it, {little}"]
-        turned = ", turned," * (strong and fit.slope < 0.0)
-        return [
-            f"{match.column} is {times:.3g} times{turned} what the model needs: another unit,"
-            f"{' swapped columns,' * (not 1.0 / FOREIGN < times < FOREIGN)} a gear or a wrong mass?"
-            f"{LITTLE * (not strong and times > ODD)}"
-        ]
 
     def by_inertia(self, match: Match, motion: Motion) -> str:
         """That nothing but inertia tells a constant, where the model bears no load there."""

@@ -11,9 +11,13 @@ from scipy.signal import welch
 
 from ves_twin.core.types import FloatArray
 from ves_twin.machines.mjcf.motion.inverse import smoothed
+from ves_twin.machines.mjcf.parts.loop_motion import LoopMotion
 
 MOST = 1500
 """Rows at which the efforts are computed: enough to tell a sign, and a tenth of a second."""
+
+MOST_CLOSED = 150
+"""The same where loops must be closed at each, which takes longer."""
 
 
 @dataclass(frozen=True)
@@ -25,16 +29,22 @@ class Motion:
         speed: of the degrees of freedom (m, nv).
         effort: needed at each, of the model as it is (m, nv).
         steady: of them what gravity, springs and speeds need (m, nv); the rest is inertia.
+        open: share of the rows in which loops of the model do not close.
     """
 
     rows: np.ndarray
     speed: FloatArray
     effort: FloatArray
     steady: FloatArray
+    open: float = 0.0
 
 
 def motion_of(
-    model: mujoco.MjModel, positions: Mapping[str, FloatArray], period: float, corner: float
+    model: mujoco.MjModel,
+    positions: Mapping[str, FloatArray],
+    period: float,
+    corner: float,
+    loops: bool = False,
 ) -> Motion:
     """MuJoCo's inverse dynamics along recorded positions, low-passed without phase.
 
@@ -43,10 +53,13 @@ def motion_of(
         positions: joint -> position [m or rad] (n,) at even rows; others stay where they are.
         period: of the rows [s].
         corner: of the low-pass [Hz].
+        loops: others move as the model's loops have it, and what they need is needed at those
+            whose positions are told.
     """
     count = len(next(iter(positions.values())))
     trim = min(int(1.0 / (corner * period)), count // 8)
-    rows = np.unique(np.linspace(trim, count - 1 - trim, MOST).astype(int))
+    most = MOST_CLOSED if loops else MOST
+    rows = np.unique(np.linspace(trim, count - 1 - trim, most).astype(int))
     q = np.tile(model.qpos0, (len(rows), 1))
     v, a = np.zeros((2, len(rows), model.nv))
     for joint, values in positions.items():
@@ -55,22 +68,40 @@ def motion_of(
         speed = np.gradient(smooth, period)
         q[:, at], v[:, dof] = smooth[rows], speed[rows]
         a[:, dof] = np.gradient(speed, period)[rows]
+    if not loops:
+        return Motion(rows, v, *_needed(model, q, v, a, np.zeros_like(a)))
+    joints = [model.joint(joint) for joint in positions]
+    drives = np.array([int(joint.dofadr[0]) for joint in joints])
+    along = q[:, [int(joint.qposadr[0]) for joint in joints]]
+    driven = a[:, drives]
+    moved = LoopMotion.of(model, drives, along, v[:, drives], driven)
+    coasts = moved.pull - np.einsum("kvd,kd->kv", moved.ways, driven)
+    both = _needed(model, moved.position, moved.speed, moved.pull, coasts)
+    effort, steady = np.zeros((2, len(rows), model.nv))
+    effort[:, drives], steady[:, drives] = (moved.at_drives(one) for one in both)
+    return Motion(rows, moved.speed, effort, steady, float(np.mean(moved.open)))
+
+
+def _needed(
+    model: mujoco.MjModel, q: FloatArray, v: FloatArray, a: FloatArray, coasts: FloatArray
+) -> tuple[FloatArray, FloatArray]:
+    """Efforts (m, nv) of an open tree along qpos, qvel and qacc, and those at qacc of coasting."""
     quiet = model.opt.disableflags
     model.opt.disableflags |= int(mujoco.mjtDisableBit.mjDSBL_CONSTRAINT)
     try:
         data = mujoco.MjData(model)
-        effort, steady = np.zeros((2, len(rows), model.nv))
+        effort, steady = np.zeros((2, *v.shape))
         position, speed, pull, needed = data.qpos, data.qvel, data.qacc, data.qfrc_inverse
-        for k in range(len(rows)):
+        for k in range(len(q)):
             position[:], speed[:], pull[:] = q[k], v[k], a[k]
             mujoco.mj_inverse(model, data)
             effort[k] = needed
-            pull[:] = 0.0
+            pull[:] = coasts[k]
             mujoco.mj_inverseSkip(model, data, mujoco.mjtStage.mjSTAGE_VEL, 1)
             steady[k] = needed
     finally:
         model.opt.disableflags = quiet
-    return Motion(rows, v, effort, steady)
+    return effort, steady
 
 
 def spectrum(values: FloatArray, period: float) -> tuple[FloatArray, FloatArray]:

@@ -1,4 +1,4 @@
-"""has_loops, loop_rows, assemble: bodies of a machine whose chains close."""
+"""has_loops, loop_rows, freedom, closed, assemble: bodies of a machine whose chains close."""
 
 from __future__ import annotations
 
@@ -36,6 +36,13 @@ def loop_rows(model: mujoco.MjModel, data: mujoco.MjData) -> tuple[FloatArray, F
     return np.array(data.efc_pos[rows]), np.array(data.efc_J.reshape(-1, model.nv)[rows])
 
 
+def freedom(model: mujoco.MjModel) -> int:
+    """Motions that loops leave a machine at home: nv - rank J."""
+    dense = dense_copy(model)
+    _, rows = loop_rows(dense, mujoco.MjData(dense))
+    return int(model.nv - np.linalg.matrix_rank(rows))
+
+
 def assemble(model: mujoco.MjModel, data: mujoco.MjData, known: IntArray) -> None:
     """Bring a machine with loops to where they close, in place and speed.
 
@@ -55,17 +62,27 @@ def assemble(model: mujoco.MjModel, data: mujoco.MjData, known: IntArray) -> Non
     look = mujoco.MjData(dense)
     look.qpos[:] = data.qpos
     others = np.setdiff1d(np.arange(model.nv), known)
-    for _ in range(STEPS):
-        gaps, rows = loop_rows(dense, look)
-        if np.max(np.abs(gaps), initial=0.0) < CLOSED:
-            break
-        move = np.zeros(model.nv)
-        move[others] = -np.linalg.pinv(rows[:, others]) @ gaps
-        mujoco.mj_integratePos(dense, look.qpos, move, 1.0)
-    else:
+    rows = closed(dense, look, others)
+    if rows is None:
         return
     data.qpos[:] = look.qpos
     data.qvel[others] -= np.linalg.pinv(rows[:, others]) @ (rows @ data.qvel)
+
+
+def closed(dense: mujoco.MjModel, data: mujoco.MjData, others: IntArray) -> FloatArray | None:
+    """Move degrees of freedom that nothing tells until loops close.
+
+    Returns:
+        The Jacobian (k, nv) where they close; None where they cannot.
+    """
+    for _ in range(STEPS):
+        gaps, rows = loop_rows(dense, data)
+        if np.max(np.abs(gaps), initial=0.0) < CLOSED:
+            return rows
+        move = np.zeros(dense.nv)
+        move[others] = -np.linalg.pinv(rows[:, others]) @ gaps
+        mujoco.mj_integratePos(dense, data.qpos, move, 1.0)
+    return None
 
 
 def dense_copy(model: mujoco.MjModel) -> mujoco.MjModel:

@@ -1,0 +1,75 @@
+"""constant_of, words_of_size: efforts of another size than the model needs, and what is said."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from ves_twin.data.clock.usual_period import is_usual
+from ves_twin.machines.mjcf.draft.angles import other_angle
+from ves_twin.machines.mjcf.draft.effort_fit import FAR, STRONG, EffortFit
+from ves_twin.machines.mjcf.draft.log_columns import LogColumns
+from ves_twin.machines.mjcf.draft.match import Match
+
+ODD = 50.0
+"""Times what the model needs from which on an effort is in another unit, whatever friction does."""
+
+FOREIGN = 1e5
+"""Times from which on a column is likely of another quantity: no usual unit is as far off."""
+
+LITTLE = " Where the model needs next to nothing (a balanced wrist), friction does that, too"
+"""What is said of an effort that is large and not like that of the model."""
+
+
+def constant_of(
+    log: LogColumns, match: Match, fit: EffortFit, found: list[Match], by_inertia: str
+) -> tuple[Match, list[str]]:
+    """An electrical column with the constant that fits the model, or its own command.
+
+    Args:
+        log: the columns.
+        match: the column.
+        fit: of it.
+        found: all columns as they are meant.
+        by_inertia: what is said where inertia alone tells it.
+    """
+    if fit.gain <= STRONG and log.is_coarse(match.column):
+        coarse = "moves by a few steps of its resolution: no constant is read off it"
+        return match, [f"{match.column} {coarse}"]
+    scale = 1.0 / fit.slope
+    if match.spot.unit == "1" and 1.0 / FAR < abs(scale) / match.prefix < FAR:
+        own = float(np.copysign(match.prefix, scale))
+        return replace(match, scale=own), [
+            f"{match.column} is taken as the command of {match.spot.label} as the model"
+            f" has it{', turned' * (scale < 0.0)}; by the model's inertia and weight"
+            f" {scale / own:.3g} times it would fit best"
+        ]
+    unit = match.per
+    how = ", turned (or its joint's position counts the other way)" * (scale < 0.0)
+    how += by_inertia
+    new = replace(match, scale=float(f"{scale:.3g}"))
+    said = [
+        f"{match.column} is {match.kind}: {abs(scale):.3g} {unit} makes it fit this model{how};"
+        f" put {match.asked} there"
+    ]
+    others = [new if m is match else m for m in found]
+    return new, [*said, *other_angle(log, others, match.spot.joint, scale, unit)]
+
+
+def words_of_size(log: LogColumns, match: Match, fit: EffortFit) -> list[str]:
+    """That an effort is of another size than the model's, if it is; of friction no size is."""
+    strong, times = fit.strange, abs(fit.slope) if fit.strange else fit.size
+    if not (strong or not 1.0 / ODD < times < ODD) or fit.free:
+        return []
+    if not is_usual(log.period):
+        return []
+    if not strong and times > ODD and fit.rubs:
+        little = "and the model needs next to nothing there: nothing tells its unit"
+        return [f"{match.column} is friction, {fit.share:.0%} of it, {little}"]
+    turned = ", turned," * (strong and fit.slope < 0.0)
+    return [
+        f"{match.column} is {times:.3g} times{turned} what the model needs: another unit,"
+        f"{' swapped columns,' * (not 1.0 / FOREIGN < times < FOREIGN)} a gear or a wrong mass?"
+        f"{LITTLE * (not strong and times > ODD)}"
+    ]
