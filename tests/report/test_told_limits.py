@@ -91,6 +91,14 @@ def test_held_out_recordings_of_another_motion_are_told(there, held_out, warned)
     assert ("3.6 times as far off as the fitted ones (force)" in words) is warned
 
 
+def test_held_out_recordings_of_the_same_motion_are_said_to_be_that():
+    plain = verdict()
+    again = replace(plain, basis=replace(plain.basis, held_out_repeats=True))
+    told = "what is proved is proved for that motion"
+    assert told in confidence_sentence(again)
+    assert told not in confidence_sentence(plain)
+
+
 @pytest.mark.parametrize(
     ("pull", "high", "told"), [(-3.8, 96e3, True), (-1.2, 96e3, False), (-3.8, 104e3, False)]
 )

@@ -19,6 +19,7 @@ from ves_twin.diagnosis.model.forward import Excitation, Forward
 from ves_twin.diagnosis.record.by_motion import by_motion
 from ves_twin.diagnosis.record.likeness import check_likeness
 from ves_twin.diagnosis.record.preprocess import Dataset, preprocess
+from ves_twin.diagnosis.record.repeated import repeated
 from ves_twin.diagnosis.record.runs import Progress, Runs
 from ves_twin.diagnosis.record.whitening import Whitening, whitening_of
 from ves_twin.diagnosis.settings import Settings
@@ -115,7 +116,16 @@ class View:
             baseline="measured" if material.baseline else "none",
             baseline_differs=self.findings.differs,
             by_motion=self.moved,
+            held_out_repeats=repeated(self._fed(material.held_out), self._fed(material.recordings)),
         )
+
+    def _fed(self, recordings: Sequence[Recording]) -> list[Excitation]:
+        """What was fed into the plant while recordings were made."""
+        found = []
+        for one in recordings:
+            drive = tuple(name for name in self.forward.drive if name in one.signals)
+            found.append(Excitation.of(one, drive))
+        return found
 
     @property
     def limits(self) -> Limits:

@@ -6,7 +6,6 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.signal import correlate
 
 from ves_twin.core.errors import InvalidInputError
 from ves_twin.core.quantity import percent
@@ -14,14 +13,11 @@ from ves_twin.core.recording.recording import Recording
 from ves_twin.core.types import FloatArray, SingleArray
 from ves_twin.diagnosis.model.forward import Excitation
 from ves_twin.diagnosis.record.preprocess import Dataset, preprocess
+from ves_twin.diagnosis.record.repeated import REPEATS, apart, lag_of
 from ves_twin.diagnosis.record.runs import Runs
 
 SAME = 1e-3
 """Difference of two set-points, of their range, up to which programmes count as the same."""
-
-REPEATS = 0.02
-"""Difference of two measured inputs, of their range, up to which a motion counts as repeated: what
-the difference does is taken off by the model, which is right to a few per cent of it."""
 
 EVEN = 0.01
 """Share of a row's period by which two clocks may differ."""
@@ -94,7 +90,7 @@ def _along(recording: Recording, programme: Excitation, runs: Runs) -> _Along:
         return _Along(None, np.inf, f"none with {missing[0]}")
     given = {name: values for name, values in drive.items() if values is not None}
     count = len(programme.time)
-    lag = _lag(given, programme.drive) if not _alike(given, programme.drive) else 0
+    lag = lag_of(given, programme.drive) if not _alike(given, programme.drive) else 0
     if lag is None:
         have = len(recording.time)
         return _Along(
@@ -104,7 +100,7 @@ def _along(recording: Recording, programme: Excitation, runs: Runs) -> _Along:
     period = float(recording.time[-1] - recording.time[0]) / (len(recording.time) - 1)
     if not programme.poses and abs(period - programme.period) > EVEN * programme.period:
         return _Along(None, np.inf, f"one with rows {period:.4g} s apart")
-    differs = max(_apart(given[name][rows], values) for name, values in programme.drive.items())
+    differs = max(apart(given[name][rows], values) for name, values in programme.drive.items())
     if differs > REPEATS:
         return _Along(None, differs, f"inputs that differ by {percent(differs)} of their range")
     signals = {name: values[rows] for name, values in recording.signals.items()}
@@ -123,31 +119,8 @@ def _along(recording: Recording, programme: Excitation, runs: Runs) -> _Along:
     return _Along(np.asarray(there.measured + change, np.float32), differs)
 
 
-def _lag(given: Mapping[str, FloatArray], wanted: Mapping[str, FloatArray]) -> int | None:
-    """Rows by which inputs are late, where they are nearest; None where they are too few."""
-    total: FloatArray | None = None
-    for name, values in wanted.items():
-        longer, scale = given[name], max(float(np.ptp(values)), 1e-9)
-        if longer.shape[1] != values.shape[1] or len(longer) < len(values):
-            return None
-        for column in range(values.shape[1]):
-            x, y = longer[:, column] / scale, values[:, column] / scale
-            middle = float(np.mean(y))
-            x, y = x - middle, y - middle
-            sums = np.cumsum(np.append(0.0, x**2))
-            power = sums[len(y) :] - sums[: len(x) - len(y) + 1]
-            apart = power - 2.0 * correlate(x, y, "valid")
-            total = apart if total is None else total + apart
-    return None if total is None else int(np.argmin(total))
-
-
 def _alike(one: Mapping[str, FloatArray], two: Mapping[str, FloatArray]) -> bool:
     """Whether two programmes feed in the same."""
     return all(
-        one[name].shape == two[name].shape and _apart(one[name], two[name]) <= SAME for name in two
+        one[name].shape == two[name].shape and apart(one[name], two[name]) <= SAME for name in two
     )
-
-
-def _apart(one: FloatArray, two: FloatArray) -> float:
-    """Largest difference, of the range of the second."""
-    return float(np.abs(one - two).max()) / max(float(np.ptp(two)), 1e-9)

@@ -156,6 +156,8 @@ class Basis:
     of their range. `left_out` names what there was no time for. `pieces` is how many the measured
     recordings were cut into, each simulated from its own start; 0: they were whole. `by_motion`
     says that efforts which the measured motion lacks were compared, and no simulation.
+    `held_out_repeats` says that what was fed in while held-out recordings were made is that of
+    fitted ones, moved in time.
     """
 
     noise: str
@@ -167,6 +169,7 @@ class Basis:
     left_out: tuple[str, ...] = ()
     pieces: int = 0
     by_motion: bool = False
+    held_out_repeats: bool = False
 
 
 @dataclass(frozen=True)

@@ -28,6 +28,12 @@ from ves_twin.report.diagnosis.words import (
 STRANGER = 0.5
 """Share of a channel's own spread that stays unexplained where the model is hardly this machine."""
 
+AGAIN = (
+    " Held-out recordings repeat what was fed in while the fitted ones were made: what is proved is"
+    " proved for that motion, and names that only another one tells apart may be exchanged."
+)
+"""Beside causes that no other motion has tried."""
+
 OTHERWISE = 2.0
 """Times that the model is as far off on held-out recordings as on fitted ones, from which they are
 taken to move otherwise."""
@@ -70,7 +76,7 @@ def confidence_sentence(verdict: Verdict) -> str:
         case Kind.NOTHING:
             return _shown(verdict)
         case Kind.UNKNOWN if verdict.law is not None and verdict.law.claimed:
-            return worth_sentence(verdict.law)
+            return worth_sentence(verdict.law) + AGAIN * verdict.basis.held_out_repeats
         case Kind.UNKNOWN:
             return _beyond(verdict)
         case _ if verdict.proved:
@@ -79,7 +85,7 @@ def confidence_sentence(verdict: Verdict) -> str:
             firm = any(one.firm for one in verdict.proved)
             if firm and any(what.startswith(LAW) for what in verdict.basis.left_out):
                 hurried += UNSOUGHT
-            hurried += _otherwise(verdict)
+            hurried += AGAIN if verdict.basis.held_out_repeats else _otherwise(verdict)
             named = "Only firm names are the mechanism." if firm else "No name is firm."
             return (
                 f"{verdict.put_to_proof} {'was' if verdict.put_to_proof == 1 else 'were'} tested on"

@@ -1,0 +1,46 @@
+"""A held-out programme that is a fitted one over again is told from another one."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from ves_twin.diagnosis.model.forward import Excitation
+from ves_twin.diagnosis.record.repeated import repeated
+
+
+def programme(begin: float = 0.0, length: float = 10.0, noise: float = 0.0, speed: float = 1.0):
+    """A round of two joints, from some time on."""
+    time = np.arange(0.0, length, 0.01)
+    angle = speed * (time + begin) + 0.3 * np.sin(0.4 * (time + begin))
+    path = np.stack([np.sin(angle), np.cos(1.7 * angle)], axis=1)
+    path += noise * np.random.default_rng(int(100 * begin)).standard_normal(path.shape)
+    return Excitation("round", time, {"q": path})
+
+
+def test_the_same_programme_again_is_told_though_it_begins_later_and_is_noisy():
+    assert repeated([programme()], [programme()])
+    assert repeated([programme(begin=0.37, noise=1e-3)], [programme(noise=1e-3)])
+    assert repeated([programme(length=9.0)], [programme(begin=50.0), programme()])
+
+
+@pytest.mark.parametrize("other", [{"begin": 40.0}, {"speed": 1.05}, {"noise": 0.1}])
+def test_another_programme_is_none(other):
+    assert not repeated([programme(**other)], [programme()])
+
+
+def test_one_other_programme_is_enough_to_try_what_is_proved():
+    assert not repeated([programme(), programme(begin=40.0)], [programme()])
+    assert not repeated([], [programme()])
+
+
+def test_what_is_let_go_is_fed_nothing_that_could_repeat():
+    still = Excitation("let go", np.arange(0.0, 5.0, 0.01), {})
+    assert not repeated([still], [still])
+
+
+def test_other_inputs_or_a_longer_programme_are_not_found():
+    assert not repeated(
+        [Excitation("x", programme().time, {"x": np.ones((1000, 1))})], [programme()]
+    )
+    assert not repeated([programme(length=30.0)], [programme()])

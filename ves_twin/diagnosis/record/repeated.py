@@ -1,0 +1,68 @@
+"""repeated, lag_of, apart: how nearly one programme, moved in time, has the inputs of another."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+from scipy.signal import correlate
+
+from ves_twin.core.types import FloatArray
+from ves_twin.diagnosis.model.forward import Excitation
+
+REPEATS = 0.02
+"""Difference of two measured inputs, of their range, up to which a motion counts as repeated: what
+the difference does is taken off by the model, which is right to a few per cent of it."""
+
+MIDDLE = 0.1
+"""Share of a programme at either end that is not looked for in another one: two recordings of one
+motion hardly ever begin and end in the same row."""
+
+
+def repeated(held: Sequence[Excitation], fitted: Sequence[Excitation]) -> bool:
+    """Whether all programmes that are held out are found in what is fitted, moved in time.
+
+    What is proved on such a one is proved for that motion.
+
+    Args:
+        held: what was fed in while held-out recordings were made.
+        fitted: the same of those that are fitted.
+    """
+    return bool(held) and all(any(_found_in(one, other) for other in fitted) for one in held)
+
+
+def _found_in(held: Excitation, fitted: Excitation) -> bool:
+    """Whether the middle of a programme is in another one of the same clock."""
+    if held.poses or fitted.poses or not held.drive or held.drive.keys() != fitted.drive.keys():
+        return False
+    edge = int(MIDDLE * len(held.time))
+    middle = {name: values[edge : len(values) - edge] for name, values in held.drive.items()}
+    same_clock = abs(held.period - fitted.period) < MIDDLE * fitted.period
+    lag = lag_of(fitted.drive, middle) if same_clock else None
+    if lag is None:
+        return False
+    rows = slice(lag, lag + len(held.time) - 2 * edge)
+    return all(apart(fitted.drive[name][rows], values) < REPEATS for name, values in middle.items())
+
+
+def lag_of(given: Mapping[str, FloatArray], wanted: Mapping[str, FloatArray]) -> int | None:
+    """Rows by which inputs are late, where they are nearest; None where they are too few."""
+    total: FloatArray | None = None
+    for name, values in wanted.items():
+        longer, scale = given[name], max(float(np.ptp(values)), 1e-9)
+        if longer.shape[1] != values.shape[1] or len(longer) < len(values):
+            return None
+        for column in range(values.shape[1]):
+            x, y = longer[:, column] / scale, values[:, column] / scale
+            middle = float(np.mean(y))
+            x, y = x - middle, y - middle
+            sums = np.cumsum(np.append(0.0, x**2))
+            power = sums[len(y) :] - sums[: len(x) - len(y) + 1]
+            apart = power - 2.0 * correlate(x, y, "valid")
+            total = apart if total is None else total + apart
+    return None if total is None else int(np.argmin(total))
+
+
+def apart(one: FloatArray, two: FloatArray) -> float:
+    """Largest difference, of the range of the second."""
+    return float(np.abs(one - two).max()) / max(float(np.ptp(two)), 1e-9)
