@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+from collections.abc import Sequence
 from math import isfinite
 from pathlib import Path
 
@@ -41,7 +42,7 @@ def execute(arguments: argparse.Namespace) -> int:
 
     out = Path(arguments.out or f"{model.stem}.toml")
     rate = None if arguments.rate is None else _positive(to_si(arguments.rate, "Hz", "--rate"))
-    scales = dict(_scale(text) for text in arguments.scale)
+    scales = _scales(arguments.scale)
     found = new_machine(model, logs, out, rate, scales=scales)
     print(json_text(found.to_dict()) if arguments.json else new_text(found, model, logs))
     return 0
@@ -53,6 +54,18 @@ def _positive(rate: float) -> float:
     if rate <= 0.0:
         raise InvalidInputError("--rate", rate, "rows a second, above zero")
     return rate
+
+
+def _scales(texts: Sequence[str]) -> dict[str, float]:
+    from ves_twin.core.errors import InvalidInputError
+
+    scales: dict[str, float] = {}
+    for column, scale in map(_scale, texts):
+        if column in scales:
+            given = f"{column}={scales[column]:g} and {column}={scale:g}"
+            raise InvalidInputError("--scale", given, "one constant of a column")
+        scales[column] = scale
+    return scales
 
 
 def _scale(text: str) -> tuple[str, float]:

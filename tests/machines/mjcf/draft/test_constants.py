@@ -55,6 +55,8 @@ def test_a_constant_of_no_column_or_no_number_is_one_line(arm, amperes, capsys):
     for text in ("i3_A", "=2", "i3_A=much", "i3_A=nan"):
         assert main([*asked, text]) == 2
         assert "expected COLUMN=NUMBER" in capsys.readouterr().err
+    assert main([*asked, "i3_A=0.05", "--scale", "i3_A=0.06"]) == 2
+    assert "expected one constant of a column" in capsys.readouterr().err
     assert main([*asked, "i3_A=0.05"]) == 0
     assert "N*m per A is given" in capsys.readouterr().out
 
