@@ -35,4 +35,5 @@ def with_constants(matches: Matches, scales: Mapping[str, float]) -> Matches:
 
 def _given(match: Match, scale: float) -> Match:
     reasons = (*match.reasons, f"{match.per} is given")
-    return replace(match, unit=match.spot.unit, told=True, scale=scale, reasons=reasons)
+    unit = match.spot.unit
+    return replace(match, unit=unit, told=True, scale=scale, reasons=reasons, given=True)

@@ -17,7 +17,7 @@ from ves_twin.machines.mjcf.draft.chosen import RATES, Chosen
 from ves_twin.machines.mjcf.draft.estimates import travel, two_digits, typical
 from ves_twin.machines.mjcf.draft.log_columns import LogColumns
 from ves_twin.machines.mjcf.draft.match import Match, Matches
-from ves_twin.machines.mjcf.draft.spots import Quantity, is_motor, servo_limit
+from ves_twin.machines.mjcf.draft.spots import Quantity, is_damped_motor, servo_limit
 from ves_twin.machines.mjcf.motion.inverse import smoothed
 from ves_twin.machines.mjcf.parts.servo import FILTERS, is_servo
 from ves_twin.machines.mjcf.rig.column import LAB_UNITS
@@ -240,7 +240,7 @@ def _joints(log: LogColumns, check: Checked, mode: Chosen, model: mujoco.MjModel
             continue
         sizes = {"speed": speed, "travel": travel(position)}
         own = efforts.get(match.spot.name)
-        if own is not None and is_motor(model, model.actuator(own.spot.name).id):
+        if own is not None and is_damped_motor(model, model.actuator(own.spot.name).id):
             drive = model.actuator(own.spot.name)
             gain = abs(float(drive.gear[0] * drive.gainprm[0])) or 1.0
             sizes = {"effort": typical(gain * own.factor * log.column(own.column)), **sizes}

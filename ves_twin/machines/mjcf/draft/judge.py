@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator
 from dataclasses import dataclass, field, replace
 
 import mujoco
 import numpy as np
 
 from ves_twin.core.types import FloatArray
-from ves_twin.machines.mjcf.draft.changes import changes
+from ves_twin.machines.mjcf.draft.changes import changes, misnamed
 from ves_twin.machines.mjcf.draft.effort_fit import (
     LOADED,
     MOST,
@@ -203,6 +203,8 @@ class Judge:
         now = {m.column: self.fit(m, motion) for m in self.driving(new) if m.spot.joint in changed}
         before = self.motion(found)
         was = {m.column: self.fit(m, before) for m in self.driving(found) if m.column in now}
+        if self._hides(new, found, now.values()):
+            return False
         swapped = any(a.column != b.column for a, b in zip(new, found, strict=True))
         if swapped and any(fit.pushes and not was[c].pushes for c, fit in now.items()):
             return False
@@ -211,6 +213,18 @@ class Judge:
             return True
         right = [fit.right for fit in now.values()]
         return not right or sum(right) > MAJORITY * len(right)
+
+    def _hides(self, new: list[Match], found: list[Match], fits: Collection[EffortFit]) -> bool:
+        """Whether a unit that a name tells is another one by efforts whose constant is open.
+
+        In degrees a hub takes 57 times the torque a volt: nothing but its tip tells, which drifts.
+        """
+        reach = self.reach(found)
+        renamed = any(
+            b.told and a.unit != b.unit and not misnamed(b, reach.get(b.column, 0.0))
+            for a, b in zip(new, found, strict=True)
+        )
+        return renamed and len(fits) > 0 and all(fit.free for fit in fits)
 
     def score(self, found: list[Match]) -> float:
         """Shares explained at all joints, less what factors, signs and speeds have against it."""
@@ -325,8 +339,14 @@ class Judge:
                     " look whether its sign is right; in a motion of several joints it may be"
                 )
             elif turns:
-                found[i] = replace(match, scale=-match.scale)
                 why = f"slope {fit.slope:.2f}" if fit.usable else f"work {fit.work:.0%}"
+                if match.given:
+                    said.append(
+                        f"{match.column} acts against this model ({why}), and stays as it is given:"
+                        " its sign, or a command that comes late in a closed loop"
+                    )
+                    continue
+                found[i] = replace(match, scale=-match.scale)
                 said.append(
                     f"{match.column} has the wrong sign for this model ({why}): it is turned; or"
                     " the position of its joint counts the other way"

@@ -49,6 +49,7 @@ class Match:
         others: what else the column could be, or which column would do as well.
         alone: the column itself, where `column` is a difference with another.
         zero: the spot's number where the column is zero [SI].
+        given: whether its owner says the scale.
     """
 
     column: str
@@ -60,6 +61,7 @@ class Match:
     others: tuple[str, ...] = ()
     alone: str = ""
     zero: float = 0.0
+    given: bool = False
 
     @property
     def indirect(self) -> bool:

@@ -137,6 +137,19 @@ def is_motor(model: mujoco.MjModel, actuator: int) -> bool:
     return kinds == plain and int(model.actuator_trntype[actuator]) == ON_JOINT
 
 
+def is_damped_motor(model: mujoco.MjModel, actuator: int) -> bool:
+    """Whether a command times a constant is the effort at one joint at rest: a voltage, too.
+
+    With the speed's share of an affine bias, which is a motor's back-EMF.
+    """
+    own = model.actuator_biasprm[actuator]
+    braked = int(model.actuator_biastype[actuator]) == int(mujoco.mjtBias.mjBIAS_AFFINE)
+    plain = int(model.actuator_dyntype[actuator]) == int(mujoco.mjtDyn.mjDYN_NONE)
+    on_joint = int(model.actuator_trntype[actuator]) == ON_JOINT
+    damps = braked and plain and on_joint and not np.any(own[:2]) and float(own[2]) <= 0.0
+    return damps or is_motor(model, actuator)
+
+
 def servo_limit(model: mujoco.MjModel, name: str) -> float:
     """Largest effort of a servo [N or N m]; 0 where the model has no limit, or no such servo."""
     number = model.actuator(name).id

@@ -14,7 +14,10 @@ TURN = 0.3
 """Largest move [rad or m] of a part that nothing tells from one closed pose to the next: beyond it
 a Newton step may end in the other pose in which two links meet."""
 
-LOST = 0.25
+FAR = 20
+"""Such moves from one row to the next beyond which a log is another motion, or in another unit."""
+
+LOST = 0.1
 """Share of rows in which loops do not close beyond which no further row is tried."""
 
 EPSILON = 1e-6
@@ -101,6 +104,8 @@ class _Follower:
         begun, start = self.data.qpos.copy(), self.data.qpos[self.places].copy()
         far = np.max(np.abs(self.ways @ (position - start)), initial=0.0)
         steps = max(int(np.ceil(far / TURN)), 1)
+        if steps > FAR:
+            return False
         for share in np.arange(1, steps + 1) / steps:
             now = start + share * (position - start)
             move = self.ways @ (now - self.data.qpos[self.places])
