@@ -89,7 +89,7 @@ def test_a_friction_is_proved_and_firm_only_where_its_joint_turns_round(
         assert proved.firm is (back > 1.0)
         assert proved.acts_like == (() if back > 1.0 else (twin,))
         assert proved.one_way is (back < 1.0)
-    assert ("A motion in which a and b turn round as well" in next_step(verdict)) is (back < 1.0)
+    assert ("A motion in which a and b reverse" in next_step(verdict)) is (back < 1.0)
 
 
 @pytest.mark.parametrize("back", [0.8, 4.0])

@@ -156,8 +156,7 @@ class Basis:
     of their range. `left_out` names what there was no time for. `pieces` is how many the measured
     recordings were cut into, each simulated from its own start; 0: they were whole. `by_motion`
     says that efforts which the measured motion lacks were compared, and no simulation.
-    `held_out_repeats` says that what was fed in while held-out recordings were made is that of
-    fitted ones, moved in time.
+    `held_out_repeats`: what was fed in with held-out recordings is that of fitted ones, moved.
     """
 
     noise: str

@@ -156,8 +156,8 @@ def _with_proved(verdict: Verdict) -> str:
     if all(one.ended for one in verdict.proved):
         return "Look for what else is wrong: what was fitted ends its range and stands for that."
     turns = sorted({one.target for one in verdict.proved if one.one_way})
-    turn = "turns" if len(turns) == 1 else "turn"
-    motion = f"in which {listed(turns)} {turn} round as well" if turns else "in which they differ"
+    turn = "reverses" if len(turns) == 1 else "reverse"
+    motion = f"in which {listed(turns)} {turn}" if turns else "in which they differ"
     return f"Simulate with the extended model. A motion {motion} settles the names.{wider}"
 
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from drafted import changed
@@ -10,6 +12,11 @@ from ves_twin.cli.main import main
 from ves_twin.cli.new_text import new_text
 from ves_twin.core.errors import InvalidInputError, UnknownNameError
 from ves_twin.machines.mjcf.draft.draft import draft
+from ves_twin.machines.mjcf.draft.given_model import GivenModel
+from ves_twin.machines.mjcf.draft.judge import Judge
+from ves_twin.machines.mjcf.draft.log_columns import LogColumns
+from ves_twin.machines.mjcf.draft.match import matched
+from ves_twin.machines.mjcf.draft.spots import spots_of
 from ves_twin.machines.new_machine import new_machine
 
 
@@ -44,6 +51,38 @@ def test_a_constant_that_nothing_tells_is_asked_for_first(arm, columns, write):
     assert (
         "next      draft again with what the motors give (--scale i3_A=..., in N*m per A)" in text
     )
+
+
+def test_a_constant_that_is_given_is_never_turned(arm, amperes):
+    """A flexible arm's voltage, 25 ms late in its loop, takes energy by its work: it was right."""
+    told = draft(arm, [amperes], arm.with_name("a.toml"), scales={"i3_A": -0.05})
+    assert "scale = -0.05" in told.text
+    words = "i3_A acts against this model (slope -"
+    assert any(one.startswith(words) and "stays as it is given" in one for one in told.look)
+
+
+@pytest.mark.parametrize(("name", "sound"), [("q3_rad", False), ("q3", True)])
+def test_amperes_tell_no_other_unit_than_a_name_does(arm, columns, write, name, sound):
+    """In degrees a joint takes 57 times the torque an ampere, and any constant may stand there."""
+    names = {"q3": name, "tau3": "i3_A"}
+    log = write({names.get(one, one): rows for one, rows in columns.items()})
+    read, model = LogColumns.read(log, None), GivenModel.read(arm).model
+    found = list(matched(read, spots_of(model)).found)
+    other = [replace(m, unit="deg") if m.column == name else m for m in found]
+    assert Judge(read, model, 20.0).sound(other, found) is sound
+
+
+def test_the_back_emf_of_a_motor_takes_no_typical_effort_away(swing, write):
+    path, columns = swing
+    plain = draft(path, [write(columns)], path.with_name("a.toml")).text
+    motor = path.read_text()
+    braked = '<general name="drive" joint="joint" biastype="affine" biasprm="0 0 -0.05"/>'
+    path.write_text(motor.replace('<motor name="drive" joint="joint"/>', braked))
+    told = draft(path, [write(columns)], path.with_name("b.toml")).text
+    assert "biastype" in path.read_text()
+    typical = "joint = { effort = "
+    one, other = (float(text.split(typical)[1].split(",")[0]) for text in (plain, told))
+    assert other == pytest.approx(one, rel=1e-6)
 
 
 def test_a_constant_of_no_column_or_no_number_is_one_line(arm, amperes, capsys):

@@ -54,3 +54,19 @@ def test_a_word_for_a_number_is_refused_in_one_line(tmp_path, word):
         read(tmp_path, word, 0.03, 0.05, 0.0)
     assert word in str(told.value)
     assert "\n" not in str(told.value)
+
+
+@pytest.mark.parametrize(("aside", "told"), [("0 0 0", True), ("0 0 0.05", False)])
+def test_centres_that_all_lie_in_their_joints_are_asked_after(tmp_path, aside, told):
+    """A published arm of six axes: its weight was none, 10 N m off at the shoulder."""
+    inertia = '<mass value="2"/><inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/>'
+    links = ""
+    for i, above in enumerate(("base", "l0", "l1")):
+        place = aside if i == 2 else "0 0 0"
+        links += f'<link name="l{i}"><inertial><origin xyz="{place}"/>{inertia}</inertial></link>'
+        links += f'<joint name="j{i}" type="revolute"><parent link="{above}"/>'
+        links += f'<child link="l{i}"/><axis xyz="0 1 0"/></joint>'
+    path = tmp_path / "arm.urdf"
+    path.write_text(f'<robot name="arm"><link name="base"/>{links}</robot>')
+    notes = GivenModel.read(path).notes
+    assert any("centre of mass in their joint" in note for note in notes) is told

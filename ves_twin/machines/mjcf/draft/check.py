@@ -22,6 +22,7 @@ from ves_twin.machines.mjcf.draft.scaled import scales_of, words_of_scale
 from ves_twin.machines.mjcf.draft.servos import followed
 from ves_twin.machines.mjcf.draft.spots import Quantity
 from ves_twin.machines.mjcf.draft.stops import beyond, beyond_control, in_degrees_by_stops
+from ves_twin.machines.mjcf.draft.turns_back import words_of_one_way
 from ves_twin.machines.mjcf.parts.cyclic import is_cyclic
 from ves_twin.machines.mjcf.parts.loops import freedom
 
@@ -71,6 +72,7 @@ def checked(log: LogColumns, matches: Matches, model: mujoco.MjModel) -> Checked
     drives = _drives(matches, model)
     every = [model.joint(i).name for i in range(model.njnt)]
     moved |= {*every} if drives else set()
+    dofs = {name: int(model.joint(name).dofadr[0]) for name in every if name}
     absent = [name for name in every if name not in moved]
     moving = positions or [m for m in matches.found if m.spot.name in cyclic]
     band = max((band_of(log.column(m.column), log.period, 0.99) for m in moving), default=1.0)
@@ -100,8 +102,7 @@ def checked(log: LogColumns, matches: Matches, model: mujoco.MjModel) -> Checked
         findings += said
         scales = scales_of({m: judge.fit(m, motion) for m in judge.driving(found)})
         findings += words_of_scale(scales)
-        findings += judge.late(found, motion)
-        findings += judge.rough(found, motion)
+        findings += [*judge.late(found, motion), *judge.rough(found, motion)]
         lifts = lifted(
             judge.model,
             lambda other: replace(judge, model=other).motion(found),
@@ -111,11 +112,11 @@ def checked(log: LogColumns, matches: Matches, model: mujoco.MjModel) -> Checked
         rubs = tuple(column for column, fit in fits.items() if fit.rubs)
         motion = plain.motion(found)
         explained = plain.explained(found, motion)
+        findings += words_of_one_way(motion, dofs, [m.spot.joint for m in judge.driving(found)])
     lost = words_of_dropouts(log, found)
     far = [*beyond(log, found, model), *beyond_control(log, found, model)]
     findings[before:before] = [*lost, *counted(log, found), *far]
     found, said = rated(log, found, corner, model)
-    dofs = {name: int(model.joint(name).dofadr[0]) for name in every if name}
     times = {match.spot.joint: scale for match, scale in scales.items()}
     told = (*findings, *said)
     return Checked(

@@ -28,6 +28,9 @@ FLAT = 1e-3
 
 DRIVEN = frozenset({"revolute", "prismatic", "continuous"})
 
+LINKS = 3
+"""Links from which on centres that all lie in their joints are no chance: assumed."""
+
 
 @dataclass(frozen=True)
 class GivenModel:
@@ -90,6 +93,7 @@ def _of_urdf(path: Path, root: ElementTree.Element) -> GivenModel:
     if bent:
         why = "a moment is below zero, or above the sum of the other two"
         notes.append(f"no body has the inertia of {', '.join(bent)} ({why}): the nearest is taken")
+    notes += _words_of_centres(root)
     bare = [link.get("name", "?") for link in root.iter("link") if link.find("inertial") is None]
     driven = [j.get("name", "") for j in root.iter("joint") if j.get("type") in DRIVEN]
     try:
@@ -134,6 +138,21 @@ def _refuse_words(root: ElementTree.Element, path: Path) -> None:
                 if not _is_number(text):
                     name, came = link.get("name", "?"), f'{key}="{text}"'
                     raise InvalidInputError(f"{path}: link {name}", came, "a number")
+
+
+def _words_of_centres(root: ElementTree.Element) -> list[str]:
+    """That all links have their centre of mass in their joint, as where nobody measured any."""
+    heavy = [part for part in root.iter("inertial") if part.find("mass") is not None]
+    told = [part.find("origin") for part in heavy]
+    if len(heavy) < LINKS or any(_is_aside(one) for one in told if one is not None):
+        return []
+    words = f"all {len(heavy)} links have their centre of mass in their joint: placeholders? Write"
+    return [f"{words} what a drawing says, or measure them: the weight of an arm hangs on it"]
+
+
+def _is_aside(origin: ElementTree.Element) -> bool:
+    """Whether a centre is not in its joint."""
+    return any(_is_number(x) and float(x) != 0.0 for x in origin.get("xyz", "").split())
 
 
 def _is_number(text: str) -> bool:
