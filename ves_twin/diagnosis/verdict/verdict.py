@@ -150,13 +150,12 @@ class ChannelError:
 class Basis:
     """On what the verdict rests: each measured, declared or none.
 
-    `recordings` is "external" where every one, held-out ones too, comes from a log of a machine,
-    "unknown" otherwise: a simulated one, or one that does not say where it comes from.
-    `baseline_differs` is the largest difference of the baseline's inputs from those of the record,
-    of their range. `left_out` names what there was no time for. `pieces` is how many the measured
-    recordings were cut into, each simulated from its own start; 0: they were whole. `by_motion`
-    says that efforts which the measured motion lacks were compared, and no simulation.
-    `held_out_repeats`: what was fed in with held-out recordings is that of fitted ones, moved.
+    `recordings` is "external" where all, held-out ones too, come from logs of a machine, "unknown"
+    otherwise. `baseline_differs` is the largest difference of the baseline's inputs from those of
+    the record, of their range. `left_out` names what there was no time for. `pieces` is how many
+    the measured recordings were cut into, each simulated from its own start; 0: they were whole.
+    `by_motion` says that efforts which the measured motion lacks were compared, and no simulation;
+    `held_out_repeats` that what was fed in with held-out recordings is that of fitted ones.
     """
 
     noise: str
