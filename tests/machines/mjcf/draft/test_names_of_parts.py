@@ -10,6 +10,7 @@ import pytest
 
 from ves_twin.cli.new_text import new_text
 from ves_twin.machines.mjcf.draft.changes import changes
+from ves_twin.machines.mjcf.draft.draft import draft
 from ves_twin.machines.mjcf.draft.match import Match
 from ves_twin.machines.mjcf.draft.names import likeness
 from ves_twin.machines.mjcf.draft.spots import Quantity, Spot
@@ -154,3 +155,14 @@ def test_a_column_with_a_joint_s_whole_name_has_no_rivals_that_share_a_part_of_i
     assert left.taken_for.startswith("position of joint leg_left_joint")
     assert "shares 'leg_left_joint' with" in left.why
     assert left.others == ""
+
+
+def test_a_length_of_a_joint_that_turns_is_told_as_that(swing, write):
+    """A flexible arm's deflection in metres, beside its hinge, was nearest to the motor."""
+    path, columns = swing
+    log = {{"q": "joint_deflection_m"}.get(name, name): rows for name, rows in columns.items()}
+    log["q"] = columns["q"]
+    found = draft(path, [write(log)], path.with_name("my.toml"))
+    assert found.left["joint_deflection_m"].startswith(
+        "joint joint has this name, but its position is in rad, not in m"
+    )

@@ -34,6 +34,9 @@ RIVAL = 2.0
 MOST_OTHERS = 4
 """Rivals that are told: of a whole robot thirty joints are called as one of its arm."""
 
+LENGTHS, ANGLES = frozenset({"m", "mm", "cm"}), frozenset({"rad", "deg"})
+"""Units of positions that a joint of the other kind does not have."""
+
 
 @dataclass(frozen=True)
 class Match:
@@ -163,7 +166,7 @@ def matched(log: LogColumns, spots: Sequence[Spot]) -> Matches:
     found_.sort(key=lambda m: order[m.spot])
     rest = [c for c in columns if c not in chosen]
     setpoints = tuple(c for c in rest if is_setpoint(log.said[c]))
-    left = {c: _reason(c, spots, alike) for c in rest if c not in setpoints}
+    left = {c: _reason(c, _unit(log, c), spots, alike) for c in rest if c not in setpoints}
     left |= dict.fromkeys(log.constant, "never changes")
     left |= dict.fromkeys(log.empty, "has rows without a number")
     return Matches(tuple(found_), setpoints, left)
@@ -262,8 +265,19 @@ def _match(
     return Match(column, spot, unit or spot.unit, bool(unit), 1.0, own.reasons, tuple(others))
 
 
-def _reason(column: str, spots: Sequence[Spot], alike: Mapping[tuple[str, Spot], Likeness]) -> str:
-    """Why a column is left over."""
+def _reason(
+    column: str, unit: str, spots: Sequence[Spot], alike: Mapping[tuple[str, Spot], Likeness]
+) -> str:
+    """Why a column is left over: an arm's deflection in metres is no angle of its hinge."""
+    words = words_of(bare_name(column))
+    for spot in spots:
+        named = {w for w in words_of(spot.name) if len(w) > 1 and not w.isdigit()}
+        other = spelled(unit) in LENGTHS if spot.unit == "rad" else spelled(unit) in ANGLES
+        if spot.quantity is Quantity.POSITION and other and named and named <= set(words):
+            return (
+                f"joint {spot.name} has this name, but its position is in {spot.unit}, not in"
+                f" {unit}: convert the column, or give the model the other kind of joint"
+            )
     near = [(f.score, s) for (c, s), f in alike.items() if c == column and f.score > 0.0]
     if not near:
         return "nothing in the model has this name or unit"
