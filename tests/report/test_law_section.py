@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from ves_twin.cli.diagnose import held_out_table
+from ves_twin.cli.diagnose import held_out_table, law_lines
 from ves_twin.diagnosis.law.result import LawFinding, LawNumber, LawRival
 from ves_twin.diagnosis.unseen.gain import Gain
 from ves_twin.diagnosis.verdict.verdict import Basis, ChannelError, Kind, Statistics, Verdict
@@ -149,3 +149,11 @@ def test_a_law_beside_a_cause_whose_range_ended_may_stand_for_the_rest_of_it():
     said = " ".join(law_sentences(LAW, ["body mass at rod"]))
     assert "the range of body mass at rod ended: it may stand for the rest of that" in said
     assert "ended" not in " ".join(law_sentences(LAW))
+
+
+def test_a_terminal_tells_what_a_law_is_worth_once():
+    """Beside causes the first line was what was seen: what the law takes away stood nowhere."""
+    alone, beside = verdict(LAW), verdict(replace(LAW, part=True))
+    assert "It takes away" not in " ".join(law_lines(alone))  # how sure says it
+    assert law_lines(beside)[0].startswith("law       It takes away 97 %")
+    assert law_lines(replace(alone, law=None)) == []

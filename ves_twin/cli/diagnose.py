@@ -197,6 +197,18 @@ def _plant_sentence(found: Diagnosis) -> str:
     )
 
 
+def law_lines(verdict: Verdict) -> list[str]:
+    """What the lines above do not say of a law: its name, and beside no cause what it is worth."""
+    from ves_twin.report.diagnosis.law import law_sentences
+    from ves_twin.report.diagnosis.proved import ended
+
+    if verdict.law is None:
+        return []
+    above = (1 if verdict.law.part else 2) if verdict.law.claimed else 0
+    first, *rest = law_sentences(verdict.law, ended(verdict))[above:]
+    return [f"law       {first}", *(f"          {text}" for text in rest)]
+
+
 def _text(found: Diagnosis, folder: Path) -> str:
     from ves_twin.report.diagnosis.answer import (
         confidence_sentence,
@@ -207,10 +219,8 @@ def _text(found: Diagnosis, folder: Path) -> str:
     from ves_twin.report.diagnosis.basis import gain_words, rests_on
     from ves_twin.report.diagnosis.coarse_step import coarse_sentence
     from ves_twin.report.diagnosis.flaws import flaw_lines
-    from ves_twin.report.diagnosis.law import law_sentences
     from ves_twin.report.diagnosis.out_of_step import out_of_step_sentence
     from ves_twin.report.diagnosis.proved import (
-        ended,
         inseparable_lines,
         near_sentence,
         proof_sentence,
@@ -235,10 +245,7 @@ def _text(found: Diagnosis, folder: Path) -> str:
             lines.append(f"size      {name_of(cause)}: {name}, 90 % {interval_words(size)}")
     said = {"tuned": tuned_words(verdict), "gain": gain_words(verdict)}
     lines += [f"{name:<10}{words}" for name, words in said.items() if words]
-    if verdict.law is not None:
-        every = law_sentences(verdict.law, ended(verdict))
-        first, *rest = every[2:] if verdict.law.claimed else every
-        lines += [f"law       {first}", *(f"          {text}" for text in rest)]
+    lines += law_lines(verdict)
     if verdict.put_to_proof is not None:
         lines += ["", f"  {proof_sentence(verdict)}", *map(proved_line, verdict.proved)]
         lines += [f"  {near_sentence(verdict)}"] if near_sentence(verdict) else []
