@@ -118,8 +118,9 @@ class Judge:
     def _motion(self, found: tuple[Match, ...]) -> Motion:
         positions = {}
         for m in found:
-            follows = self.drives and m.spot.name not in self.drives
-            if m.spot.quantity is Quantity.POSITION and not follows:
+            if self.drives and m.spot.name not in self.drives:
+                continue  # it follows these
+            if m.spot.quantity is Quantity.POSITION:
                 home = home_of(m, self.model, self.log) if self.drives else None
                 zero = home[0] * m.factor / m.scale if home else m.zero
                 positions[m.spot.name] = m.factor * self.log.column(m.column) + zero
