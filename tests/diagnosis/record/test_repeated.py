@@ -44,3 +44,20 @@ def test_other_inputs_or_a_longer_programme_are_not_found():
         [Excitation("x", programme().time, {"x": np.ones((1000, 1))})], [programme()]
     )
     assert not repeated([programme(length=30.0)], [programme()])
+
+
+def test_a_held_command_tells_no_motion_that_repeats():
+    """A pendulum let go beside a motor at 0 V, or at 12 V with a reading's noise."""
+    time, rng = np.arange(0.0, 5.0, 0.01), np.random.default_rng(1)
+    for volts in (np.zeros((500, 1)), 12.0 + 0.01 * rng.standard_normal((500, 1))):
+        held = Excitation("held", time, {"u": volts})
+        assert not repeated([held], [held])
+
+
+def test_a_small_joint_beside_a_large_one_counts_by_its_own_range():
+    one, other = programme(), programme(begin=40.0)
+    both = np.column_stack([one.drive["q"][:, 0], 0.01 * one.drive["q"][:, 1]])
+    apart = np.column_stack([one.drive["q"][:, 0], 0.01 * other.drive["q"][:, 1]])
+    told = Excitation("a", one.time, {"q": both})
+    assert repeated([told], [told])
+    assert not repeated([Excitation("b", one.time, {"q": apart})], [told])

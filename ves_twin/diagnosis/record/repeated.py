@@ -42,7 +42,18 @@ def _found_in(held: Excitation, fitted: Excitation) -> bool:
     if lag is None:
         return False
     rows = slice(lag, lag + len(held.time) - 2 * edge)
-    return all(apart(fitted.drive[name][rows], values) < REPEATS for name, values in middle.items())
+    pairs = [
+        (fitted.drive[name][rows, column], values[:, column])
+        for name, values in middle.items()
+        for column in range(values.shape[1])
+        if _moves(values[:, column])
+    ]
+    return bool(pairs) and all(apart(one, other) < REPEATS for one, other in pairs)
+
+
+def _moves(values: FloatArray) -> bool:
+    """Whether a column (n,) is more than a constant and its noise."""
+    return bool(np.std(np.diff(values)) < np.std(values))
 
 
 def lag_of(given: Mapping[str, FloatArray], wanted: Mapping[str, FloatArray]) -> int | None:

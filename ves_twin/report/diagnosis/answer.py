@@ -85,7 +85,7 @@ def confidence_sentence(verdict: Verdict) -> str:
             firm = any(one.firm for one in verdict.proved)
             if firm and any(what.startswith(LAW) for what in verdict.basis.left_out):
                 hurried += UNSOUGHT
-            hurried += AGAIN if verdict.basis.held_out_repeats else _otherwise(verdict)
+            hurried += _otherwise(verdict) + AGAIN * verdict.basis.held_out_repeats
             named = "Only firm names are the mechanism." if firm else "No name is firm."
             return (
                 f"{verdict.put_to_proof} {'was' if verdict.put_to_proof == 1 else 'were'} tested on"

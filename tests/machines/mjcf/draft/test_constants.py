@@ -61,6 +61,16 @@ def test_a_constant_that_is_given_is_never_turned(arm, amperes):
     assert any(one.startswith(words) and "stays as it is given" in one for one in told.look)
 
 
+def test_a_position_whose_constant_is_given_is_never_turned_either(arm, columns, write):
+    log = write(changed(columns, q2=-columns["q2"]))
+    told = draft(arm, [log], arm.with_name("a.toml"), scales={"q2": 1.0})
+    plain = draft(arm, [log], arm.with_name("b.toml"))
+    line = next(text for text in told.text.splitlines() if 'columns = ["q2"]' in text)
+    assert "scale" not in line.split("#")[0]
+    assert any(words.startswith("q2 counts against") for words in plain.look)
+    assert not any(words.startswith("q2 counts against") for words in told.look)
+
+
 @pytest.mark.parametrize(("name", "sound"), [("q3_rad", False), ("q3", True)])
 def test_amperes_tell_no_other_unit_than_a_name_does(arm, columns, write, name, sound):
     """In degrees a joint takes 57 times the torque an ampere, and any constant may stand there."""
@@ -77,12 +87,13 @@ def test_the_back_emf_of_a_motor_takes_no_typical_effort_away(swing, write):
     plain = draft(path, [write(columns)], path.with_name("a.toml")).text
     motor = path.read_text()
     braked = '<general name="drive" joint="joint" biastype="affine" biasprm="0 0 -0.05"/>'
-    path.write_text(motor.replace('<motor name="drive" joint="joint"/>', braked))
+    other = motor.replace('<motor name="drive" joint="joint"/>', braked)
+    assert other != motor
+    path.write_text(other)
     told = draft(path, [write(columns)], path.with_name("b.toml")).text
-    assert "biastype" in path.read_text()
     typical = "joint = { effort = "
-    one, other = (float(text.split(typical)[1].split(",")[0]) for text in (plain, told))
-    assert other == pytest.approx(one, rel=1e-6)
+    one, two = (float(text.split(typical)[1].split(",")[0]) for text in (plain, told))
+    assert two == pytest.approx(one, rel=1e-6)
 
 
 def test_a_constant_of_no_column_or_no_number_is_one_line(arm, amperes, capsys):

@@ -70,3 +70,15 @@ def test_centres_that_all_lie_in_their_joints_are_asked_after(tmp_path, aside, t
     path.write_text(f'<robot name="arm"><link name="base"/>{links}</robot>')
     notes = GivenModel.read(path).notes
     assert any("centre of mass in their joint" in note for note in notes) is told
+
+
+def test_wheels_beside_each_other_have_their_centres_where_they_turn(tmp_path):
+    inertia = '<mass value="2"/><inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/>'
+    wheels = "".join(
+        f'<link name="w{i}"><inertial>{inertia}</inertial></link><joint name="j{i}"'
+        f' type="continuous"><parent link="base"/><child link="w{i}"/><axis xyz="0 1 0"/></joint>'
+        for i in range(4)
+    )
+    path = tmp_path / "rover.urdf"
+    path.write_text(f'<robot name="rover"><link name="base"/>{wheels}</robot>')
+    assert not any("centre of mass" in note for note in GivenModel.read(path).notes)

@@ -92,5 +92,7 @@ def test_constants_of_the_motors_are_read_off_what_the_whole_linkage_needs(linka
 def test_links_that_do_not_meet_where_a_log_goes_are_told(linkage, run, write):
     torques = {name: run[name] for name in ("tau_left", "tau_right")}
     wide = {f"{name}_rad": 3.0 * run[name] for name in ("q_left", "q_right")}
-    found, _ = drafted(linkage, write({"t": run["t"]} | wide | torques))
+    found, rig = drafted(linkage, write({"t": run["t"]} | wide | torques))
+    assert set(scales(rig).values()) == {1.0}
     assert any("the loops of the model do not close" in one for one in found.look)
+    assert not any("times what the model needs" in one or "fit" in one for one in found.look)

@@ -43,7 +43,7 @@ def changes(
         model: that they are held against.
         reach: column of a position -> its largest number.
     """
-    positions = [m for m in found if m.spot.quantity is Quantity.POSITION]
+    positions = [m for m in found if m.spot.quantity is Quantity.POSITION and not m.given]
     for match in positions:
         words = f"{match.column} counts against {match.spot.label} of the model: it is turned"
         yield _with(found, {match: replace(match, scale=-match.scale)}), words
@@ -52,7 +52,7 @@ def changes(
     yield from _from_the_world(found, positions, model)
     yield from _before_gears(found, positions, model)
     yield from _from_another_zero(found, positions)
-    efforts = [m for m in found if m.spot.quantity is Quantity.EFFORT]
+    efforts = [m for m in found if m.spot.quantity is Quantity.EFFORT and not m.given]
     for one, two in (*combinations(positions, 2), *combinations(efforts, 2)):
         told = one in efforts or {one.spot.name, two.spot.name} & driven
         if told and (one.spot.unit, one.unit) == (two.spot.unit, two.unit):

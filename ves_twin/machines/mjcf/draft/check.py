@@ -79,23 +79,24 @@ def checked(log: LogColumns, matches: Matches, model: mujoco.MjModel) -> Checked
     corner = min(4.0 * max(band, 1.0 / (log.period * log.rows)), 0.2 / log.period)
     found, findings = followed(log, list(matches.found), model)
     found, said = in_degrees_by_stops(log, found, model)
-    findings += said
-    motion, explained, scales = None, {}, dict[Match, float]()
+    findings += [*said, *words_of_locked(locked)]
+    motion, explained, scales = None, dict[str, float](), dict[Match, float]()
     lifts, rubs, gravity = dict[str, Load](), tuple[str, ...](), ""
-    findings += words_of_locked(locked)
     before = len(findings)
     if absent or not (positions or cyclic):
         words = ", ".join(name or "one without a name" for name in absent)
         findings.append(f"signs are not checked: no column tells the position of {words}")
     else:
         judge = Judge(log, model, corner, locked, cyclic, drives)
-        plain = judge
+        plain, named = judge, found
         found, said, other = judge.corrected(found)
-        findings += said
         if other is not None:  # columns are held against the machine as it stands
             judge, gravity = replace(judge, model=other.model), other.numbers
         motion = judge.motion(found)
-        findings += words_of_open(motion)
+        if apart := words_of_open(motion):  # nothing is read off a machine that comes apart
+            apart += beyond(log, named, model)
+            return Checked(tuple(named), (*findings, *apart), {}, None, corner, dofs, locked)
+        findings += said
         found, said = in_milli(found, {m: judge.fit(m, motion) for m in judge.driving(found)})
         findings += said
         found, said = judge.efforts(found, motion)

@@ -8,6 +8,7 @@ import mujoco
 import numpy as np
 
 from ves_twin.machines.mjcf.draft.motion import Motion
+from ves_twin.machines.mjcf.parts.loop_motion import LOST
 from ves_twin.machines.mjcf.parts.loops import dense_copy, has_loops, loop_rows
 
 OPEN = 0.02
@@ -50,7 +51,8 @@ def words_of_open(motion: Motion) -> list[str]:
     """That loops of the model do not close along a motion of its drives; none where they do."""
     if motion.open < OPEN:
         return []
+    rows = f"{motion.open:.0%}" if motion.open < 1.0 else f"over {LOST:.0%}"
     return [
-        f"in {motion.open:.0%} of the rows the loops of the model do not close: look at lengths of"
-        " its links, and at zeros, units and signs of the drives' positions"
+        f"signs are not checked: in {rows} of the rows the loops of the model do not close: look at"
+        " lengths of its links, and at zeros, units and signs of the drives' positions"
     ]

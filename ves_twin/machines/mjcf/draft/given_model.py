@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import xml.etree.ElementTree as ElementTree
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 
 import mujoco
@@ -29,7 +30,10 @@ FLAT = 1e-3
 DRIVEN = frozenset({"revolute", "prismatic", "continuous"})
 
 LINKS = 3
-"""Links from which on centres that all lie in their joints are no chance: assumed."""
+"""Joints in a row from which on centres that all lie in their joints are no chance: assumed."""
+
+CENTRED = 1e-6
+"""Distance [m] of a centre from its joint that is none: files round."""
 
 
 @dataclass(frozen=True)
@@ -93,7 +97,6 @@ def _of_urdf(path: Path, root: ElementTree.Element) -> GivenModel:
     if bent:
         why = "a moment is below zero, or above the sum of the other two"
         notes.append(f"no body has the inertia of {', '.join(bent)} ({why}): the nearest is taken")
-    notes += _words_of_centres(root)
     bare = [link.get("name", "?") for link in root.iter("link") if link.find("inertial") is None]
     driven = [j.get("name", "") for j in root.iter("joint") if j.get("type") in DRIVEN]
     try:
@@ -111,6 +114,7 @@ def _of_urdf(path: Path, root: ElementTree.Element) -> GivenModel:
         hint = f"; without <inertial>: {', '.join(bare)}" if light else ""
         expected = "a URDF whose moving links have <inertial>"
         raise InvalidInputError(str(path), one_line(error) + hint, expected) from None
+    notes += _words_of_centres(model)
     notes.append(
         f"a motor was added at each of {len(driven)} joints; stops and contacts are left out"
     )
@@ -140,19 +144,27 @@ def _refuse_words(root: ElementTree.Element, path: Path) -> None:
                     raise InvalidInputError(f"{path}: link {name}", came, "a number")
 
 
-def _words_of_centres(root: ElementTree.Element) -> list[str]:
-    """That all links have their centre of mass in their joint, as where nobody measured any."""
-    heavy = [part for part in root.iter("inertial") if part.find("mass") is not None]
-    told = [part.find("origin") for part in heavy]
-    if len(heavy) < LINKS or any(_is_aside(one) for one in told if one is not None):
+def _words_of_centres(model: mujoco.MjModel) -> list[str]:
+    """That all links of an arm have their centre of mass in their joint: nobody measured any."""
+    data = mujoco.MjData(model)
+    mujoco.mj_kinematics(model, data)
+    roots = model.body_weldid
+    heavy = np.flatnonzero((model.body_mass > 0.0) & (roots > 0))
+    aside = data.xipos[heavy] - data.xpos[roots[heavy]]
+    deepest = max(map(partial(_depth, model), heavy), default=0)
+    if np.any(np.abs(aside) > CENTRED) or deepest < LINKS:
         return []
     words = f"all {len(heavy)} links have their centre of mass in their joint: placeholders? Write"
     return [f"{words} what a drawing says, or measure them: the weight of an arm hangs on it"]
 
 
-def _is_aside(origin: ElementTree.Element) -> bool:
-    """Whether a centre is not in its joint."""
-    return any(_is_number(x) and float(x) != 0.0 for x in origin.get("xyz", "").split())
+def _depth(model: mujoco.MjModel, body: int) -> int:
+    """Joints between a body and the world."""
+    count = 0
+    while body > 0:
+        count += int(model.body_jntnum[body])
+        body = int(model.body_parentid[body])
+    return count
 
 
 def _is_number(text: str) -> bool:

@@ -29,7 +29,8 @@ class Motion:
         speed: of the degrees of freedom (m, nv).
         effort: needed at each, of the model as it is (m, nv).
         steady: of them what gravity, springs and speeds need (m, nv); the rest is inertia.
-        open: share of the rows in which loops of the model do not close.
+        open: share of the rows in which loops of the model do not close, which are left out; where
+            all are, efforts are none.
     """
 
     rows: np.ndarray
@@ -79,7 +80,9 @@ def motion_of(
     both = _needed(model, moved.position, moved.speed, moved.pull, coasts)
     effort, steady = np.zeros((2, len(rows), model.nv))
     effort[:, drives], steady[:, drives] = (moved.at_drives(one) for one in both)
-    return Motion(rows, moved.speed, effort, steady, float(np.mean(moved.open)))
+    kept = ~moved.open if not np.all(moved.open) else np.ones(len(rows), dtype=bool)
+    share = float(np.mean(moved.open))
+    return Motion(rows[kept], moved.speed[kept], effort[kept], steady[kept], share)
 
 
 def _needed(

@@ -28,8 +28,8 @@ def words_of_one_way(motion: Motion, dofs: Mapping[str, int], driven: Sequence[s
         return []
     verb = "moves" if len(alone) == 1 else "move"
     return [
-        f"{', '.join(alone)} {verb} one way alone: dry friction, an offset and a wrong weight look"
-        " alike there. A log that goes to and fro tells them apart"
+        f"{', '.join(alone)} {verb} one way alone: dry friction and an offset look alike there. A"
+        " log that goes to and fro tells them apart"
     ]
 
 

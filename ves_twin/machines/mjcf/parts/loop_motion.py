@@ -39,8 +39,8 @@ class LoopMotion:
         speed: of all degrees of freedom (m, nv).
         pull: their accelerations (m, nv).
         ways: G (m, nv, d).
-        open: rows in which the loops do not close (m,): as the row before, at rest; all, where
-            LOST do not.
+        open: rows in which the loops do not close (m,): as the row before, at rest; all rows,
+            where more than LOST of them do not.
     """
 
     position: FloatArray
@@ -74,10 +74,12 @@ class LoopMotion:
         for k in range(rows):
             if np.count_nonzero(gone) > LOST * rows:
                 ways[:], v[:], a[:], gone[:] = 0.0, 0.0, 0.0, True
+                q[k:] = follower.data.qpos
                 break
             gone[k] = not follower.follow(position[k])
             q[k] = follower.data.qpos
             if not gone[k]:
+                q[k, follower.places] = position[k]  # with its whole turns
                 ways[k] = follower.ways
                 v[k] = ways[k] @ speed[k]
                 a[k] = follower.pull(v[k], pull[k])
@@ -96,12 +98,16 @@ class _Follower:
         self.data = mujoco.MjData(self.model)
         self.drives = drives
         self.places = model.jnt_qposadr[model.dof_jntid[drives]]
+        kinds = model.jnt_type[model.dof_jntid[drives]]
+        self.hinges = kinds == int(mujoco.mjtJoint.mjJNT_HINGE)
         self.others = np.setdiff1d(np.arange(model.nv), drives)
         self._stands(loop_rows(self.model, self.data)[1])
 
     def follow(self, position: FloatArray) -> bool:
         """To a place of the drives (d,) in steps that links can follow; whether loops closed."""
         begun, start = self.data.qpos.copy(), self.data.qpos[self.places].copy()
+        turns = np.round((position - start) / (2.0 * np.pi))
+        position = position - 2.0 * np.pi * self.hinges * turns  # a wheel between two rows
         far = np.max(np.abs(self.ways @ (position - start)), initial=0.0)
         steps = max(int(np.ceil(far / TURN)), 1)
         if steps > FAR:
