@@ -97,6 +97,8 @@ def test_held_out_recordings_of_the_same_motion_are_said_to_be_that():
     told = "what is proved is proved for that motion"
     assert told in confidence_sentence(again)
     assert told not in confidence_sentence(plain)
+    assert "held-out recordings that repeat the fitted motion" in rests_on(again.basis)
+    assert "repeat" not in rests_on(plain.basis)
 
 
 @pytest.mark.parametrize(

@@ -32,6 +32,9 @@ GIVEN = {
 }
 """Field of a basis and what it says -> what was there."""
 
+AGAIN = " that repeat the fitted motion"
+"""Beside held-out recordings that do."""
+
 MISSING = {
     ("held_out", "none"): "a held-out recording",
     ("baseline", "none"): "a recording of this machine in order",
@@ -43,7 +46,9 @@ def rests_on(basis: Basis) -> str:
     """What a verdict rests on and what nobody gave, in one sentence."""
     fields = ("noise", "tolerances", "held_out", "baseline")
     keys = [(name, getattr(basis, name)) for name in fields]
-    there = _listed([GIVEN[key] for key in keys if key in GIVEN])
+    again = AGAIN * basis.held_out_repeats
+    given = [GIVEN[k] + again * (k == ("held_out", "measured")) for k in keys if k in GIVEN]
+    there = _listed(given)
     absent = " or ".join(MISSING[key] for key in keys if key in MISSING)
     said = f"{there}; {absent} was not given." if absent else f"{there}."
     return " ".join([said, *_pieces(basis), *_left_out(basis)])
@@ -186,7 +191,8 @@ def basis_sentences(verdict: Verdict) -> tuple[str, ...]:
         f" {FEWEST} commissioning recordings they would be measured.{beyond}",
     }
     held = {
-        "measured": "Held-out recordings: given.",
+        "measured": "Held-out recordings: given."
+        + " They repeat the fitted motion." * basis.held_out_repeats,
         "split": "Held-out recordings: none were given. The record was cut into stretches, and"
         " every second one was held out.",
         "none": "Held-out recordings: none. The verdict was not tested on other data.",

@@ -9,7 +9,7 @@ import numpy as np
 
 from ves_twin.machines.mjcf.draft.motion import Motion
 from ves_twin.machines.mjcf.parts.loop_motion import LOST
-from ves_twin.machines.mjcf.parts.loops import dense_copy, has_loops, loop_rows
+from ves_twin.machines.mjcf.parts.loops import dense_copy, followed, has_loops, loop_rows
 
 OPEN = 0.02
 """Share of rows in which loops may stay open untold: a noisy row beside the end of a reach."""
@@ -38,9 +38,7 @@ def closed_chain(model: mujoco.MjModel, driven: Collection[str]) -> dict[str, fl
     others = np.setdiff1d(np.arange(dense.nv), of_drives)
     if np.linalg.matrix_rank(rows[:, others]) < len(others):
         return {}
-    ways = np.zeros((dense.nv, len(of_drives)))
-    ways[of_drives] = np.eye(len(of_drives))
-    ways[others] = -np.linalg.pinv(rows[:, others]) @ rows[:, of_drives]
+    ways, _ = followed(rows, of_drives)
     mass = np.zeros((dense.nv, dense.nv))
     mujoco.mj_fullM(dense, data, mass)
     felt = np.diag(ways.T @ mass @ ways)

@@ -8,7 +8,7 @@ import mujoco
 import numpy as np
 
 from ves_twin.core.types import BoolArray, FloatArray, IntArray
-from ves_twin.machines.mjcf.parts.loops import closed, dense_copy, loop_rows
+from ves_twin.machines.mjcf.parts.loops import closed, dense_copy, followed, loop_rows
 
 TURN = 0.3
 """Largest move [rad or m] of a part that nothing tells from one closed pose to the next: beyond it
@@ -143,7 +143,4 @@ class _Follower:
     def _stands(self, rows: FloatArray) -> None:
         """With the loops' Jacobian (k, nv) there."""
         self.rows = rows
-        self.inverse = np.linalg.pinv(rows[:, self.others])
-        self.ways = np.zeros((self.model.nv, len(self.drives)))
-        self.ways[self.drives] = np.eye(len(self.drives))
-        self.ways[self.others] = -self.inverse @ rows[:, self.drives]
+        self.ways, self.inverse = followed(rows, self.drives)

@@ -1,4 +1,4 @@
-"""has_loops, loop_rows, freedom, closed, assemble: bodies of a machine whose chains close."""
+"""assemble and what it takes: bodies of a machine whose chains close."""
 
 from __future__ import annotations
 
@@ -41,6 +41,20 @@ def freedom(model: mujoco.MjModel) -> int:
     dense = dense_copy(model)
     _, rows = loop_rows(dense, mujoco.MjData(dense))
     return int(model.nv - np.linalg.matrix_rank(rows))
+
+
+def followed(rows: FloatArray, drives: IntArray) -> tuple[FloatArray, FloatArray]:
+    """How all else follows drives, from the Jacobian J (k, nv) of loops that leave no other motion.
+
+    Returns:
+        Speeds of all degrees of freedom for each drive's, G (nv, d) with G_o = -J_o^+ J_d; J_o^+.
+    """
+    others = np.setdiff1d(np.arange(rows.shape[1]), drives)
+    inverse = np.asarray(np.linalg.pinv(rows[:, others]), dtype=float)
+    ways = np.zeros((rows.shape[1], len(drives)))
+    ways[drives] = np.eye(len(drives))
+    ways[others] = -inverse @ rows[:, drives]
+    return ways, inverse
 
 
 def assemble(model: mujoco.MjModel, data: mujoco.MjData, known: IntArray) -> None:
