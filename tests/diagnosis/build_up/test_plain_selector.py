@@ -6,7 +6,6 @@ import numpy as np
 import pytest
 from linear import KINDS, Linear, Narrow, drawn, halves
 
-from ves_twin.diagnosis.build_up import plain_selector
 from ves_twin.diagnosis.build_up.memory import independent_rows
 from ves_twin.diagnosis.build_up.plain_selector import PlainSelector
 
@@ -104,20 +103,19 @@ def test_channels_weigh_by_their_independent_rows():
     assert scale.weights == pytest.approx(weights, rel=0.02)
 
 
-def test_all_usual_frictions_are_offered_whether_they_pay_for_themselves_or_not(monkeypatch):
+def test_all_usual_frictions_are_offered_whether_they_pay_for_themselves_or_not():
     """Beside 320 trials none of a slow joint's did: 2.2 N m were left where 0.7 can be."""
     regression = halves(Linear(), {"coulomb@a:size": 0.3}, 7).regression
     kinds = [trial.cause.effect for trial in regression.trials]
-    monkeypatch.setattr(plain_selector, "USUAL", ("coulomb", "viscous"))
-    chosen = PlainSelector(regression).usual()
+    usual = ("coulomb", "viscous")
+    chosen = PlainSelector(regression).usual(usual)
     labels = [regression.trials[n].cause.label for n in chosen]
-    every = {t.cause.label for t in regression.trials if t.cause.effect in ("coulomb", "viscous")}
+    every = {t.cause.label for t in regression.trials if t.cause.effect in usual}
     assert len(labels) == len(set(labels))
     assert set(labels) == every
-    other = next(n for n, kind in enumerate(kinds) if kind not in ("coulomb", "viscous"))
-    beside = PlainSelector(regression).usual([other, chosen[0]])
+    other = next(n for n, kind in enumerate(kinds) if kind not in usual)
+    beside = PlainSelector(regression).usual(usual, [other, chosen[0]])
     assert {regression.trials[n].cause.label for n in beside} == every | {
         regression.trials[other].cause.label
     }
-    monkeypatch.setattr(plain_selector, "USUAL", ("none_such",))
-    assert PlainSelector(regression).usual() == []
+    assert PlainSelector(regression).usual(("none_such",)) == []
