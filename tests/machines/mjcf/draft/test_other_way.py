@@ -104,7 +104,7 @@ WHIRLS = """
 
 
 @pytest.mark.parametrize("sign", [1.0, -1.0], ids=["right", "turned"])
-def test_a_sign_is_told_in_pieces_where_a_whole_log_explains_nothing(tmp_path, sign):
+def test_a_sign_is_told_where_a_simulation_of_the_whole_log_explains_nothing(tmp_path, sign):
     """A double pendulum thrown about for 20 s: either sign leads a simulation astray in 3 s."""
     path = tmp_path / "whirls.xml"
     path.write_text(WHIRLS.format(mass=0.33))
@@ -124,4 +124,4 @@ def test_a_sign_is_told_in_pieces_where_a_whole_log_explains_nothing(tmp_path, s
     np.savetxt(log, rows, "%.6g", ",", header=names, comments="")
     asked = "\n".join(draft(path, [log], tmp_path / "machine.toml").look)
     # mirrored it is the same machine: turning the drive and the lower joint is right, too
-    assert ("turned, in pieces of 2 s the model explains" in asked) is (sign < 0.0), asked
+    assert ("turned" in asked) is (sign < 0.0), asked

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
 import mujoco
@@ -22,6 +22,7 @@ from ves_twin.machines.mjcf.draft.scaled import scales_of, words_of_scale
 from ves_twin.machines.mjcf.draft.servos import followed
 from ves_twin.machines.mjcf.draft.spots import Quantity
 from ves_twin.machines.mjcf.draft.stops import beyond, beyond_control, in_degrees_by_stops
+from ves_twin.machines.mjcf.draft.swing import SHARE, turns_of
 from ves_twin.machines.mjcf.draft.turns_back import words_of_one_way
 from ves_twin.machines.mjcf.parts.cyclic import is_cyclic
 from ves_twin.machines.mjcf.parts.loops import freedom
@@ -58,8 +59,42 @@ class Checked:
     gravity: str = ""
 
 
+ALIKE = 0.02
+"""Share of efforts' power that the band of a joint's turns may explain less than that of its angle,
+to be taken: below its turns a little is explained easily."""
+
+
 def checked(log: LogColumns, matches: Matches, model: mujoco.MjModel) -> Checked:
-    """Hold matched columns against the model.
+    """Hold matched columns against the model, in the band of their motion.
+
+    Of a joint that turns round and round that is the band of its turns, if these explain as much:
+    how often it turns is known once its unit is.
+    """
+    plain = _checked(log, matches, model, _corner(log, matches, model, None))
+    turns = _corner(log, matches, model, plain.found)
+    if turns <= plain.corner:
+        return plain
+    wide = _checked(log, matches, model, turns)
+    more, less = (sum(found.explained.values()) for found in (wide, plain))
+    return wide if more > 0.0 and more >= less - ALIKE * len(wide.explained) else plain
+
+
+def _corner(
+    log: LogColumns, matches: Matches, model: mujoco.MjModel, found: Sequence[Match] | None
+) -> float:
+    """Of the low-pass [Hz] by which motions are differentiated, turns by columns as `found`."""
+    cyclic, loops = _cyclic(matches, model), bool(_drives(matches, model))
+    moving = matches.of(Quantity.POSITION)
+    moving = moving or [m for m in matches.found if m.spot.name in cyclic]
+    bands = [band_of(log.column(m.column), log.period, SHARE) for m in moving]
+    for match in found or ():
+        bands.append(turns_of(log, match, model, loops))
+    band = max(bands, default=1.0)
+    return min(4.0 * max(band, 1.0 / (log.period * log.rows)), 0.2 / log.period)
+
+
+def _checked(log: LogColumns, matches: Matches, model: mujoco.MjModel, corner: float) -> Checked:
+    """Hold matched columns against the model, low-passed.
 
     Where all joints were recorded, efforts of the model along the motion are fitted to the
     recorded ones beside friction: y = s tau + c v + k sign v + o. A negative s is a wrong sign, an
@@ -74,9 +109,6 @@ def checked(log: LogColumns, matches: Matches, model: mujoco.MjModel) -> Checked
     moved |= {*every} if drives else set()
     dofs = {name: int(model.joint(name).dofadr[0]) for name in every if name}
     absent = [name for name in every if name not in moved]
-    moving = positions or [m for m in matches.found if m.spot.name in cyclic]
-    band = max((band_of(log.column(m.column), log.period, 0.99) for m in moving), default=1.0)
-    corner = min(4.0 * max(band, 1.0 / (log.period * log.rows)), 0.2 / log.period)
     found, findings = followed(log, list(matches.found), model)
     found, said = in_degrees_by_stops(log, found, model)
     findings += [*said, *words_of_locked(locked)]

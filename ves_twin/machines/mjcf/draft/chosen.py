@@ -18,6 +18,7 @@ from ves_twin.machines.mjcf.draft.motion import band_of
 from ves_twin.machines.mjcf.draft.names import is_command, is_effort
 from ves_twin.machines.mjcf.draft.refuse import refuse
 from ves_twin.machines.mjcf.draft.spots import ON_JOINT, Quantity, is_motor, single_joints
+from ves_twin.machines.mjcf.draft.swing import SHARE, turns_of
 from ves_twin.machines.mjcf.parts.chain import chain
 from ves_twin.machines.mjcf.rig.description import CORNER, Mode
 
@@ -164,7 +165,7 @@ def _of_motion(
     noise, band = dict(otherwise.noise), _band(log, efforts)
     share = max(_induced(m, noise, efforts, model, log, band)[1] for m in positions)
     quiet, loud = (band * (most / max(share, 1e-9)) ** 0.4 for most in (DROWNED, LOUD))
-    least = 0.5 * RATES[0] if closed is None else min(_swung(log, positions), loud)
+    least = 0.5 * RATES[0] if closed is None else min(_swung(log, positions, model), loud)
     band = max(min(band, quiet), least)
     length, rate, rated = log.period * log.rows, 2.0 * band, Chosen.rated
     if rate * length < ENOUGH:
@@ -188,9 +189,10 @@ def _of_motion(
     return Chosen(Mode.MOTION, why, rate, CORNER * band, noise, rated=rated)
 
 
-def _swung(log: LogColumns, positions: Sequence[Match]) -> float:
+def _swung(log: LogColumns, positions: Sequence[Match], model: mujoco.MjModel) -> float:
     """Band [Hz] that efforts of a motion need at least: BAND times what its positions have."""
-    return BAND * max(band_of(log.column(m.column), log.period, 0.99) for m in positions)
+    bands = [band_of(log.column(m.column), log.period, SHARE) for m in positions]
+    return BAND * max(*bands, *(turns_of(log, m, model) for m in positions))
 
 
 def _in_whole_rows(rate: float, log: LogColumns) -> float:
@@ -206,7 +208,7 @@ def _in_whole_rows(rate: float, log: LogColumns) -> float:
 
 def _band(log: LogColumns, followed: Sequence[Match]) -> float:
     """Band [Hz] of what is compared, within that of an analysis and of the log."""
-    band = BAND * max(band_of(log.column(m.column), log.period, 0.99) for m in followed)
+    band = BAND * max(band_of(log.column(m.column), log.period, SHARE) for m in followed)
     return float(np.clip(band, 0.5 * RATES[0], min(0.5 * RATES[1], 0.25 / log.period)))
 
 
