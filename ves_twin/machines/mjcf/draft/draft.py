@@ -15,7 +15,7 @@ from ves_twin.machines.mjcf.draft.by_number import by_number
 from ves_twin.machines.mjcf.draft.check import Checked
 from ves_twin.machines.mjcf.draft.chosen import Chosen
 from ves_twin.machines.mjcf.draft.constants import with_constants
-from ves_twin.machines.mjcf.draft.draft_text import compared, signal_name, used
+from ves_twin.machines.mjcf.draft.draft_text import compared, signal_name, slower_of, used
 from ves_twin.machines.mjcf.draft.drafting import ROWS, Drafting, Version
 from ves_twin.machines.mjcf.draft.estimates import LOW_PASSED
 from ves_twin.machines.mjcf.draft.given_model import GivenModel
@@ -133,7 +133,12 @@ def draft(
     short += [words for one in others for words in _short(now.rig, one)]
     words = f"{now.mode.mode}: {now.mode.why}"
     stretch = 0.0 if short else _stretch(now, log)
-    found = (*given.notes, *log.notes, *_slower(log), *now.check.findings)
+    found = (
+        *given.notes,
+        *log.notes,
+        *_slower(log, slower_of(now.check.found, now.mode, log)),
+        *now.check.findings,
+    )
     look = (*found, *silent, *turned, *coarse, *smooth, *short)
     told = {name: max(share, 0.0) for name, share in now.explained.items()}
     return Draft(
@@ -182,14 +187,14 @@ def _splits(rig: Rig, part: Recording, length: float) -> bool:
     return not any(_short(rig, one) for one in (*fit, *held))
 
 
-def _slower(log: LogColumns) -> list[str]:
+def _slower(log: LogColumns, names: Sequence[str]) -> list[str]:
     """That readings come more slowly than rows, if they do."""
-    if not log.slower:
+    if not names:
         return []
-    rate = min(1.0 / log.readings(name)[1] for name in log.slower)
-    most = max(one.repeats for one in log.slower.values())
+    rate = min(1.0 / log.readings(name)[1] for name in names)
+    most = max(log.slower[name].repeats for name in names)
     return [
-        f"{', '.join(log.slower)}: a reading is repeated for up to {most} rows until the next one"
+        f"{', '.join(names)}: a reading is repeated for up to {most} rows until the next one"
         f" comes, {rate:.2g} Hz in all: rows between are taken straight (`repeats`)"
     ]
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import re
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 
 import mujoco
@@ -184,6 +184,18 @@ def _signals(check: Checked, mode: Chosen, log: LogColumns) -> Iterator[str]:
         yield _signal(sorted(group, key=lambda m: m.spot.axis), mode, log)
 
 
+def slower_of(found: Sequence[Match], mode: Chosen, log: LogColumns) -> list[str]:
+    """Columns whose readings are repeated; what is fed in is held, and so no reading."""
+    control = mode.mode is Mode.CONTROL
+    fed = [
+        m
+        for m in found
+        if control and m.spot.quantity is Quantity.EFFORT and m.spot.joint not in mode.imposed
+    ]
+    columns = (m.alone or m.column for m in found if m not in fed)
+    return [column for column in columns if column in log.slower]
+
+
 def _signal(group: list[Match], mode: Chosen, log: LogColumns) -> str:
     first = group[0]
     keys = {"columns": json.dumps([m.column for m in group], ensure_ascii=False)}
@@ -195,9 +207,7 @@ def _signal(group: list[Match], mode: Chosen, log: LogColumns) -> str:
     zero = mode.homes[first.column][0] if first.column in mode.homes else own
     if zero:
         keys["offset"] = f"{zero:.7g}"
-    slower = [
-        log.slower[c].repeats for c in (m.alone or m.column for m in group) if c in log.slower
-    ]
+    slower = [log.slower[c].repeats for c in slower_of(group, mode, log)]
     keys |= {"repeats": f"{max(slower)}"} if slower else {}
     if first.spot.quantity in (Quantity.POSITION, Quantity.SPEED):
         keys["joint"] = _quoted(first.spot.name)
@@ -229,6 +239,7 @@ def _joints(log: LogColumns, check: Checked, mode: Chosen, model: mujoco.MjModel
     """Typical effort, speed and travel of each joint that was recorded, behind its gear."""
     efforts = {m.spot.joint: m for m in check.found if m.spot.quantity is Quantity.EFFORT}
     placed = {m.spot.name for m in check.found if m.spot.quantity is Quantity.POSITION}
+    told = set[str]()
     for match in check.found:
         if match.spot.quantity is Quantity.POSITION:
             position = match.factor * log.column(match.column)
@@ -249,9 +260,14 @@ def _joints(log: LogColumns, check: Checked, mode: Chosen, model: mujoco.MjModel
         elif check.motion is not None:
             steady = check.motion.steady[:, check.dofs[match.spot.name]]
             sizes = {"effort": typical(steady), **sizes}
-        text = ", ".join(f"{k} = {v:g}" for k, v in sizes.items() if v > 0.0)
-        yield f"{_key(match.spot.name)} = {{ {text} }}"
+        as_moved = mode.typical.get(match.spot.name, {})
+        why = "   # effort as the model moves: no column tells it" * bool(as_moved)
+        text = ", ".join(f"{k} = {v:g}" for k, v in {**as_moved, **sizes}.items() if v > 0.0)
+        yield f"{_key(match.spot.name)} = {{ {text} }}{why}"
+        told.add(match.spot.name)
     for joint, given in mode.typical.items():
+        if joint in told:
+            continue
         text = ", ".join(f"{k} = {v:g}" for k, v in given.items())
         yield f"{_key(joint)} = {{ {text} }}   # as the model moves: no column tells it"
 

@@ -9,6 +9,7 @@ import mujoco
 import numpy as np
 
 from ves_twin.core.types import FloatArray
+from ves_twin.machines.mjcf.draft.all_against import all_turned
 from ves_twin.machines.mjcf.draft.changes import changes, misnamed
 from ves_twin.machines.mjcf.draft.effort_fit import (
     LOADED,
@@ -137,6 +138,12 @@ class Judge:
         Where another gravity explains more than all of them, nothing is changed.
         """
         best, new, said = self._changed(found)
+        motion = self.motion(found)
+        fits = {m: self.fit(m, motion) for m in self.driving(found)}
+        if turned := all_turned(found, fits, self.power(found, motion)):
+            so, columns, words = self._changed(turned[0])
+            if so > best - ALIKE:
+                best, new, said = so, columns, [turned[1], *words]
         other = self.mounted(found)
         if other is None or other.score < self.score(found) + GAINED or other.score < best - ALIKE:
             return new, said, None

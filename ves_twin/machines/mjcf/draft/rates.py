@@ -24,6 +24,9 @@ SAME, ITSELF = 0.2, 0.05
 EXACT = 1e-3
 """The same of a correlation that no friction has: an arm's wrist had 0.961."""
 
+COPY = 1e-6
+"""The same of a column that is there twice, to the digits it is written with."""
+
 DECADE, APART = 0.1, 0.2
 """Weight of a decade between a speed and the rate of its position, and of no likeness at all."""
 
@@ -63,10 +66,7 @@ def rated(
         other = ratio(log, own, match, corner)[0]
         swapped = abs(other) > max(1.0 - ITSELF, abs(alike))
         if abs(alike) < FOLLOWS or swapped:
-            words = f"{own.column} is the rate of {match.column}: are they swapped?"
-            if not swapped:
-                words = f"{match.column} does not follow {own.column} ({alike:+.2f}): left out"
-            said.append(words)
+            said.append(_words_of_none(log, match, own, alike, swapped))
             continue
         if slope < 0.0:
             match = replace(match, scale=-match.scale)
@@ -110,6 +110,16 @@ def ratio(log: LogColumns, speed: Match, position: Match, corner: float) -> tupl
     if not power or not np.ptp(v):
         return 0.0, 0.0
     return float(np.corrcoef(v, rate)[0, 1]), float(v @ rate) / power
+
+
+def _words_of_none(log: LogColumns, match: Match, own: Match, alike: float, swapped: bool) -> str:
+    """What is said of a speed that is none of its position."""
+    if swapped:
+        return f"{own.column} is the rate of {match.column}: are they swapped?"
+    same = np.corrcoef(log.column(match.column), log.column(own.column))[0, 1]
+    if abs(same) > 1.0 - COPY:
+        return f"{match.column} is {own.column} once more: left out"
+    return f"{match.column} does not follow {own.column} ({alike:+.2f}): left out"
 
 
 def _of(found: Sequence[Match], quantity: Quantity) -> dict[str, Match]:

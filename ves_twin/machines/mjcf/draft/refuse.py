@@ -12,6 +12,7 @@ from ves_twin.machines.mjcf.draft.log_columns import LogColumns
 from ves_twin.machines.mjcf.draft.match import Matches
 from ves_twin.machines.mjcf.draft.names import OTHER
 from ves_twin.machines.mjcf.draft.spots import Quantity, single_joints, words_of
+from ves_twin.machines.mjcf.parts.servo import is_servo
 
 FRAME_POSITION = int(mujoco.mjtSensor.mjSENS_FRAMEPOS)
 
@@ -39,6 +40,8 @@ def refuse(log: LogColumns, matches: Matches, check: Checked, model: mujoco.MjMo
     joints = ", ".join(model.joint(i).name for i in single_joints(model))
     lacks_effort = not efforts
     expected = f"an effort of {motors}" if lacks_effort else f"a position or speed of {joints}"
+    if lacks_effort:
+        expected += _words_of_gears(model)
     placed = any(m.spot.quantity in (Quantity.POSITION, Quantity.SPEED) for m in check.found)
     if lacks_effort and not placed and model.nu:
         expected = f"{expected}, and a position or speed of {joints}"
@@ -60,6 +63,18 @@ def refuse(log: LogColumns, matches: Matches, check: Checked, model: mujoco.MjMo
         expected += f"; a column that holds one is read by a name like pos_{named} or q1"
         expected += f" (vel_{named} or dq1 of a speed): rename it"
     raise InvalidInputError(f"{log.file} does not fit the model", came, expected)
+
+
+def _words_of_gears(model: mujoco.MjModel) -> str:
+    """That set-points of servos with a gear are not read as such, if there are any."""
+    geared = {
+        model.actuator(i).name: float(model.actuator_gear[i, 0])
+        for i in range(model.nu)
+        if is_servo(model, i, geared=True) and not is_servo(model, i)
+    }
+    names = ", ".join(f"{name} has gear {gear:g}" for name, gear in geared.items())
+    told = f"; {names}, and set-points are read of a servo with gear 1: put its ratio in --scale"
+    return f"{told} COLUMN=NUMBER" if geared else ""
 
 
 def _is_open(column: str, log: LogColumns) -> bool:

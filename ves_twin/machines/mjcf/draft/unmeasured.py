@@ -1,12 +1,15 @@
-"""unmeasured: typical sizes of joints that no column tells, as the model moves them."""
+"""unmeasured: typical sizes that no column tells, as the model moves its joints."""
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import replace
 
+import mujoco
 import numpy as np
 
 from ves_twin.core.recording.recording import Recording
+from ves_twin.core.types import FloatArray
 from ves_twin.diagnosis.model.forward import Excitation
 from ves_twin.machines.mjcf.draft.estimates import travel, typical
 from ves_twin.machines.mjcf.draft.spots import is_motor, single_joints
@@ -17,12 +20,16 @@ from ves_twin.machines.mjcf.rig.description import Compared
 from ves_twin.machines.mjcf.rig.machine import Rig
 from ves_twin.machines.mjcf.rig.places import driven_joint
 
+MOST = 300
+"""Rows along which efforts are computed: enough for a typical one."""
+
 
 def unmeasured(rig: Rig, recording: Recording) -> dict[str, dict[str, float]]:
     """Effort, speed and travel of joints without a column, along the motion that a model makes.
 
-    The effort is that of the joint's own spring and damper, k (q - q0) + d dq, or of a motor that
-    is fed in there, whichever is more.
+    The effort is that of the joint's own spring and damper, k (q - q0) + d dq, of gravity and
+    speeds, or of a motor that is fed in there, whichever is more; in loops, which carry a part of
+    the weight, without that. Of a joint whose motion alone is told, the effort.
 
     Args:
         rig: a drafted machine.
@@ -32,13 +39,15 @@ def unmeasured(rig: Rig, recording: Recording) -> dict[str, dict[str, float]]:
         Joint -> effort, speed, travel in SI, those that are above zero.
     """
     told, model = rig.description, rig.model
-    known = {*told.typical.joint, *told.drive.imposed, *told.drive.locked}
-    names = [model.joint(i).name for i in single_joints(model)]
-    names = [name for name in names if name not in known]
+    every = [model.joint(i).name for i in single_joints(model)]
+    known = {*told.drive.imposed, *told.drive.locked}
+    known |= {name for name, sizes in told.typical.joint.items() if sizes.effort}
+    names = [name for name in every if name not in known]
     if not names:
         return {}
+    every = [name for name in every if name not in {*told.drive.imposed, *told.drive.locked}]
     signals, compared = dict(told.signals), dict(told.compare)
-    for name in names:
+    for name in every:
         for of, unit in zip(("position", "speed"), joint_units(model, name), strict=True):
             signals[f"{of} of {name}"] = Column(columns=(f"{of} of {name}",), unit=unit)
             compared[f"{of} of {name}"] = Compared(joint=name, of=of)  # type: ignore[arg-type]
@@ -48,16 +57,36 @@ def unmeasured(rig: Rig, recording: Recording) -> dict[str, dict[str, float]]:
     forward = MjcfForward.of(seen)
     rows = forward.simulate(Excitation.of(recording, forward.drive), {})
     moved = dict(zip([channel.signal for channel in forward.channels], rows.T, strict=True))
-    found = {}
+    for name, signal in told.drive.imposed_signals.items():
+        moved[f"position of {name}"] = q = recording[signal][:, 0]
+        moved[f"speed of {name}"] = np.gradient(q, recording.time)
+    efforts, found = _efforts(model, moved), dict[str, dict[str, float]]()
     for name in names:
-        q, speed = moved[f"position of {name}"], moved[f"speed of {name}"]
-        joint = model.joint(name)
-        rest = float(model.qpos_spring[int(joint.qposadr[0])])
-        effort = float(joint.stiffness[0]) * (q - rest) + float(joint.damping[0]) * speed
-        most = max(typical(effort), _driven(rig, name, recording))
-        sizes = {"effort": most, "speed": typical(speed), "travel": travel(q)}
+        most = max(efforts[name], _driven(rig, name, recording))
+        sizes = {"effort": most}
+        if name not in told.typical.joint:
+            q, speed = moved[f"position of {name}"], moved[f"speed of {name}"]
+            sizes |= {"speed": typical(speed), "travel": travel(q)}
         found[name] = {k: v for k, v in sizes.items() if np.isfinite(v) and v > 0.0}
     return {name: sizes for name, sizes in found.items() if sizes}
+
+
+def _efforts(model: mujoco.MjModel, moved: Mapping[str, FloatArray]) -> dict[str, float]:
+    """Typical effort of each joint's spring and damper, or of weight and speeds, along a motion."""
+    rows = np.unique(np.linspace(0, len(next(iter(moved.values()))) - 1, MOST).astype(int))
+    joints = [model.joint(i) for i in single_joints(model)]
+    joints = [joint for joint in joints if f"position of {joint.name}" in moved]
+    data, own, weight = mujoco.MjData(model), *np.zeros((2, len(rows), model.nv))
+    for k, row in enumerate(rows):
+        for joint in joints:
+            data.qpos[int(joint.qposadr[0])] = moved[f"position of {joint.name}"][row]
+            data.qvel[int(joint.dofadr[0])] = moved[f"speed of {joint.name}"][row]
+        mujoco.mj_fwdPosition(model, data)
+        mujoco.mj_fwdVelocity(model, data)
+        own[k] = data.qfrc_passive - data.qfrc_gravcomp
+        weight[k] = 0.0 if model.neq else data.qfrc_bias - data.qfrc_gravcomp
+    dofs = {joint.name: int(joint.dofadr[0]) for joint in joints}
+    return {n: max(typical(own[:, dof]), typical(weight[:, dof])) for n, dof in dofs.items()}
 
 
 def _driven(rig: Rig, joint: str, recording: Recording) -> float:

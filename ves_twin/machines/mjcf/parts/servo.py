@@ -8,8 +8,14 @@ FILTERS = (int(mujoco.mjtDyn.mjDYN_FILTER), int(mujoco.mjtDyn.mjDYN_FILTEREXACT)
 """Activations that follow their command behind a time constant."""
 
 
-def is_servo(model: mujoco.MjModel, actuator: int) -> bool:
-    """Whether a command, or what a filter leaves of it, is the position a joint is pulled to."""
+def is_servo(model: mujoco.MjModel, actuator: int, geared: bool = False) -> bool:
+    """Whether a command, or what a filter leaves of it, is the position a joint is pulled to.
+
+    Args:
+        model: of the machine.
+        actuator: its number.
+        geared: or that times a gear.
+    """
     quick = (int(mujoco.mjtDyn.mjDYN_NONE), *FILTERS)
     if int(model.actuator_dyntype[actuator]) not in quick:
         return False
@@ -18,4 +24,5 @@ def is_servo(model: mujoco.MjModel, actuator: int) -> bool:
         model.actuator_biasprm[actuator, 1]
     )
     on_joint = int(model.actuator_trntype[actuator]) == int(mujoco.mjtTrn.mjTRN_JOINT)
-    return affine and pulled and on_joint and float(model.actuator_gear[actuator, 0]) == 1.0
+    direct = geared or float(model.actuator_gear[actuator, 0]) == 1.0
+    return affine and pulled and on_joint and direct
