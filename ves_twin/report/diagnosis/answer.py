@@ -112,8 +112,8 @@ def _otherwise(verdict: Verdict) -> str:
         return ""
     return (
         f" With all that, held-out recordings are {times[most]:.2g} times as far off as the fitted"
-        f" ones ({most}): what only these show is not proved there. --alternate with short"
-        " stretches holds out some of each motion."
+        f" ones ({most}): what only these show is not proved there. Of recordings that are long"
+        " enough --alternate holds out some of each motion."
     )
 
 

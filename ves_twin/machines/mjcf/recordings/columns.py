@@ -29,6 +29,10 @@ from ves_twin.machines.mjcf.rig.machine import Rig
 UNEVEN = 0.01
 """Largest departure of a time step from the mean that passes as an even clock."""
 
+TWICE = 0.1
+"""Share of rows that may have the stamp of the row before; of more the clock is too coarse, and the
+recording is refused."""
+
 HOLE = 5.0
 """Periods over which a line is drawn between two rows, that is over four rows that are not there;
 a longer gap is left to be refused."""
@@ -37,10 +41,11 @@ a longer gap is left to be refused."""
 def read_rig_recording(path: Path, rig: Rig) -> Recording:
     """A recording of a rig.
 
-    Rows outside the file's `window` are left out before anything is refused. A FEW rows together
-    that lack a number are filled, and an angle that is told within one turn is unwrapped, which is
-    said. Where stamps jitter by more than UNEVEN of a step, every signal is read at even rows:
-    measurements straight between the rows, commands by their mean over each step.
+    Rows outside the file's `window` are left out before anything is refused. So are a few that have
+    the stamp of the row before; a FEW rows together that lack a number are filled, and an angle
+    that is told within one turn is unwrapped: all of it is said. Where stamps jitter by more than
+    UNEVEN of a step, every signal is read at even rows: measurements straight between the rows,
+    commands by their mean over each step.
 
     Args:
         path: of any format that `ves-twin inspect` reads.
@@ -58,8 +63,14 @@ def read_rig_recording(path: Path, rig: Rig) -> Recording:
     table = _Table.of(open_log(path), told)
     time, inside = _times(table, told, path)
     poses = told.clock.poses
+    twice = inside & _again(time)
+    few = 0 < np.count_nonzero(twice) <= TWICE * np.count_nonzero(inside) and not poses
+    inside = inside & ~twice if few else inside
     empty = np.zeros(table.rows, bool) if poses else _lacking(table, told, inside)
     time, signals, said = time[inside], dict[str, FloatArray](), list[str]()
+    if few:
+        words = f"{path.name}: rows with the stamp of the row before are left out"
+        said.append(f"{words}: {np.count_nonzero(twice)}")
     for name, column in told.signals.items():
         whole = [table.column(c, inside, path, held(rig, name), poses) for c in column.columns]
         signals[name] = np.asarray(column.scale * np.stack(whole, axis=1) + column.offset)
@@ -173,6 +184,11 @@ def _times(table: _Table, told: RigDescription, path: Path) -> tuple[FloatArray,
         came = f"{told.window.start:g} to {told.window.stop:g} s"
         raise InvalidInputError("window", came, f"a stretch of 0 to {since[-1]:.4g} s")
     return time, inside
+
+
+def _again(time: FloatArray) -> BoolArray:
+    """Rows (n,) that have the stamp of the row before."""
+    return np.concatenate([[False], np.diff(time) == 0.0])
 
 
 def _lacking(table: _Table, told: RigDescription, inside: BoolArray) -> BoolArray:
