@@ -48,6 +48,9 @@ def constant_of(
     unit = match.per
     how = ", turned (or its joint's position counts the other way)" * (scale < 0.0)
     how += by_inertia
+    if fit.gain < STRONG and not by_inertia:
+        how += f", and explains {fit.gain:.0%} of it beside friction: what the model lacks, as a"
+        how += " rotor, is in that number"
     new = replace(match, scale=float(f"{scale:.3g}"))
     said = [
         f"{match.column} is {match.kind}: {abs(scale):.3g} {unit} makes it fit this model{how};"
@@ -70,6 +73,7 @@ def words_of_size(log: LogColumns, match: Match, fit: EffortFit) -> list[str]:
     turned = ", turned," * (strong and fit.slope < 0.0)
     return [
         f"{match.column} is {times:.3g} times{turned} what the model needs: another unit,"
-        f"{' swapped columns,' * (not 1.0 / FOREIGN < times < FOREIGN)} a gear or a wrong mass?"
+        f"{' swapped columns,' * (not 1.0 / FOREIGN < times < FOREIGN)} a gear"
+        f"{', a rotor' * (times > 1.0)} or a wrong mass?"
         f"{LITTLE * (not strong and times > ODD)}"
     ]
