@@ -25,10 +25,14 @@ from ves_twin.machines.mjcf.rig.transmission import Transmission
 ORDER = 4
 """Of the Butterworth low-pass before differentiation, run forth and back: no phase."""
 
-TURNED = 2.0
-"""Periods of its corner by which a column is continued beyond its ends, turned about them. By
-scipy's fixed 15 rows a ramp of 3 rad/s below 5 Hz began with 29 rad/s^2, by two periods with 0.7;
-four do no better (x = 3 t + sin t, sin 5 t and sin 2 t in closed form, at 5, 10 and 25 Hz)."""
+BEYOND, TOLD = 2.0, 1.0
+"""Periods of its corner by which a column is continued beyond its ends before the low-pass, and of
+which it is continued as a parabola: a motion that a log cuts off has its acceleration there. Where
+scipy turns 15 rows about the end, the first period was off by twice the acceleration (sin 2 t
+below 5 Hz), now by a tenth; half a period follows faster motions, and triples white noise there."""
+
+FEWEST = 3
+"""Numbers of a parabola."""
 
 PICKED = 20
 """Rounds after which drives that pick up a half of each other's command are known to 1e-6."""
@@ -282,8 +286,19 @@ def smoothed(column: FloatArray, period: float, corner: float) -> FloatArray:
     if share >= 0.9:
         return column
     b, a = _low_pass(share)
-    beyond = min(math.ceil(TURNED / (corner * period)), len(column) - 1)
-    return np.asarray(filtfilt(b, a, column, padlen=beyond))
+    count = min(math.ceil(TOLD / (corner * period)) + FEWEST, len(column))
+    beyond = math.ceil(BEYOND / (corner * period))
+    onward = _onward(count, beyond)
+    before, after = onward @ column[:count][::-1], onward @ column[-count:]
+    whole = np.concatenate([before[::-1], column, after])
+    return np.asarray(filtfilt(b, a, whole, padlen=beyond)[beyond:-beyond])
+
+
+@lru_cache
+def _onward(count: int, beyond: int) -> FloatArray:
+    """Rows after the last of a count of rows, by the parabola nearest to these (beyond, count)."""
+    powers = np.vander(np.arange(1.0 - count, beyond + 1.0) / count, min(FEWEST, count))
+    return np.asarray(powers[count:] @ np.linalg.pinv(powers[:count]))
 
 
 @lru_cache
