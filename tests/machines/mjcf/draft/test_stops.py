@@ -55,6 +55,19 @@ def test_angles_within_their_stops_stay_what_they_are(stopped, write, columns):
     assert scales == {1.0}
 
 
+def test_an_effort_beyond_what_its_joint_may_have_is_asked_after(arm, write, columns):
+    """A URDF gives joints an effort limit: torques in kilonewton metres, or of a motor's shaft."""
+    most = {f"tau{n + 1}": 2.0 * np.max(np.abs(columns[f"tau{n + 1}"])) for n in range(3)}
+    text = ARM
+    for limit, name in zip(most.values(), REACH, strict=True):
+        limits = f'actuatorfrcrange="{-limit} {limit}" actuatorfrclimited="false"'
+        text = text.replace(f'joint name="{name}"', f'joint name="{name}" {limits}')
+    arm.write_text(text)
+    assert not any("whose limit is" in words for words in drafted(arm, write(columns))[0].look)
+    found, _ = drafted(arm, write(columns | {"tau2": 4.0 * columns["tau2"]}))
+    assert [w.split(" ")[0] for w in found.look if "at lift, whose limit is" in w] == ["tau2"]
+
+
 CLIPPED = """
 <mujoco>
   <worldbody><body><joint name="rail" type="slide"/><geom size="0.1" mass="2"/></body></worldbody>

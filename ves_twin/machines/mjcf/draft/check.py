@@ -21,7 +21,12 @@ from ves_twin.machines.mjcf.draft.rates import rated
 from ves_twin.machines.mjcf.draft.scaled import scales_of, words_of_scale
 from ves_twin.machines.mjcf.draft.servos import followed
 from ves_twin.machines.mjcf.draft.spots import Quantity
-from ves_twin.machines.mjcf.draft.stops import beyond, beyond_control, in_degrees_by_stops
+from ves_twin.machines.mjcf.draft.stops import (
+    beyond,
+    beyond_control,
+    beyond_limit,
+    in_degrees_by_stops,
+)
 from ves_twin.machines.mjcf.draft.swing import SHARE, turns_of
 from ves_twin.machines.mjcf.draft.turns_back import words_of_one_way
 from ves_twin.machines.mjcf.parts.cyclic import is_cyclic
@@ -147,7 +152,7 @@ def _checked(log: LogColumns, matches: Matches, model: mujoco.MjModel, corner: f
         explained = plain.explained(found, motion)
         findings += words_of_one_way(motion, dofs, [m.spot.joint for m in judge.driving(found)])
     lost = words_of_dropouts(log, found)
-    far = [*beyond(log, found, model), *beyond_control(log, found, model)]
+    far = [f for told in (beyond, beyond_control, beyond_limit) for f in told(log, found, model)]
     findings[before:before] = [*lost, *counted(log, found), *far]
     found, said = rated(log, found, corner, model)
     times = {match.spot.joint: scale for match, scale in scales.items()}

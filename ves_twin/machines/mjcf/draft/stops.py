@@ -1,4 +1,4 @@
-"""beyond, beyond_control, in_degrees_by_stops: columns held against ranges of the model."""
+"""beyond and beyond_*, in_degrees_by_stops: columns held against ranges of the model."""
 
 from __future__ import annotations
 
@@ -11,7 +11,8 @@ import numpy as np
 from ves_twin.machines.mjcf.draft.changes import DEGREE
 from ves_twin.machines.mjcf.draft.log_columns import LogColumns
 from ves_twin.machines.mjcf.draft.match import Match
-from ves_twin.machines.mjcf.draft.spots import Quantity
+from ves_twin.machines.mjcf.draft.spots import Quantity, is_motor
+from ves_twin.machines.mjcf.parts.joint_units import joint_units
 
 FEWEST = 3
 """Joints whose angles must leave their stops as radians for all to be taken as degrees: one or two
@@ -19,6 +20,9 @@ may be told before a gear."""
 
 NEAR = 0.1
 """Share of its range by which an angle may pass a stop: files round them."""
+
+OVER = 1.5
+"""Times its limit that an effort may come to: a file may give what a drive can bear for long."""
 
 
 def beyond(log: LogColumns, found: list[Match], model: mujoco.MjModel) -> Iterator[str]:
@@ -50,6 +54,24 @@ def beyond_control(log: LogColumns, found: list[Match], model: mujoco.MjModel) -
             yield (
                 f"{match.column} goes from {lowest:.3g} to {highest:.3g}, {match.spot.label} takes"
                 f" {low:.3g} to {high:.3g} (ctrlrange), a simulation clips the rest: another unit?"
+            )
+
+
+def beyond_limit(log: LogColumns, found: list[Match], model: mujoco.MjModel) -> Iterator[str]:
+    """Efforts beyond what their joint may have, by the model's file: a URDF's `limit effort`."""
+    for match in found:
+        if match.spot.quantity is not Quantity.EFFORT or not match.spot.joint or match.indirect:
+            continue
+        number = int(model.actuator(match.spot.name).id)
+        joint = int(model.joint(match.spot.joint).id)
+        most = float(np.max(np.abs(model.jnt_actfrcrange[joint])))
+        gain = float(model.actuator_gear[number, 0] * model.actuator_gainprm[number, 0])
+        peak = float(np.max(np.abs(gain * match.factor * log.column(match.column))))
+        if is_motor(model, number) and 0.0 < OVER * most < peak:
+            unit = "N" if joint_units(model, match.spot.joint)[0] == "m" else "N*m"
+            yield (
+                f"{match.column} comes to {peak:.3g} {unit} at {match.spot.joint}, whose limit is"
+                f" {most:.3g}: another unit, a gear, or a limit of another drive?"
             )
 
 
