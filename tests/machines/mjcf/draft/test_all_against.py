@@ -53,6 +53,16 @@ def test_nearly_all_of_three_or_more_must_act_against_their_motion(signs, power,
         assert [m.scale for m in told[0]] == [-1.0] * len(signs)
 
 
+def test_an_effort_that_the_model_is_right_about_speaks_against_it():
+    """Of four torques three were turned, and the fourth, told as turned with them, back again."""
+    speed = np.sin(np.linspace(0.0, 60.0, 3000))
+    need = np.cos(np.linspace(0.0, 60.0, 3000)) + 0.3 * speed
+    fits = {match(f"u{n}"): work_of(-1.0) for n in range(3)}
+    assert all_turned(list(fits), fits, -1.0)
+    fits |= {match("u3"): EffortFit.of(need, need, speed, free=False)}
+    assert all_turned(list(fits), fits, -1.0) is None
+
+
 def test_efforts_that_give_power_in_all_stay():
     fits = {match(f"u{n}"): work_of(-1.0) for n in range(3)}
     assert all_turned(list(fits), fits, 0.1) is None

@@ -21,6 +21,17 @@ BEAM = """
   <actuator><position name="motor" joint="tilt" kp="30" kv="4" {gear}/></actuator>
 </mujoco>
 """
+LINKS = """
+<mujoco>
+  <option timestep="0.002" integrator="implicitfast"><flag contact="disable"/></option>
+  <worldbody><body><joint name="shoulder" axis="0 1 0" damping="0.05"/>
+    <geom type="capsule" fromto="0 0 0 0 0 -0.3" size="0.02" mass="0.5"/>
+    <body pos="0 0 -0.3"><joint name="elbow" axis="0 1 0" damping="0.02"/>
+      <geom type="capsule" fromto="0 0 0 0 0 -0.25" size="0.02" mass="0.4"/></body></body>
+  </worldbody>
+  <actuator><motor name="drive" joint="shoulder"/></actuator>
+</mujoco>
+"""
 HELD = 4
 """Rows for which a set-point stands."""
 
@@ -86,9 +97,36 @@ def test_a_column_that_is_there_twice_is_told_as_that(beam, run, write):
     assert any("ball2 is ball_m once more" in words for words in found.look)
 
 
+@pytest.mark.parametrize(
+    "told", [("v_shoulder",), ("q_shoulder", "v_elbow"), ("v_shoulder", "v_elbow")]
+)
+def test_a_joint_without_an_effort_has_a_size_where_speeds_are_told(tmp_path, write, told):
+    """By its speed summed up: no row tells where a joint begins of which a speed alone is read."""
+    path = tmp_path / "arm.xml"
+    path.write_text(LINKS)
+    model = mujoco.MjModel.from_xml_string(LINKS)
+    data, rows = mujoco.MjData(model), []
+    for k in range(800):
+        command = 0.6 * np.sin(0.02 * k) + 0.3 * np.sin(0.071 * k)
+        rows.append([0.01 * k, command, *data.qpos, *data.qvel])
+        data.ctrl[:] = command
+        mujoco.mj_step(model, data, 5)
+    names = ("t_s", "drive_Nm", "q_shoulder", "q_elbow", "v_shoulder", "v_elbow")
+    every = dict(zip(names, np.array(rows).T, strict=True))
+    log = {
+        {"q": f"{n}_rad", "v": f"{n}_rad_s"}.get(n[0], n): v
+        for n, v in every.items()
+        if n in ("t_s", "drive_Nm", *told)
+    }
+    _, rig = drafted(path, write(log))
+    assert 0.05 < rig.description.typical.joint["elbow"].effort < 2.0
+
+
 def test_a_servo_with_a_gear_is_refused_by_that(tmp_path, run, write):
     path = tmp_path / "geared.xml"
     path.write_text(text('gear="2.7"'))
     columns = {{"motor": "motor_cmd_deg"}.get(n, n): v for n, v in run.items()}
-    with pytest.raises(InvalidInputError, match=r"motor has gear 2.7, .* with gear 1"):
+    with pytest.raises(
+        InvalidInputError, match=r"motor has gear 2.7, .* with gear 1: write them in rad"
+    ):
         draft(path, [write(columns)], tmp_path / "rig.toml")

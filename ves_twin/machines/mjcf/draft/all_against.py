@@ -28,7 +28,8 @@ def all_turned(
     against = [match for match, fit in fits.items() if fit.work < -WORKS]
     if len(fits) < FEWEST or power >= 0.0 or len(against) < NEARLY * len(fits):
         return None
-    if any(match.given for match in fits):
+    right = [m for m, fit in fits.items() if m not in against and fit.usable and fit.slope > 0.0]
+    if right or any(match.given for match in fits):
         return None
     new = [replace(m, scale=-m.scale) if m in fits else m for m in found]
     names = ", ".join(match.column for match in fits)

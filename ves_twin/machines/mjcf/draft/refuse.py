@@ -40,7 +40,7 @@ def refuse(log: LogColumns, matches: Matches, check: Checked, model: mujoco.MjMo
     joints = ", ".join(model.joint(i).name for i in single_joints(model))
     lacks_effort = not efforts
     expected = f"an effort of {motors}" if lacks_effort else f"a position or speed of {joints}"
-    if lacks_effort:
+    if lacks_effort and left != "none":
         expected += _words_of_gears(model)
     placed = any(m.spot.quantity in (Quantity.POSITION, Quantity.SPEED) for m in check.found)
     if lacks_effort and not placed and model.nu:
@@ -73,8 +73,10 @@ def _words_of_gears(model: mujoco.MjModel) -> str:
         if is_servo(model, i, geared=True) and not is_servo(model, i)
     }
     names = ", ".join(f"{name} has gear {gear:g}" for name, gear in geared.items())
-    told = f"; {names}, and set-points are read of a servo with gear 1: put its ratio in --scale"
-    return f"{told} COLUMN=NUMBER" if geared else ""
+    told = (
+        f"; {names}, and set-points in degrees are read of a servo with gear 1: write them in rad"
+    )
+    return f"{told}, and their ratio to the command in --scale COLUMN=NUMBER" if geared else ""
 
 
 def _is_open(column: str, log: LogColumns) -> bool:

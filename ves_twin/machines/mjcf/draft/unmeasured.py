@@ -14,6 +14,8 @@ from ves_twin.diagnosis.model.forward import Excitation
 from ves_twin.machines.mjcf.draft.estimates import travel, typical
 from ves_twin.machines.mjcf.draft.spots import is_motor, single_joints
 from ves_twin.machines.mjcf.motion.forward import MjcfForward
+from ves_twin.machines.mjcf.motion.started import read_from, signal_of
+from ves_twin.machines.mjcf.parts.cyclic import turned_by
 from ves_twin.machines.mjcf.parts.joint_units import joint_units
 from ves_twin.machines.mjcf.rig.column import Column
 from ves_twin.machines.mjcf.rig.description import Compared
@@ -47,8 +49,11 @@ def unmeasured(rig: Rig, recording: Recording) -> dict[str, dict[str, float]]:
         return {}
     every = [name for name in every if name not in {*told.drive.imposed, *told.drive.locked}]
     signals, compared = dict(told.signals), dict(told.compare)
+    spun = [name for name in every if signal_of(told, name, "speed") and read_from(told, name)[1]]
     for name in every:
         for of, unit in zip(("position", "speed"), joint_units(model, name), strict=True):
+            if name in spun and of == "position":
+                continue  # its start is read from its speed, as no row tells this
             signals[f"{of} of {name}"] = Column(columns=(f"{of} of {name}",), unit=unit)
             compared[f"{of} of {name}"] = Compared(joint=name, of=of)  # type: ignore[arg-type]
     seen = replace(
@@ -57,6 +62,9 @@ def unmeasured(rig: Rig, recording: Recording) -> dict[str, dict[str, float]]:
     forward = MjcfForward.of(seen)
     rows = forward.simulate(Excitation.of(recording, forward.drive), {})
     moved = dict(zip([channel.signal for channel in forward.channels], rows.T, strict=True))
+    for name in spun:
+        begin = float(model.qpos0[int(model.joint(name).qposadr[0])])
+        moved[f"position of {name}"] = begin + turned_by(moved[f"speed of {name}"], recording.time)
     for name, signal in told.drive.imposed_signals.items():
         moved[f"position of {name}"] = q = recording[signal][:, 0]
         moved[f"speed of {name}"] = np.gradient(q, recording.time)
