@@ -286,19 +286,24 @@ def smoothed(column: FloatArray, period: float, corner: float) -> FloatArray:
     if share >= 0.9:
         return column
     b, a = _low_pass(share)
-    count = min(math.ceil(TOLD / (corner * period)) + FEWEST, len(column))
     beyond = math.ceil(BEYOND / (corner * period))
-    onward = _onward(count, beyond)
-    before, after = onward @ column[:count][::-1], onward @ column[-count:]
+    count = min(math.ceil(TOLD / (corner * period)) + FEWEST, len(column))
+    before, after = (_onward(end[-count:], beyond) for end in (column[::-1], column))
     whole = np.concatenate([before[::-1], column, after])
     return np.asarray(filtfilt(b, a, whole, padlen=beyond)[beyond:-beyond])
 
 
+def _onward(column: FloatArray, beyond: int) -> FloatArray:
+    """Rows after the last of a column (n,), by the parabola nearest to it (beyond,)."""
+    fit, powers = _parabola(len(column), beyond)
+    return np.asarray(powers @ (fit @ column))
+
+
 @lru_cache
-def _onward(count: int, beyond: int) -> FloatArray:
-    """Rows after the last of a count of rows, by the parabola nearest to these (beyond, count)."""
+def _parabola(count: int, beyond: int) -> tuple[FloatArray, FloatArray]:
+    """Numbers of the parabola nearest to a count of rows (p, count), and its next rows of these."""
     powers = np.vander(np.arange(1.0 - count, beyond + 1.0) / count, min(FEWEST, count))
-    return np.asarray(powers[count:] @ np.linalg.pinv(powers[:count]))
+    return np.linalg.pinv(powers[:count]), powers[count:]
 
 
 @lru_cache
