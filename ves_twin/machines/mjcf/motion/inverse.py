@@ -11,7 +11,7 @@ from functools import lru_cache
 
 import mujoco
 import numpy as np
-from scipy.signal import butter, filtfilt
+from scipy.signal import butter, sosfiltfilt
 
 from ves_twin.core.types import FloatArray
 from ves_twin.effects.effect import Effect
@@ -285,12 +285,11 @@ def smoothed(column: FloatArray, period: float, corner: float) -> FloatArray:
     share = 2.0 * corner * period
     if share >= 0.9:
         return column
-    b, a = _low_pass(share)
     beyond = math.ceil(BEYOND / (corner * period))
     count = min(math.ceil(TOLD / (corner * period)) + FEWEST, len(column))
     before, after = (_onward(end[-count:], beyond) for end in (column[::-1], column))
     whole = np.concatenate([before[::-1], column, after])
-    return np.asarray(filtfilt(b, a, whole, padlen=beyond)[beyond:-beyond])
+    return np.asarray(sosfiltfilt(_low_pass(share), whole, padlen=beyond)[beyond:-beyond])
 
 
 def _onward(column: FloatArray, beyond: int) -> FloatArray:
@@ -303,11 +302,10 @@ def _onward(column: FloatArray, beyond: int) -> FloatArray:
 def _parabola(count: int, beyond: int) -> tuple[FloatArray, FloatArray]:
     """Numbers of the parabola nearest to a count of rows (p, count), and its next rows of these."""
     powers = np.vander(np.arange(1.0 - count, beyond + 1.0) / count, min(FEWEST, count))
-    return np.linalg.pinv(powers[:count]), powers[count:]
+    return np.asarray(np.linalg.pinv(powers[:count]), float), powers[count:]
 
 
 @lru_cache
-def _low_pass(share: float) -> tuple[FloatArray, FloatArray]:
-    """Of a corner as a share of half the rate; its design takes longer than its use."""
-    b, a = butter(ORDER, share)
-    return b, a
+def _low_pass(share: float) -> FloatArray:
+    """Sections of a corner as a share of half the rate; its design takes longer than its use."""
+    return np.asarray(butter(ORDER, share, output="sos"), float)
