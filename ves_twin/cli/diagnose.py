@@ -22,6 +22,9 @@ LAW_PICTURE = "law.png"
 PLANT = "plant.toml"
 """File of the extended machine, where it passed."""
 
+NO_LAW = "MJCF has of a law what friction is; diagnose --no-law finds numbers that need no law"
+"""What is said where the numbers of a model were found beside a law."""
+
 SUMMARY = "name what the simulation gets wrong in recordings, extend the plant, measure the gain"
 
 
@@ -264,8 +267,8 @@ def _text(found: Diagnosis, folder: Path) -> str:
     lines += ["", f"  files     {folder}/: {files}"]
     if (folder / PLANT).is_file():
         beside = verdict.law is not None and verdict.law.claimed and bool(verdict.proved)
-        why = "; its numbers are of beside the law, which MJCF lacks (--no-law)" * beside
-        lines.append(f"  as MJCF   ves-twin info --plant {folder / PLANT} --mjcf improved.xml{why}")
+        lines.append(f"  as MJCF   ves-twin info --plant {folder / PLANT} --mjcf improved.xml")
+        lines += [f"            {NO_LAW}"] * beside
     return "\n".join(lines)
 
 

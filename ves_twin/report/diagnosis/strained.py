@@ -36,12 +36,19 @@ def tuned_words(verdict: Verdict) -> str:
         for pull, name, one in (_far(verdict, SHOWN_FROM) if verdict.causes else [])
     ]
     told += [
-        f"{spoken(label)} {interval_words(one)} beside the law"
+        f"{spoken(label)} {_beside_law(one)}"
         for name, one in verdict.tuned.items()
         if (label := name.rpartition(":")[0]) in _named(verdict)
     ]
     more = f"; and {len(told) - TOLD} more (verdict.json)" if len(told) > TOLD else ""
     return "; ".join(told[:TOLD]) + more
+
+
+def _beside_law(one: Estimate) -> str:
+    """Size of a cause where the law is at work: none of it, where the law does all of its work."""
+    if one.low <= one.nominal <= one.high:
+        return f"as in the model, {quantity(one.nominal, one.unit)}: the law takes its place"
+    return f"{interval_words(one)} beside the law"
 
 
 def _named(verdict: Verdict) -> set[str]:

@@ -16,6 +16,7 @@ from ves_twin.core.errors import InvalidInputError, one_line
 from ves_twin.core.mjcf_export import MjcfExport
 from ves_twin.effects.element import Element
 from ves_twin.machines.mjcf.rig.account import changed_numbers
+from ves_twin.machines.mjcf.rig.law_share import carried_of
 from ves_twin.machines.mjcf.rig.machine import Rig
 
 NEVER = (
@@ -34,6 +35,9 @@ NUMBERS = (
 DIGITS = 1e-5
 """Relative error of a number with six digits."""
 
+REST = 0.01
+"""Share of a law from which what MJCF lacks of it is told."""
+
 COMPILER = "attached models, boundmass, boundinertia, settotalmass, inertiafromgeom"
 """What writes another model than it is, or none."""
 
@@ -43,6 +47,7 @@ def mjcf_of(rig: Rig, folder: Path) -> MjcfExport:
 
     Dry friction is as stiff in it as it is simulated here. An effect counts as carried if the
     compiled model differs by it: what acts on commands, readings or by a law of its own does not.
+    Of a law over a joint's speed it has what friction loss and damping are.
 
     Args:
         rig: both files.
@@ -59,7 +64,14 @@ def mjcf_of(rig: Rig, folder: Path) -> MjcfExport:
         if effect.element is not Element.LOG:  # a log's clock stretches the step, no machine
             effect.edit_model(model)
         (lost if np.array_equal(before, _numbers(model)) else carried).append(effect.label)
-    lost += [f"law {law.label}" for law in rig.laws]
+    for law in rig.laws:
+        part = carried_of(law, model)
+        if part is not None:
+            carried.append(f"of law {law.label}, {part.words(model)}")
+            part.edit(model)
+        if part is None or part.left > REST:
+            rest = f", {100.0 * part.left:.2g} % of it" if part else ""
+            lost.append(f"law {law.label}{rest}")
     body = _xml(rig.folder / rig.description.model, model, folder)
     title = f"{rig.description.name}, exported by ves_twin; hash {rig.identity}."
     return MjcfExport.of(title, body, carried, lost, NEVER)
