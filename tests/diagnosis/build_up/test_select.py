@@ -70,6 +70,21 @@ def test_what_trials_take_by_products_is_what_fits_of_their_columns_leave():
         assert gains.of(n) == pytest.approx(left([2])[1] - after, rel=1e-3, abs=1e-2)
 
 
+def test_plain_gains_are_those_of_the_columns_in_the_rms_that_a_fit_leaves():
+    regression = halves(PLANT, {"viscous@a:size": 0.6, "coulomb@b:size": 0.5}, 3).regression
+    fit, half = regression.fit([2]), regression.half
+    others = regression.rest([2])
+    gains = regression.plain_gains(fit, others)
+    weight = half.kept / half.rms(fit.residual)
+    for n in others:
+        own = (half.columns[n] * weight).reshape(regression.trials[n].width, -1)
+        own = own * regression.prior[n][:, None]
+        free = np.linalg.solve(
+            own @ own.T + np.eye(len(own)), own @ (fit.residual * weight).ravel()
+        )
+        assert gains.free(n) == pytest.approx(free, rel=1e-3, abs=1e-4)
+
+
 def test_a_cause_far_beyond_its_range_is_not_chosen_in_the_place_of_another():
     """Friction of 0.6 has the columns of viscous friction, and no machine has so much of it."""
     hidden = {"viscous@a:size": 0.6}

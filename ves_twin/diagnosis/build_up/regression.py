@@ -13,6 +13,7 @@ from ves_twin.core.types import BoolArray, FloatArray, IntArray, SingleArray
 from ves_twin.diagnosis.bank.inner import inner
 from ves_twin.diagnosis.build_up.discrepancy import discrepancy, usual_shrinkage
 from ves_twin.diagnosis.build_up.eliminated import Eliminated
+from ves_twin.diagnosis.build_up.gains import Gains
 from ves_twin.diagnosis.build_up.products import Products
 from ves_twin.diagnosis.build_up.trial_columns import TrialColumns
 from ves_twin.diagnosis.build_up.trials import Trial
@@ -339,13 +340,30 @@ class Regression:
     def gains(self, fit: LinearFit, others: Sequence[int]) -> Gains:
         """Chi^2 that each of other trials would take beside a fit, under its discrepancy."""
         under = self._products_under(fit.whitening)
-        inside = self._at(fit.chosen)
-        outside = np.concatenate([self._columns[n] for n in others])
-        weight = np.concatenate([self.prior[n] for n in others])
+        inside, outside, weight = self._at(fit.chosen), *self._outside(others)
         cross = under.of(outside, inside, weight, fit.scale)
         gram = under.of(outside, outside, weight, weight)
         gram -= cross @ np.linalg.solve(fit.hessian, cross.T)
-        slope = weight * under.cross[outside] - cross @ fit.shares
+        return self._gains(others, gram, weight * under.cross[outside] - cross @ fit.shares)
+
+    def plain_gains(self, fit: LinearFit, others: Sequence[int]) -> Gains:
+        """Plain squares that each would take of what a fit leaves, in the rms of each channel.
+
+        No amplitude of the fit gives way.
+        """
+        gram, cross, _ = self._products
+        weights = np.square(self.level / np.maximum(self.half.rms(fit.residual), 1e-30))
+        (outside, weight), at = self._outside(others), self._at(fit.chosen)
+        left = cross[:, outside] - gram[:, outside[:, None], at] @ (fit.shares * fit.scale)
+        own = np.tensordot(weights, gram, axes=1)[np.ix_(outside, outside)]
+        return self._gains(others, own * np.outer(weight, weight), weight * (weights @ left))
+
+    def _outside(self, others: Sequence[int]) -> tuple[IntArray, FloatArray]:
+        """Columns of trials, and the prior sd of each."""
+        places = np.concatenate([self._columns[n] for n in others])
+        return places, np.concatenate([self.prior[n] for n in others])
+
+    def _gains(self, others: Sequence[int], gram: FloatArray, slope: FloatArray) -> Gains:
         ends = np.cumsum([0, *(self.trials[n].width for n in others)])
         where = {n: np.arange(ends[k], ends[k + 1]) for k, n in enumerate(others)}
         low, high = (np.concatenate([self.limits[n][k] for n in others]) for k in (0, 1))
@@ -369,29 +387,3 @@ class Regression:
             target = whitening.apply(self.half.target.astype(np.float32))
             self._under[:] = [Products(whitening, inner(rows.T, rows.T), rows @ target)]
         return self._under[0]
-
-
-@dataclass(frozen=True)
-class Gains:
-    """What trials would take beside a fit.
-
-    Attributes:
-        gram: of their whitened columns, less what the fit can explain (m, m).
-        slope: of chi^2 along each, halved (m,).
-        where: columns of each trial.
-        low, high: amplitudes that the range of each allows (m,).
-    """
-
-    gram: FloatArray
-    slope: FloatArray
-    where: dict[int, IntArray]
-    low: FloatArray
-    high: FloatArray
-
-    def of(self, *trials: int) -> float:
-        """Chi^2 that trials take together, as far as their ranges allow."""
-        at = np.concatenate([self.where[n] for n in trials])
-        matrix = self.gram[np.ix_(at, at)] + np.eye(len(at))
-        free = np.linalg.solve(matrix, self.slope[at])
-        shares = np.clip(free, self.low[at], self.high[at])
-        return max(float(2.0 * self.slope[at] @ shares - shares @ matrix @ shares), 0.0)

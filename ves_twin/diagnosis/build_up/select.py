@@ -8,7 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from ves_twin.diagnosis.build_up.discrepancy import discrepancy
-from ves_twin.diagnosis.build_up.regression import Gains, LinearFit, Regression
+from ves_twin.diagnosis.build_up.gains import Gains
+from ves_twin.diagnosis.build_up.regression import LinearFit, Regression
 
 MOST = 60
 """Trials that may be chosen: beyond that a record of any length is described, not explained."""
@@ -157,20 +158,11 @@ class Selector:
 
         A level that is missing passes for slow discrepancy, whose whitening then hides it.
         """
-        half, regression = self.regression.half, self.regression
-        weight = half.kept / np.maximum(half.rms(fit.residual), 1e-30)
-        left = fit.residual * weight
-        best, top = rest[0], -1.0
-        for n in rest:
-            columns = (half.columns[n] * weight).reshape(regression.trials[n].width, -1)
-            inner = columns @ left.ravel()
-            gram = columns @ columns.T + np.diag(1.0 / np.square(regression.prior[n]))
-            sizes = np.linalg.solve(gram, inner)
-            if regression.impossible(n, sizes / regression.prior[n]):
-                continue
-            score = float(inner @ sizes)
-            if score > top:
-                best, top = n, score
+        regression = self.regression
+        gains = regression.plain_gains(fit, rest)
+        ranked = sorted(rest, key=gains.of, reverse=True)
+        sound = (n for n in ranked if not regression.impossible(n, gains.free(n)))
+        best = next(sound, rest[0])
         if best in pick:
             return [], None
         return [best], regression.fit([*chosen, best], fit.whitening)
@@ -190,13 +182,12 @@ class Selector:
         """The two trials of different causes that take most together."""
         trials = self.regression.trials
         likely = sorted(rest, key=gains.of, reverse=True)[:PAIRED]
-        pairs = [
-            (a, b)
-            for i, a in enumerate(likely)
-            for b in likely[i + 1 :]
+        taken = {
+            (a, b): both
+            for (a, b), both in gains.of_pairs(likely).items()
             if trials[a].cause.label != trials[b].cause.label
-        ]
-        return max(pairs, key=lambda pair: gains.of(*pair)) if pairs else None
+        }
+        return max(taken, key=lambda pair: taken[pair], default=None)
 
     @staticmethod
     def _synergy(gains: Gains, pair: tuple[int, int], single: list[int]) -> bool:

@@ -84,14 +84,18 @@ def moved_along(work: Work, position: FloatArray, speed: FloatArray, pull: Float
 
 
 def _rigid(model: mujoco.MjModel) -> mujoco.MjModel:
-    """The model without what is added to its rigid-body efforts, or acts through a command."""
-    rigid = copy.copy(model)
-    rigid.dof_frictionloss[:] = 0.0
-    rigid.dof_damping[:] = 0.0
-    rigid.tendon_frictionloss[:] = 0.0
-    rigid.tendon_damping[:] = 0.0
-    rigid.actuator_gainprm[:] = 0.0
-    return rigid
+    """A copy without what is added to its rigid-body efforts, or acts through a command."""
+    return _bared(copy.copy(model))
+
+
+def _bared(model: mujoco.MjModel) -> mujoco.MjModel:
+    """The same of the model itself."""
+    model.dof_frictionloss[:] = 0.0
+    model.dof_damping[:] = 0.0
+    model.tendon_frictionloss[:] = 0.0
+    model.tendon_damping[:] = 0.0
+    model.actuator_gainprm[:] = 0.0
+    return model
 
 
 def _content(model: mujoco.MjModel) -> bytes:
@@ -134,7 +138,7 @@ def _moved_of(work: Work) -> Moved:
     Where an effect changes anything else of the model, or what a joint's sensor shows, most fits
     have a motion of their own, of which directions would not be used again.
     """
-    rigid, (nominal, content) = _rigid(work.model), _nominal(work.rig.model)
+    nominal, content = _nominal(work.rig.model)
     fed = _single(work)
     recorded = {j: work.programme.drive[s][:, 0] for j, s in fed}
     positions = {j: work.position(j, work.seen(s)[:, 0]) for j, s in fed}
@@ -144,10 +148,11 @@ def _moved_of(work: Work) -> Moved:
         digest.update(np.ascontiguousarray(part).tobytes())
     path = _Path(digest.hexdigest(), work, positions)
     as_recorded = all(np.array_equal(positions[j], recorded[j]) for j in recorded)
-    if as_recorded and _content(with_inertials_of(rigid, nominal)) == content:
+    if as_recorded and _content(_bared(with_inertials_of(work.model, nominal))) == content:
         efforts = _efforts(_Motion(path, _hash(content), as_recorded, nominal))
         if efforts.linear:
-            return efforts.of(rigid)
+            return efforts.of(work.model)
+    rigid = _rigid(work.model)
     return _moved(_Motion(path, _hash(_content(rigid)), as_recorded, rigid))
 
 

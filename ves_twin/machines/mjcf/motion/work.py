@@ -5,7 +5,7 @@ from __future__ import annotations
 import copy
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from functools import lru_cache
+from functools import cached_property, lru_cache
 from threading import get_ident
 
 import mujoco
@@ -87,7 +87,15 @@ class Work:
 
     def at(self, element: Element, name: str) -> list[tuple[Effect, Place]]:
         """Effects on one target."""
-        return [(e, p) for e, p in self.effects if e.element is element and e.parts[0] == name]
+        return self._parts.get((element, name), [])
+
+    @cached_property
+    def _parts(self) -> dict[tuple[Element | None, str], list[tuple[Effect, Place]]]:
+        """Effects by what they sit on, in their order."""
+        found: dict[tuple[Element | None, str], list[tuple[Effect, Place]]] = {}
+        for effect, place in self.effects:
+            found.setdefault((effect.element, effect.parts[0]), []).append((effect, place))
+        return found
 
     def resistance(self, joint: str, speed: FloatArray) -> FloatArray:
         """Effort [N, N m] against motion of a joint that the model itself lacks (n,)."""
@@ -124,12 +132,12 @@ class Work:
         Damping, and friction loss as `dry` has it, of each tendon's own speed.
         """
         model, total = self.model, np.zeros(len(speed))
-        for number in range(model.ntendon):
+        for number in _resisting(model):
             damping = float(model.tendon_damping[number])
             level = float(model.tendon_frictionloss[number])
-            parts = tendon_joints(model, model.tendon(number).name)
+            parts = tendon_joints(model, number)
             share = dict(parts).get(joint, 0.0)
-            if share == 0.0 or (damping, level) == (0.0, 0.0):
+            if share == 0.0:
                 continue
             own = sum(c * speed[:, int(model.joint(j).dofadr[0])] for j, c in parts)
             effort = damping * own
@@ -196,6 +204,12 @@ class Work:
             if effect.element is Element.SIGNAL
             and (_covers(effect.target, signal) or _of(effect.target, signal))
         ]
+
+
+def _resisting(model: mujoco.MjModel) -> list[int]:
+    """Tendons with damping or friction loss."""
+    found = np.logical_or(model.tendon_damping, model.tendon_frictionloss)
+    return [int(number) for number in np.flatnonzero(found)]
 
 
 @lru_cache(maxsize=KEPT)
