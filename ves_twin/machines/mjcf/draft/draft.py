@@ -6,40 +6,25 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
-import numpy as np
-
 from ves_twin.core.errors import InvalidInputError
-from ves_twin.core.recording.recording import Recording
-from ves_twin.diagnosis.record.preprocess import check_lengths
 from ves_twin.machines.mjcf.draft.by_number import by_number
 from ves_twin.machines.mjcf.draft.check import Checked
 from ves_twin.machines.mjcf.draft.chosen import Chosen
 from ves_twin.machines.mjcf.draft.constants import with_constants
 from ves_twin.machines.mjcf.draft.draft_text import compared, signal_name, slower_of, used
-from ves_twin.machines.mjcf.draft.drafting import ROWS, Drafting, Version
+from ves_twin.machines.mjcf.draft.drafting import Drafting
 from ves_twin.machines.mjcf.draft.estimates import LOW_PASSED
 from ves_twin.machines.mjcf.draft.given_model import GivenModel
+from ves_twin.machines.mjcf.draft.held_stretch import held_stretch, too_short
 from ves_twin.machines.mjcf.draft.log_columns import LogColumns
 from ves_twin.machines.mjcf.draft.match import matched
 from ves_twin.machines.mjcf.draft.names import is_command
-from ves_twin.machines.mjcf.draft.predicted import FEWEST
 from ves_twin.machines.mjcf.draft.shape import by_shape
 from ves_twin.machines.mjcf.draft.spots import Quantity, spots_of
 from ves_twin.machines.mjcf.draft.steady import with_steady
 from ves_twin.machines.mjcf.draft.untold import untold
-from ves_twin.machines.mjcf.motion.forward import MjcfForward
-from ves_twin.machines.mjcf.motion.pieces import pieces
 from ves_twin.machines.mjcf.recordings.columns import read_rig_recording
-from ves_twin.machines.mjcf.recordings.interleaved_split import alternate, enough
 from ves_twin.machines.mjcf.rig.description import Mode
-from ves_twin.machines.mjcf.rig.machine import Rig
-
-STRETCH = 2.0
-"""Usual length of a stretch that is held out [s]."""
-
-STRETCHES = 4
-"""Stretches that a short log is cut into at least, where each has rows enough: of two alone one is
-the slow half of a chirp, or what comes before an arm takes its load."""
 
 
 @dataclass(frozen=True)
@@ -129,10 +114,10 @@ def draft(
     silent = untold(given.model, now.check.found, now.check.locked)
     turned = drafting.other_way(now)
     coarse = [] if turned else now.coarse
-    short, smooth = _short(now.rig, now.part), _smooth(now.mode)
-    short += [words for one in others for words in _short(now.rig, one)]
+    short, smooth = too_short(now.rig, now.part), _smooth(now.mode)
+    short += [words for one in others for words in too_short(now.rig, one)]
     words = f"{now.mode.mode}: {now.mode.why}"
-    stretch = 0.0 if short else _stretch(now, log)
+    stretch = 0.0 if short else held_stretch(now, log)
     found = (
         *given.notes,
         *log.notes,
@@ -158,35 +143,6 @@ def draft(
     )
 
 
-def _stretch(now: Version, log: LogColumns) -> float:
-    """Length of stretches to hold out [s]; a last one of half a length is one, too.
-
-    Shorter than usual where few would be had, and the shortest that is enough where the usual one
-    is not; 0 where none is, or the log is in pieces already.
-    """
-    length = max(STRETCH, float(np.ceil(ROWS / now.mode.rate)))
-    if now.mode.horizon:
-        return 0.0
-    part, whole = now.part, log.period * (log.rows - 1)
-    if float(np.ptp(part.time)) <= 1.5 * length < whole:  # a part alone was simulated
-        return length
-    if len(part.time) < FEWEST:
-        return 0.0
-    shortest = enough(part, now.mode.rate)
-    few = max(shortest, float(f"{float(np.ptp(part.time)) / STRETCHES:.2g}"))
-    lengths = (min(length, few), length, shortest)
-    return next((one for one in lengths if _splits(now.rig, part, one)), 0.0)
-
-
-def _splits(rig: Rig, part: Recording, length: float) -> bool:
-    """Whether stretches of a length [s] are two or more, each long enough for a diagnosis."""
-    try:
-        fit, held = alternate(part, length, rig.description.rate)
-    except InvalidInputError:
-        return False
-    return not any(_short(rig, one) for one in (*fit, *held))
-
-
 def _slower(log: LogColumns, names: Sequence[str]) -> list[str]:
     """That readings come more slowly than rows, if they do."""
     if not names:
@@ -208,18 +164,6 @@ def _smooth(mode: Chosen) -> list[str]:
         f"{', '.join(found)}: low-passed, which took the noise away: half a per cent of the size is"
         " assumed, write what you know; were the positions filtered alike?"
     ]
-
-
-def _short(rig: Rig, part: Recording) -> list[str]:
-    """That a log, or a piece of it, is too short for a diagnosis, if it is."""
-    if len(part.time) < FEWEST:  # a clock in another unit, which is told
-        return []
-    parts = pieces(rig, part)
-    try:
-        check_lengths(MjcfForward.of(rig), parts, rig.description.rate)
-    except InvalidInputError as short:
-        return [f"too short for a diagnosis: {short}"]
-    return []
 
 
 def _guesses(check: Checked, mode: Chosen) -> tuple[Guess, ...]:
