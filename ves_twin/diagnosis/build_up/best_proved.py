@@ -1,14 +1,20 @@
-"""best_proved, most_promising: of some choices of causes the one that is proved to predict best."""
+"""best_proved, promising: of some choices of causes the one that is proved to predict best."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
+
+import numpy as np
 
 from ves_twin.core.types import FloatArray
 from ves_twin.diagnosis.build_up.halves import Halves
-from ves_twin.diagnosis.build_up.offer import least_left
+from ves_twin.diagnosis.build_up.offer import left_of
 from ves_twin.diagnosis.build_up.weighed import weighed
+
+BEHIND = 50.0
+"""Nats by which a choice may leave more of held-out rows than the best, and be fitted in full all
+the same. TODO"""
 
 
 def best_proved(
@@ -29,28 +35,70 @@ def best_proved(
     Returns:
         Its trials, and the labels with those of that choice; none where nothing is proved.
     """
-    best = _best(halves, sets, known)
-    return best[1:] if best else ([], known)
+    found = _each(halves, sets, known)
+    if not found:
+        return [], known
+    best = found[int(np.argmin(_left_of(halves, found)))]
+    return list(best.proved), best.labels
 
 
-def most_promising(halves: Halves, sets: Sequence[Sequence[int]], known: frozenset[str]) -> int:
-    """The same set by its number; the first one where nothing is proved of any."""
-    best = _best(halves, sets, known)
-    return best[0] if best else 0
+def promising(halves: Halves, sets: Sequence[Sequence[int]], known: frozenset[str]) -> list[int]:
+    """Which choices are worth a full fit, by their numbers, the one that promises most first.
+
+    By what is proved of each linear about the point. One of which nothing is comes last: a full fit
+    may move its columns. One that leaves held-out rows BEHIND the best is none, nor one that is
+    there already.
+
+    Args:
+        halves: linear about a point.
+        sets: choices, each a few trials.
+        known: labels of the causes that were put to proof before.
+    """
+    found = {one.number: one for one in _each(halves, sets, known)}
+    every = dict.fromkeys(frozenset(some) for some in sets)
+    first = [next(n for n, some in enumerate(sets) if frozenset(some) == one) for one in every]
+    left = dict(zip(found, _left_of(halves, list(found.values())), strict=True))
+    least = min(left.values(), default=0.0)
+    return sorted(
+        (n for n in first if left.get(n, least) <= least + BEHIND),
+        key=lambda n: left.get(n, np.inf),
+    )
 
 
-def _best(
-    halves: Halves, sets: Sequence[Sequence[int]], known: frozenset[str]
-) -> tuple[int, list[int], frozenset[str]] | None:
-    """Its number, what is proved of it, and the labels with its own; None where nothing is."""
-    regression, held = halves.regression, halves.held
-    found, left = list[tuple[int, list[int], frozenset[str]]](), list[FloatArray]()
+@dataclass(frozen=True)
+class _Promise:
+    """What is proved of a choice, linear about a point.
+
+    Attributes:
+        number: of the choice.
+        proved: its trials.
+        labels: of all that was put to proof.
+        left: of held-out rows (rows, c).
+    """
+
+    number: int
+    proved: tuple[int, ...]
+    labels: frozenset[str]
+    left: FloatArray
+
+
+def _each(halves: Halves, sets: Sequence[Sequence[int]], known: frozenset[str]) -> list[_Promise]:
+    """Of each different choice of which anything is proved."""
+    regression, held, found = halves.regression, halves.held, list[_Promise]()
     numbers = {tuple(some): n for n, some in reversed(list(enumerate(sets))) if some}
     for chosen, number in sorted(numbers.items(), key=lambda item: item[1]):
         labels = frozenset(regression.trials[n].cause.label for n in chosen)
         proof = weighed(regression, held, chosen, len(known - labels))
         if proof.proved:
             fit = regression.solve(proof.proved, proof.bench.fit.whitening)
-            found.append((number, list(proof.proved), known | labels))
-            left.append(replace(proof.bench, fit=fit).residual(proof.proved))
-    return found[least_left(held, regression.quietest, left)] if found else None
+            left = replace(proof.bench, fit=fit).residual(proof.proved)
+            found.append(_Promise(number, tuple(proof.proved), known | labels, left))
+    return found
+
+
+def _left_of(halves: Halves, found: Sequence[_Promise]) -> list[float]:
+    """What each leaves of held-out rows, see `left_of`."""
+    if not found:
+        return []
+    quietest = halves.regression.quietest
+    return [float(x) for x in left_of(halves.held, quietest, [one.left for one in found])]

@@ -125,3 +125,28 @@ def test_a_sign_is_told_where_a_simulation_of_the_whole_log_explains_nothing(tmp
     asked = "\n".join(draft(path, [log], tmp_path / "machine.toml").look)
     # mirrored it is the same machine: turning the drive and the lower joint is right, too
     assert ("turned" in asked) is (sign < 0.0), asked
+
+
+def test_dry_friction_that_the_model_lacks_is_no_other_unit(tmp_path):
+    """Of a worm drive in order a tenth of its torque explained 84 %, and was asked after."""
+    text = """<mujoco><option timestep="0.002" integrator="implicitfast" gravity="0 0 0"/>
+    <worldbody><body><joint name="shaft" axis="0 0 1" damping="3e-4"{rubs}/>
+    <inertial pos="0 0 0" mass="0.02" diaginertia="2e-5 2e-5 2e-5"/></body></worldbody>
+    <actuator><motor name="drive" joint="shaft"/></actuator></mujoco>"""
+    given, true = tmp_path / "shaft.xml", text.format(rubs=' frictionloss="0.03"')
+    given.write_text(text.format(rubs=""))
+    model = mujoco.MjModel.from_xml_string(true)
+    data, rng = mujoco.MjData(model), np.random.default_rng(1)
+    torque = 0.036 * np.tanh(4.0 * np.sin(2.0 * np.pi * TIME / 3.0))
+    speed = np.zeros_like(TIME)
+    for n, u in enumerate(torque):
+        speed[n] = data.qvel[0]
+        data.ctrl[:] = u
+        mujoco.mj_step(model, data, 5)
+    speed += 0.02 * rng.standard_normal(len(TIME))
+    log = tmp_path / "log.csv"
+    rows = np.column_stack([TIME, speed, torque])
+    np.savetxt(log, rows, "%.6g", ",", header="t,shaft_speed_rad_s,drive_cmd", comments="")
+    asked = "\n".join(draft(given, [log], tmp_path / "machine.toml").look)
+    assert "with dry friction at shaft the model explains" in asked
+    assert "another unit" not in asked

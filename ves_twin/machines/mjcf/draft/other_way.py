@@ -11,6 +11,7 @@ from ves_twin.machines.mjcf.draft.predicted import least_explained
 from ves_twin.machines.mjcf.draft.spots import HINGE
 from ves_twin.machines.mjcf.motion.forward import MjcfForward
 from ves_twin.machines.mjcf.rig.machine import Rig
+from ves_twin.machines.mjcf.rig.transmission import arms_of
 
 BETTER = 0.3
 """Share of a signal's power by which the other sign must explain more. Assumed: of a swing about
@@ -28,6 +29,14 @@ QUESTIONS = {
     1.0 / DEGREE: "times 180/pi, {}: is it in radians?",
 }
 """What a reading is multiplied with, and what is asked where that fits better."""
+
+LEVELS = (0.3, 0.6, 0.9)
+"""Dry friction that is tried, as shares of a drive's mean effort."""
+
+AS_GOOD = 0.1
+"""Share of a signal's power by which a unit may explain more than dry friction, which is likelier:
+of a worm drive in order 84 % was explained by a tenth of its torque, its damping for its friction,
+and that was asked after."""
 
 UNITS = (0.01, 0.1, 10.0, 100.0)
 """What a command is multiplied with besides: a gear that the model has, too, per cent, mN m."""
@@ -72,4 +81,25 @@ def other_way(rig: Rig, recording: Recording) -> list[str]:
         question = QUESTIONS.get(factor, other).format(f"{explains} as it is")
         found.append((share, f"{names[0]} {question}"))
     share, sentence = max(found)
+    rubbed, joint = _rubbed(rig, recording)
+    if joint and rubbed > share - AS_GOOD:
+        rubs = f"{within}with dry friction at {joint} the model explains {rubbed:.0%} {of}"
+        share, sentence = rubbed, f"{rubs}, {before:.0%} as it is: a diagnosis looks for it"
     return [sentence] if share > before + BETTER else []
+
+
+def _rubbed(rig: Rig, recording: Recording) -> tuple[float, str]:
+    """What the model explains with dry friction at the joint where it helps most, and that joint.
+
+    Of LEVELS of the mean effort of its drive.
+    """
+    forward, found = MjcfForward.of(rig), [(-np.inf, "")]
+    known = {parameter.name for parameter in forward.parameters}
+    for actuator, signal in rig.description.drive.actuators.items():
+        command = np.abs(np.nan_to_num(recording[signal]))
+        mean = float(np.sum(command**2) / max(float(np.sum(command)), 1e-30))  # rests do not count
+        for joint, arm in arms_of(rig.model, actuator).items():
+            name = f"coulomb_friction@{joint}:level"
+            levels = [{name: share * abs(arm) * mean} for share in LEVELS if name in known]
+            found += [(least_explained(rig, recording, one), joint) for one in levels]
+    return max(found)

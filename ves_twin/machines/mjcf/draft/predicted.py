@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from types import MappingProxyType
 
 import numpy as np
 
@@ -64,16 +65,30 @@ def predicted(rig: Rig, recording: Recording) -> tuple[dict[str, float], list[st
     return {name: min(low) for name, low in shares.items()}, [*words, *_coarse(coarse, step)]
 
 
-def least_explained(rig: Rig, recording: Recording) -> float:
-    """Share of its power that the model explains of the signal that it explains least of."""
+def least_explained(
+    rig: Rig, recording: Recording, values: Mapping[str, float] | None = None
+) -> float:
+    """Share of its power that the model explains of the signal that it explains least of.
+
+    Args:
+        rig: a drafted machine.
+        recording: of its log.
+        values: parameter -> value; as the file has it if None.
+    """
     parts = pieces(rig, recording)
-    return min(_explained(parts, _simulated(rig, parts), MjcfForward.of(rig).channels))
+    found = _simulated(rig, parts, values=values or {})
+    return min(_explained(parts, found, MjcfForward.of(rig).channels))
 
 
-def _simulated(rig: Rig, parts: Sequence[Recording], finer: bool = False) -> list[FloatArray]:
+def _simulated(
+    rig: Rig,
+    parts: Sequence[Recording],
+    finer: bool = False,
+    values: Mapping[str, float] = MappingProxyType({}),
+) -> list[FloatArray]:
     """Each piece (rows, c) as the model predicts it; at half its step where finer."""
     forward = MjcfForward.of(rig)
-    return [forward.simulate(Excitation.of(p, forward.drive), {}, finer) for p in parts]
+    return [forward.simulate(Excitation.of(p, forward.drive), values, finer) for p in parts]
 
 
 def _measured(parts: Sequence[Recording], channel: Channel) -> FloatArray:
