@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 import numpy as np
+from scipy.optimize import minimize_scalar
 
 from ves_twin.core.recording.recording import Recording
 from ves_twin.machines.mjcf.draft.predicted import least_explained
@@ -30,8 +31,8 @@ QUESTIONS = {
 }
 """What a reading is multiplied with, and what is asked where that fits better."""
 
-LEVELS = (0.3, 0.6, 0.9)
-"""Dry friction that is tried, as shares of a drive's mean effort."""
+TRIED = 15
+"""Levels of dry friction that are tried at a joint: each costs a simulation."""
 
 AS_GOOD = 0.1
 """Share of a signal's power by which a unit may explain more than dry friction, which is likelier:
@@ -82,24 +83,32 @@ def other_way(rig: Rig, recording: Recording) -> list[str]:
         found.append((share, f"{names[0]} {question}"))
     share, sentence = max(found)
     rubbed, joint = _rubbed(rig, recording)
-    if joint and rubbed > share - AS_GOOD:
-        rubs = f"{within}with dry friction at {joint} the model explains {rubbed:.0%} {of}"
-        share, sentence = rubbed, f"{rubs}, {before:.0%} as it is: a diagnosis looks for it"
-    return [sentence] if share > before + BETTER else []
+    if max(rubbed, share) <= before + BETTER:
+        return []
+    rubs = f"with dry friction at {joint} the model explains {rubbed:.0%} {of}"
+    if rubbed > share - AS_GOOD:
+        return [f"{within}{rubs}, {before:.0%} as it is: a diagnosis looks for it"]
+    return [f"{sentence} Or is it friction: {rubs}" if rubbed > before + BETTER else sentence]
 
 
 def _rubbed(rig: Rig, recording: Recording) -> tuple[float, str]:
     """What the model explains with dry friction at the joint where it helps most, and that joint.
 
-    Of LEVELS of the mean effort of its drive.
+    Of the level that explains most, up to the mean effort of its drive; rests do not count for it.
     """
     forward, found = MjcfForward.of(rig), [(-np.inf, "")]
     known = {parameter.name for parameter in forward.parameters}
     for actuator, signal in rig.description.drive.actuators.items():
         command = np.abs(np.nan_to_num(recording[signal]))
-        mean = float(np.sum(command**2) / max(float(np.sum(command)), 1e-30))  # rests do not count
+        mean = float(np.sum(command**2) / max(float(np.sum(command)), 1e-30))
         for joint, arm in arms_of(rig.model, actuator).items():
             name = f"coulomb_friction@{joint}:level"
-            levels = [{name: share * abs(arm) * mean} for share in LEVELS if name in known]
-            found += [(least_explained(rig, recording, one), joint) for one in levels]
+            if name not in known or not abs(arm) * mean > 0.0:
+                continue
+
+            def left(share: float, name: str = name, most: float = abs(arm) * mean) -> float:
+                return 1.0 - least_explained(rig, recording, {name: share * most})
+
+            at = minimize_scalar(left, bounds=(0.0, 1.0), options={"maxiter": TRIED})
+            found.append((1.0 - float(at.fun), joint))
     return max(found)
