@@ -15,6 +15,8 @@ from ves_twin.machines.diagnose import diagnose
 from ves_twin.machines.mjcf.mjcf_machine import MjcfMachine
 from ves_twin.machines.mjcf.motion.forward import MjcfForward
 from ves_twin.machines.mjcf.plausible.implausible import implausible
+from ves_twin.machines.mjcf.plausible.reading import Reading
+from ves_twin.machines.mjcf.plausible.seen import Seen
 from ves_twin.machines.mjcf.rig.description import Mode
 from ves_twin.machines.mjcf.rig.machine import Rig
 from ves_twin.machines.mjcf.rig.transmission import told_by_motion
@@ -51,6 +53,20 @@ def swapped(recording: Recording, one: str, two: str) -> Recording:
 
 def test_a_machine_that_is_described_as_it_is_passes(machine):
     assert implausible(machine, recorded(machine)) is None
+
+
+@pytest.mark.parametrize("level", [0.0, 3.0])
+def test_an_effort_that_never_changes_tells_nothing(machine, level):
+    """Of an excavator at rest, its valve at zero, the duty was to be taken 3.7e18 times."""
+    still = recorded(machine)
+    force = np.full_like(still["drive.force"], level)
+    still = replace(still, signals={**still.signals, "drive.force": force})
+    seen = Seen.of(machine, still)
+    assert seen is not None
+    left = dict(zip(seen.names, seen.left(Reading("", "", {}, {})), strict=True))
+    assert left["drive.force"] == 0.0
+    assert 0.0 < left["hinge.torque"] < 0.1
+    assert implausible(machine, still) is None
 
 
 @pytest.mark.parametrize(

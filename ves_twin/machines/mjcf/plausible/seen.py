@@ -38,6 +38,9 @@ STRANGE = 20.0
 BESIDE = 0.5
 """Share of an effort's spread that an inertia more may leave, and its unit is right."""
 
+ROUNDING = 1e-12
+"""Spread of an effort, as a share of its size, below which it never changes."""
+
 QUIET = 1e-3
 """Speed, as a share of the fastest, over which a sign is smoothed."""
 
@@ -216,7 +219,12 @@ class Seen:
     def _share(
         self, actuator: str, effort: FloatArray, need: FloatArray, speed: FloatArray, rows: int
     ) -> float:
-        """Of one effort: what friction that resists, and an offset, leave beside what it needs."""
+        """Of one effort: what friction that resists, and an offset, leave beside what it needs.
+
+        None of one that never changes: it tells nothing, and its spread is rounding.
+        """
+        if float(np.ptp(effort)) <= ROUNDING * float(np.max(np.abs(effort))):
+            return 0.0
         model, corner = self.rig.model, self.rig.description.drive.smoothing
         own = speed[:, int(model.joint(driven_joint(model, actuator)).dofadr[0])]
         gain = float(model.actuator(actuator).gear[0] * model.actuator(actuator).gainprm[0])
