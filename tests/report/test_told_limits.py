@@ -124,14 +124,14 @@ def test_a_named_cause_that_a_law_changed_is_no_number_of_the_model():
     assert not check_sentence(told)
 
 
-def test_a_named_cause_whose_work_a_law_does_is_told_to_have_left_it_to_the_law():
-    """Friction of a screw was told as -1.8 to 1.8 mN m, and no friction pushes."""
+def test_a_named_cause_whose_work_a_law_may_do_is_told_beside_the_models_number():
+    """Friction of a screw was told as -1.8 to 1.8 mN m and nothing else, and no friction pushes."""
     plain = verdict()
     (cause,) = plain.causes
     name = f"{cause.effect}@{cause.target}:{next(iter(cause.parameters))}"
     none = replace(SIZE, low=SIZE.nominal - 1e3, high=SIZE.nominal + 1e3)
     words = tuned_words(replace(plain, tuned={name: none}))
-    assert words.endswith("as in the model, 100 kN/m: the law takes its place")
+    assert words.endswith("beside the law, not clear of the model's 100 kN/m")
 
 
 @pytest.mark.parametrize(("pull", "high", "told"), [(-3.8, 96e3, True), (-2.9, 96e3, False)])

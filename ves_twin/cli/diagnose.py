@@ -22,7 +22,10 @@ LAW_PICTURE = "law.png"
 PLANT = "plant.toml"
 """File of the extended machine, where it passed."""
 
-NO_LAW = "MJCF has of a law what friction is; diagnose --no-law finds numbers that need no law"
+NO_LAW = (
+    "these numbers stand beside the law, of which MJCF has friction and damping at most; diagnose"
+    " --no-law finds numbers that stand alone"
+)
 """What is said where the numbers of a model were found beside a law."""
 
 SUMMARY = "name what the simulation gets wrong in recordings, extend the plant, measure the gain"

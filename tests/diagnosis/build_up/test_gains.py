@@ -43,11 +43,15 @@ def test_what_trials_take_is_the_fall_of_the_squares(trials: tuple[int, ...]) ->
 @pytest.mark.parametrize("reach", [np.inf, 0.05])
 @pytest.mark.parametrize("widths", [(1, 1, 1, 1, 1), PER_TRIAL])
 def test_all_pairs_at_once_take_what_each_pair_takes(widths: tuple[int, ...], reach: float) -> None:
-    gains, *_ = drawn(widths, reach)
+    gains, columns, target = drawn(widths, reach)
     trials = list(range(len(widths)))
     every = gains.of_pairs(trials)
     assert list(every) == list(combinations(trials, 2))
-    assert list(every.values()) == pytest.approx([gains.of(*pair) for pair in every], rel=1e-9)
+    for pair, both in every.items():
+        own = columns[:, np.concatenate([gains.where[n] for n in pair])]
+        free = np.linalg.solve(own.T @ own + np.eye(own.shape[1]), own.T @ target)
+        least = taken(own, target, np.clip(free, -reach, reach))
+        assert both == pytest.approx(max(least, 0.0), rel=1e-9)
 
 
 def test_a_trial_takes_no_more_than_its_range_allows() -> None:
@@ -56,6 +60,7 @@ def test_a_trial_takes_no_more_than_its_range_allows() -> None:
     share = np.sign(wide.free(0)) * near.high
     assert near.of(0) == pytest.approx(taken(columns, target, share), rel=1e-9)
     assert 0.0 < near.of(0) < wide.of(0)
+    assert near.unbounded(0) == pytest.approx(wide.of(0), rel=1e-9)
 
 
 def test_a_trial_that_would_need_the_other_sign_takes_nothing() -> None:

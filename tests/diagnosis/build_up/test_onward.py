@@ -14,8 +14,8 @@ from ves_twin.diagnosis.build_up import best_proved as best_proved_module
 from ves_twin.diagnosis.build_up import in_full as in_full_module
 from ves_twin.diagnosis.build_up import judges as judges_module
 from ves_twin.diagnosis.build_up import trials as trials_module
-from ves_twin.diagnosis.build_up.best_proved import best_proved
-from ves_twin.diagnosis.build_up.builder import Builder
+from ves_twin.diagnosis.build_up.best_proved import best_proved, promising
+from ves_twin.diagnosis.build_up.builder import Builder, Start
 from ves_twin.diagnosis.build_up.in_full import _likeliest, in_full
 from ves_twin.diagnosis.build_up.offer import least_left
 from ves_twin.diagnosis.build_up.plain_selector import PlainSelector
@@ -368,3 +368,33 @@ def test_where_runs_are_dear_a_bent_cause_has_fewer_sizes(forward):
     fewer, _ = trials_at(runs, runs.origin, Library(forward.hypotheses, fewer=True))
     assert {t for t in fewer if t.bent} < {t for t in every if t.bent}
     assert {t.cause for t in fewer} == {t.cause for t in every}
+
+
+def test_what_is_at_work_and_adds_nothing_is_offered_once(forward, monkeypatch):
+    """From a start that both ways keep an offer comes; beside an earlier one it is none."""
+    builder = builder_of(forward)
+    cause = {one.label: one for one in forward.hypotheses}["actuator_gain@valve"]
+    trial = Trial(cause, (1.0,), positive=True, bent=True)
+    choose(monkeypatch, *2 * (lambda *_: ("gain",),))
+    point = builder.fitted.runs.origin.copy()
+    point[builder.fitted.runs.indices(cause)] = 1.0
+    halves = builder.halves(point, (trial,))
+    assert builder.offers(halves, point, (trial,))
+    found = builder.offers(halves, point, (trial,), frozenset({cause.label}))
+    assert len(found) < 2
+    assert cause.label in builder.best(Start(point, (trial,))).proved
+
+
+@pytest.mark.parametrize(("behind", "ways"), [(1e9, {0, 1}), (-1.0, set())])
+def test_a_choice_that_is_far_behind_is_not_fitted_in_full(forward, monkeypatch, behind, ways):
+    builder = builder_of(forward)
+    halves = builder.halves(builder.fitted.runs.origin, ())
+    kinds = [trial.cause.effect for trial in halves.regression.trials]
+    good = [kinds.index("actuator_gain"), kinds.index("actuator_deadband")]
+    poor = [kinds.index("actuator_asymmetry")]
+    known = frozenset[str]()
+    assert promising(halves, [poor, good], known)[0] == 1
+    assert promising(halves, [good, good[::-1]], known) in ([0], [1])
+    assert promising(halves, [[]], known) == [0]
+    monkeypatch.setattr(best_proved_module, "BEHIND", behind)
+    assert set(promising(halves, [poor, good], known)) == ways

@@ -122,7 +122,8 @@ class Builder:
         frictions, an excavator's valve), and plain squares have few independent rows (TX40). Of
         the choices that plain squares make on their way, and of all usual frictions, with rotors
         and without, alone and beside the last choice, the best is offered, too. The choice that
-        promises more is fitted in full first: there may be no time for the other.
+        promises more is fitted in full first: there may be no time for the other. One that is far
+        behind is not, nor one that adds nothing to what was offered before.
 
         Args:
             halves: linear about the point.
@@ -137,10 +138,10 @@ class Builder:
             (Selector, Selector(halves.regression).run(begin)),
             (PlainSelector, path[-1]),
         ]
-        if present:
+        if known:  # what is at work there was offered already
             ways = [(way, chosen) for way, chosen in ways if set(chosen) != set(begin)]
         found = list[Offer]()
-        for n in promising(halves, [chosen for _, chosen in ways], known):
+        for n in promising(halves, [chosen for _, chosen in ways], known) if ways else ():
             way, chosen = ways[n]
             if found and self.fitted.runs.budget.skips(f"causes chosen by {NAMES[way]}"):
                 return found

@@ -40,14 +40,17 @@ class Gains:
             return self._alone[trials[0]]
         return self._taken(trials)
 
+    def unbounded(self, trial: int) -> float:
+        """Squares that a trial alone would take, whatever its range."""
+        return float(self.slope[self.where[trial]] @ self.free(trial))
+
     def of_pairs(self, trials: Sequence[int]) -> dict[tuple[int, int], float]:
-        """The same of every two: of single columns all at once."""
-        pairs = list(combinations(trials, 2))
-        if any(len(self.where[n]) > 1 for n in trials):
-            return {pair: self._taken(pair) for pair in pairs}
+        """What every two take, as `of` has it: of single columns all at once."""
         at = np.array([self.where[n][0] for n in trials], int)
         taken = self._of_two(*(at[k] for k in np.triu_indices(len(trials), 1)))
-        return dict(zip(pairs, taken.tolist(), strict=True))
+        found = dict(zip(combinations(trials, 2), taken.tolist(), strict=True))
+        wide = {n for n in trials if len(self.where[n]) > 1}
+        return found | {pair: self._taken(pair) for pair in found if wide.intersection(pair)}
 
     @cached_property
     def _alone(self) -> dict[int, float]:

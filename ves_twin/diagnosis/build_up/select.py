@@ -160,7 +160,7 @@ class Selector:
         """
         regression = self.regression
         gains = regression.plain_gains(fit, rest)
-        ranked = sorted(rest, key=gains.of, reverse=True)
+        ranked = sorted(rest, key=gains.unbounded, reverse=True)
         sound = (n for n in ranked if not regression.impossible(n, gains.free(n)))
         best = next(sound, rest[0])
         if best in pick:

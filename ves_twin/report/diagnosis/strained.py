@@ -45,9 +45,10 @@ def tuned_words(verdict: Verdict) -> str:
 
 
 def _beside_law(one: Estimate) -> str:
-    """Size of a cause where the law is at work: none of it, where the law does all of its work."""
+    """Size of a cause where the law is at work."""
     if one.low <= one.nominal <= one.high:
-        return f"as in the model, {quantity(one.nominal, one.unit)}: the law takes its place"
+        model = quantity(one.nominal, one.unit)
+        return f"{interval_words(one)} beside the law, not clear of the model's {model}"
     return f"{interval_words(one)} beside the law"
 
 

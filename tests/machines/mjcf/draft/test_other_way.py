@@ -127,8 +127,8 @@ def test_a_sign_is_told_where_a_simulation_of_the_whole_log_explains_nothing(tmp
     assert ("turned" in asked) is (sign < 0.0), asked
 
 
-def test_dry_friction_that_the_model_lacks_is_no_other_unit(tmp_path):
-    """Of a worm drive in order a tenth of its torque explained 84 %, and was asked after."""
+def test_dry_friction_that_the_model_lacks_is_asked_after_before_another_unit(tmp_path):
+    """Of a worm drive in order a tenth of its torque explained 84 %, and was asked after alone."""
     text = """<mujoco><option timestep="0.002" integrator="implicitfast" gravity="0 0 0"/>
     <worldbody><body><joint name="shaft" axis="0 0 1" damping="3e-4"{rubs}/>
     <inertial pos="0 0 0" mass="0.02" diaginertia="2e-5 2e-5 2e-5"/></body></worldbody>
@@ -149,4 +149,6 @@ def test_dry_friction_that_the_model_lacks_is_no_other_unit(tmp_path):
     np.savetxt(log, rows, "%.6g", ",", header="t,shaft_speed_rad_s,drive_cmd", comments="")
     asked = "\n".join(draft(given, [log], tmp_path / "machine.toml").look)
     assert "with dry friction at shaft the model explains" in asked
-    assert "another unit" not in asked
+    before, _, after = asked.partition("with dry friction at shaft")
+    assert "another unit" not in before
+    assert "a diagnosis looks for it" in after

@@ -41,11 +41,21 @@ def test_dry_and_viscous_friction_are_carried_whole(model):
     assert found.damping == pytest.approx(0.02, rel=1e-6)
     assert found.left < 1e-6
     assert found.words(model) == (
-        "frictionloss 0 -> 0.3 N*m, damping 0.01 -> 0.03 N*m*s/rad of joint shaft"
+        "frictionloss 0 -> 0.3 N*m, damping 0.01 -> 0.03 N*m*s/rad of joint shaft,"
+        " seen from -5 to 5 rad/s"
     )
     found.edit(model)
     assert model.dof_frictionloss[0] == pytest.approx(0.3)
     assert model.dof_damping[0] == pytest.approx(0.03)
+
+
+def test_a_model_that_is_driven_by_its_damping_is_not_mended_by_a_law(model):
+    model.dof_damping[0] = -0.02
+    found = carried_of(law(lambda v: -0.3 * np.sign(v)), model)
+    assert found is not None
+    assert found.friction_loss == pytest.approx(0.3, rel=1e-6)
+    assert found.damping == pytest.approx(0.0, abs=1e-6)
+    assert found.words(model) == "frictionloss 0 -> 0.3 N*m of joint shaft, seen from -5 to 5 rad/s"
 
 
 def test_what_friction_is_not_is_told_as_a_share(model):
@@ -58,8 +68,9 @@ def test_what_friction_is_not_is_told_as_a_share(model):
 
 
 def test_a_law_that_pushes_leaves_a_joint_with_no_less_than_no_friction(model):
-    found = carried_of(law(lambda v: 0.2 * v - 0.3 * np.sign(v), low=-5.0), model)
-    assert found is None or found.damping >= -0.01
+    found = carried_of(law(lambda v: 0.02 * v - 0.3 * np.sign(v)), model)
+    assert found is not None
+    assert found.damping == pytest.approx(-0.01, rel=1e-9)
     gentle = carried_of(law(lambda v: 0.004 * v), model)
     assert gentle is not None
     assert gentle.damping == pytest.approx(-0.004, rel=1e-6)
@@ -71,10 +82,20 @@ def test_a_law_that_pushes_leaves_a_joint_with_no_less_than_no_friction(model):
         law(np.sin, of="position@shaft"),
         law(lambda v: v**2),
         law(lambda v: 0.3 * np.sign(v)),
+        law(lambda v: -0.3 * np.sign(v), low=-0.2),
+        law(lambda v: 0.0 * v),
         law(np.sign, of="speed@shaft + arm", place="shaft + arm"),
         replace(law(np.sign), kind=LawKind.READING),
     ],
-    ids=["of the place", "even", "along motion", "of two joints", "of a reading"],
+    ids=[
+        "of the place",
+        "even",
+        "along motion",
+        "one way alone",
+        "none",
+        "of two joints",
+        "of a reading",
+    ],
 )
 def test_what_friction_does_not_do_is_not_carried(other, model):
     assert carried_of(other, model) is None

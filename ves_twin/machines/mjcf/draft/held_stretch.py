@@ -31,6 +31,9 @@ OTHERS = (0.8, 1.25, 0.6, 1.6)
 BOTH_WAYS = 0.1
 """Share of a joint's way from which the log is said to turn that way, too."""
 
+STEPS = 20
+"""Steps of a stretch in which a joint's way is counted: row by row noise goes both ways."""
+
 EVEN = 0.5
 """Share of a joint's way in one direction, over what an even split has, that either half must have.
 A worm gear went forth and back once in 20 s: stretches of 5 s fitted one way and held out the
@@ -41,8 +44,9 @@ def held_stretch(now: Version, log: LogColumns) -> float:
     """Length of stretches to hold out [s]; a last one of half a length is one, too.
 
     Shorter than usual where few would be had, and the shortest that is enough where the usual one
-    is not; another one where either half would turn a joint one way alone; 0 where none is, or the
-    log is in pieces already.
+    is not. Where in either half a joint would go less than EVEN of its way in one direction others
+    are tried, and the most even one is taken. 0 where none is long enough, or the log is in pieces
+    already.
     """
     length = max(STRETCH, float(np.ceil(ROWS / now.mode.rate)))
     if now.mode.horizon:
@@ -96,8 +100,8 @@ def _ways(rig: Rig, half: Sequence[Recording]) -> FloatArray:
     """How far each joint went up and down (joints, 2)."""
     found = []
     for signal, is_speed in _moving(rig).items():
-        steps = [one[signal][:, 0] for one in half if signal in one.signals]
-        steps = steps if is_speed else [np.diff(one) for one in steps]
+        rows = [one[signal][:, 0] for one in half if signal in one.signals]
+        steps = rows if is_speed else [np.diff(one[:: max(len(one) // STEPS, 1)]) for one in rows]
         every = np.concatenate([*steps, np.zeros(1)])
         found.append([np.sum(np.maximum(every, 0.0)), np.sum(np.maximum(-every, 0.0))])
     return np.reshape(np.nan_to_num(np.array(found, float)), (-1, 2))

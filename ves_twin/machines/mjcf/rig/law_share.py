@@ -20,6 +20,9 @@ PLACES = 2001
 AT_REST = 0.01
 """Share of that range about standing still that is left out: a sign is smoothed there."""
 
+BOTH_WAYS = 0.1
+"""Share of that range that either direction must have: one way alone, any force is a friction."""
+
 LEAST = 0.5
 """Share of a law's mean square that friction must take; below, it is another law."""
 
@@ -35,12 +38,14 @@ class LawShare:
         friction_loss: f [N, N m].
         damping: d [N s/m, N m s/rad].
         left: rms of the rest as a share of the law's.
+        seen: least and largest speed at which the law was seen; it is held beyond, and they go on.
     """
 
     joint: str
     friction_loss: float
     damping: float
     left: float
+    seen: tuple[float, float]
 
     def edit(self, model: mujoco.MjModel) -> None:
         """Add it to a model."""
@@ -54,8 +59,12 @@ class LawShare:
         told = []
         for (attribute, size), unit in zip(self._sizes(), units, strict=True):
             before = attribute.read(model, self.joint)
-            told.append(f"{attribute.name} {before:.6g} -> {before + size:.6g}{unit_tail(unit)}")
-        return f"{', '.join(told)} of joint {self.joint}"
+            ends = [f"{value:.6g}" for value in (before, before + size)]
+            if ends[0] != ends[1]:
+                told.append(f"{attribute.name} {' -> '.join(ends)}{unit_tail(unit)}")
+        within = " to ".join(f"{speed:.3g}" for speed in self.seen)
+        where = f"seen from {within} {joint_units(model, self.joint)[1]}"
+        return f"{', '.join(told)} of joint {self.joint}, {where}"
 
     def _sizes(self) -> list[tuple[Attribute, float]]:
         return [(FRICTION_LOSS, self.friction_loss), (DAMPING, self.damping)]
@@ -71,13 +80,16 @@ def carried_of(law: Law, model: mujoco.MjModel) -> LawShare | None:
         model: that it acts on, with its friction loss and damping.
 
     Returns:
-        None of another kind or shape of law, or where friction takes less than LEAST of it.
+        None of another kind or shape of law, of one that was seen one way alone, or where friction
+        takes less than LEAST of it.
     """
     if law.kind is not LawKind.EFFORT or law.shape is not LawShape.TABLE:
         return None
     if law.of != (f"speed@{law.place}",) or len(joints_of(law.place)) > 1:
         return None
     low, high = law.knots[0][0], law.knots[0][-1]
+    if min(-low, high) < BOTH_WAYS * (high - low):
+        return None
     speed = np.linspace(low, high, PLACES)
     speed = speed[np.abs(speed) > AT_REST * (high - low)]
     effort = law.at(speed)
@@ -85,11 +97,12 @@ def carried_of(law: Law, model: mujoco.MjModel) -> LawShare | None:
     sizes = lsq_linear(columns, effort, (_least(model, law.place), np.inf), method="bvls").x
     rest = effort - columns @ sizes
     left = float(np.linalg.norm(rest) / max(float(np.linalg.norm(effort)), 1e-30))
-    if left**2 > 1.0 - LEAST:
+    if not left**2 <= 1.0 - LEAST or not np.any(effort):
         return None
-    return LawShare(law.place, float(sizes[0]), float(sizes[1]), left)
+    return LawShare(law.place, float(sizes[0]), float(sizes[1]), left, (low, high))
 
 
 def _least(model: mujoco.MjModel, joint: str) -> FloatArray:
     """What may be taken from friction loss and damping at most (2,), below zero."""
-    return -np.array([FRICTION_LOSS.read(model, joint), DAMPING.read(model, joint)])
+    there = [kind.read(model, joint) for kind in (FRICTION_LOSS, DAMPING)]
+    return np.array([min(-one, 0.0) for one in there], float)
