@@ -72,3 +72,25 @@ def test_a_heavy_part_that_nothing_drives_is_not_locked(tmp_path):
     found = draft(model, [log], tmp_path / "rig.toml")
     assert "locked" not in found.text
     assert any("no column tells the position of left, right" in words for words in found.look)
+
+
+def test_a_load_that_the_model_ties_to_a_measured_joint_is_told_to_be_left_out(tmp_path):
+    """A worm drive's load went unheard of: a third of what was left was its weight."""
+    text = """<mujoco><worldbody><body><joint name="motor" axis="0 0 1" damping="1e-3"/>
+    <inertial pos="0 0 0" mass="0.1" diaginertia="1e-3 1e-3 1e-3"/></body>
+    <body pos="0.1 0 0"><joint name="rope" type="slide" axis="0 0 1"/>
+    <inertial pos="0 0 0" mass="0.1" diaginertia="1e-5 1e-5 1e-5"/></body></worldbody>
+    <equality><joint joint1="rope" joint2="motor" polycoef="0 0.01 0 0 0"/></equality>
+    <actuator><motor name="drive" joint="motor"/></actuator></mujoco>"""
+    time = 0.005 * np.arange(1600)
+    angle = np.sin(1.3 * time) + 0.3 * np.sin(4.1 * time)
+    speed = np.gradient(angle, time)
+    torque = 1e-3 * np.gradient(speed, time) + 1e-3 * speed + 2e-3 * np.sign(speed) + 0.01
+    (tmp_path / "worm.xml").write_text(text)
+    rows = np.column_stack([time, angle, torque])
+    np.savetxt(tmp_path / "log.csv", rows, delimiter=",", header="t_s,motor_rad,drive_Nm")
+    found = draft(tmp_path / "worm.xml", [tmp_path / "log.csv"], tmp_path / "rig.toml")
+    assert 'locked = ["rope"]' in found.text
+    (words,) = (words for words in found.look if "equality" in words)
+    assert words.startswith("rope follows motor in the model (equality)")
+    assert not any("name its column" in words for words in found.look)

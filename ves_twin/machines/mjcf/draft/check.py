@@ -116,7 +116,7 @@ def _checked(log: LogColumns, matches: Matches, model: mujoco.MjModel, corner: f
     absent = [name for name in every if name not in moved]
     found, findings = followed(log, list(matches.found), model)
     found, said = in_degrees_by_stops(log, found, model)
-    findings += [*said, *words_of_locked(locked)]
+    findings += [*said, *words_of_locked(locked, model, found)]
     motion, explained, scales = None, dict[str, float](), dict[Match, float]()
     lifts, rubs, gravity = dict[str, Load](), tuple[str, ...](), ""
     before = len(findings)

@@ -49,11 +49,25 @@ def locked_joints(model: mujoco.MjModel, found: Sequence[Match]) -> tuple[str, .
     )
 
 
-def words_of_locked(names: Sequence[str]) -> list[str]:
-    """A sentence for people; none where nothing is locked."""
-    few = [*names[:FEW], *([f"{len(names) - FEW} more"] if len(names) > FEW else [])]
+def words_of_locked(
+    names: Sequence[str], model: mujoco.MjModel, found: Sequence[Match]
+) -> list[str]:
+    """Sentences for people; none where nothing is locked."""
+    told = {m.spot.joint or m.spot.name for m in found}
+    tied = {
+        name: other
+        for pair in _ties(model)
+        for name, other in (pair, pair[::-1])
+        if name in names and other in told
+    }
+    free = [name for name in names if name not in tied]
+    few = [*free[:FEW], *([f"{len(free) - FEW} more"] if len(free) > FEW else [])]
     words = f"no column tells {', '.join(few)}: taken as locked; if one moved, name its column"
-    return [words] if names else []
+    return [words] * bool(free) + [
+        f"{name} follows {other} in the model (equality) and no column tells it: taken as locked,"
+        f" what it adds to {other} is left out; give {other} that inertia (armature) and load"
+        for name, other in tied.items()
+    ]
 
 
 def _moved(model: mujoco.MjModel) -> set[str]:
@@ -62,13 +76,17 @@ def _moved(model: mujoco.MjModel) -> set[str]:
     on_tendon = model.actuator_trntype == int(mujoco.mjtTrn.mjTRN_TENDON)
     for tendon in model.actuator_trnid[on_tendon, 0].tolist():
         found |= {joint for joint, _ in tendon_joints(model, tendon)}
-    for k in range(model.neq):
-        ends = (int(model.eq_obj1id[k]), int(model.eq_obj2id[k]))
-        if int(model.eq_type[k]) != int(mujoco.mjtEq.mjEQ_JOINT) or min(ends) < 0:
-            continue
-        pair = {model.joint(i).name for i in ends}
-        found |= pair if found & pair else set()
+    for one, two in _ties(model):
+        found |= {one, two} if found & {one, two} else set()
     return found
+
+
+def _ties(model: mujoco.MjModel) -> list[tuple[str, str]]:
+    """Two joints each that an equality ties to one another."""
+    every = zip(model.eq_type, model.eq_obj1id, model.eq_obj2id, strict=True)
+    joint = int(mujoco.mjtEq.mjEQ_JOINT)
+    ends = [(int(a), int(b)) for kind, a, b in every if int(kind) == joint]
+    return [(model.joint(a).name, model.joint(b).name) for a, b in ends if min(a, b) >= 0]
 
 
 def _is_light(model: mujoco.MjModel, body: int, measured: Sequence[int]) -> bool:
