@@ -50,15 +50,15 @@ def other_way(rig: Rig, recording: Recording) -> list[str]:
     Of a motion that is integrated signs and units are not told by efforts: the model is simulated
     with each joint's readings, measured or imposed, and with each command, otherwise.
 
+    Dry friction at the joints that are driven is tried as well, and asked after beside: of a worm
+    drive in order a tenth of its torque explained 84 %, its damping in the place of its friction.
+
     Args:
         rig: a drafted machine whose commands are fed in.
         recording: of its log.
 
-    Dry friction at the joints that are driven is tried as well, and asked after beside: of a worm
-    drive in order a tenth of its torque explained 84 %, its damping in the place of its friction.
-
     Returns:
-        A sentence, two where friction explains it as well; none where nothing is worth a question.
+        A sentence, two where friction explains more as well; none where nothing is worth one.
     """
     told = rig.description
     joints: dict[str, list[str]] = {}
