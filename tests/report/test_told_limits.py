@@ -129,9 +129,12 @@ def test_a_named_cause_whose_work_a_law_may_do_is_told_beside_the_models_number(
     plain = verdict()
     (cause,) = plain.causes
     name = f"{cause.effect}@{cause.target}:{next(iter(cause.parameters))}"
-    none = replace(SIZE, low=SIZE.nominal - 1e3, high=SIZE.nominal + 1e3)
+    model = cause.parameters[name.rpartition(":")[2]].nominal
+    none = replace(SIZE, nominal=model + 5e3, low=model - 1e3, high=model + 1e3)
     words = tuned_words(replace(plain, tuned={name: none}))
     assert words.endswith("beside the law, not clear of the model's 100 kN/m")
+    clear = replace(none, low=model + 1e3, high=model + 9e3)
+    assert tuned_words(replace(plain, tuned={name: clear})).endswith("beside the law")
 
 
 @pytest.mark.parametrize(("pull", "high", "told"), [(-3.8, 96e3, True), (-2.9, 96e3, False)])

@@ -35,26 +35,30 @@ def tuned_words(verdict: Verdict) -> str:
         f" from the model's {quantity(one.nominal, one.unit)}"
         for pull, name, one in (_far(verdict, SHOWN_FROM) if verdict.causes else [])
     ]
+    named = _named(verdict)
     told += [
-        f"{spoken(label)} {_beside_law(one)}"
+        f"{spoken(name.rpartition(':')[0])} {_beside_law(one, named[name].nominal)}"
         for name, one in verdict.tuned.items()
-        if (label := name.rpartition(":")[0]) in _named(verdict)
+        if name in named
     ]
     more = f"; and {len(told) - TOLD} more (verdict.json)" if len(told) > TOLD else ""
     return "; ".join(told[:TOLD]) + more
 
 
-def _beside_law(one: Estimate) -> str:
-    """Size of a cause where the law is at work."""
-    if one.low <= one.nominal <= one.high:
-        model = quantity(one.nominal, one.unit)
-        return f"{interval_words(one)} beside the law, not clear of the model's {model}"
-    return f"{interval_words(one)} beside the law"
+def _beside_law(one: Estimate, model: float) -> str:
+    """Size of a cause where the law is at work, and what the model has where it may be that."""
+    words = f"{interval_words(one)} beside the law"
+    may_be = one.low <= model <= one.high
+    return f"{words}, not clear of the model's {quantity(model, one.unit)}" if may_be else words
 
 
-def _named(verdict: Verdict) -> set[str]:
-    """Labels of named causes, whose sizes are fitted anew beside a law."""
-    return {f"{cause.effect}@{cause.target}" for cause in verdict.causes}
+def _named(verdict: Verdict) -> dict[str, Estimate]:
+    """Sizes of named causes, as they were found without a law; they are fitted anew beside one."""
+    return {
+        f"{cause.effect}@{cause.target}:{name}": size
+        for cause in verdict.causes
+        for name, size in cause.parameters.items()
+    }
 
 
 def check_sentence(verdict: Verdict) -> str:
@@ -75,7 +79,7 @@ def _far(verdict: Verdict, sd: float) -> list[tuple[float, str, Estimate]]:
         (abs(one.pull), name, one)
         for name, one in verdict.tuned.items()
         if one.pull is not None and abs(one.pull) > sd
-        if name.rpartition(":")[0] not in _named(verdict)
+        if name not in _named(verdict)
         if not (one.at_limit or one.low <= one.nominal <= one.high)
     ]
     return sorted(far, key=lambda item: -item[0])

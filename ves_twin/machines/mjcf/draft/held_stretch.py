@@ -1,4 +1,4 @@
-"""held_stretch: how long stretches of a log should be that are fitted and held out in turn."""
+"""held_stretch, too_short: how long stretches should be that are fitted and held out in turn."""
 
 from __future__ import annotations
 
@@ -46,8 +46,8 @@ def held_stretch(now: Version, log: LogColumns) -> float:
 
     Shorter than usual where few would be had, and the shortest that is enough where the usual one
     is not. Where in either half a joint would go less than EVEN of its way in one direction others
-    are tried, and the most even one is taken. 0 where none is long enough, or the log is in pieces
-    already.
+    are tried: the first that is even enough is taken, else the most even one. 0 where none is long
+    enough, or the log is in pieces already.
     """
     length = max(STRETCH, float(np.ceil(ROWS / now.mode.rate)))
     if now.mode.horizon:
