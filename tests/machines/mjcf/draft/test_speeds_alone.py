@@ -52,7 +52,7 @@ def model(tmp_path):
 def test_a_log_that_is_right_is_left_as_it_is(log, model, write, tmp_path):
     found = draft(model, [write(log)], tmp_path / "rig.toml")
     assert not any("checked" in words or "turned" in words for words in found.look)
-    assert found.mode.startswith("control: not every position is told")
+    assert found.mode.endswith("the speed of wheel is integrated")
     assert min(found.explained.values()) > 0.9
 
 

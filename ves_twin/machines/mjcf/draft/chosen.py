@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Container, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
 import mujoco
@@ -12,6 +12,7 @@ from ves_twin.machines.mjcf.draft.check import Checked
 from ves_twin.machines.mjcf.draft.closed_chain import closed_chain
 from ves_twin.machines.mjcf.draft.estimates import noise_of, rest_of, travel
 from ves_twin.machines.mjcf.draft.home_of import FIRST, home_of
+from ves_twin.machines.mjcf.draft.induced import differentiations, induced, with_motion
 from ves_twin.machines.mjcf.draft.log_columns import LogColumns
 from ves_twin.machines.mjcf.draft.match import Match, Matches
 from ves_twin.machines.mjcf.draft.motion import band_of
@@ -20,6 +21,7 @@ from ves_twin.machines.mjcf.draft.refuse import refuse
 from ves_twin.machines.mjcf.draft.spots import ON_JOINT, Quantity, is_motor, single_joints
 from ves_twin.machines.mjcf.draft.swing import SHARE, turns_of
 from ves_twin.machines.mjcf.parts.chain import chain
+from ves_twin.machines.mjcf.parts.cyclic import is_cyclic
 from ves_twin.machines.mjcf.rig.description import CORNER, Mode
 
 BAND = 2.0
@@ -53,6 +55,7 @@ class Chosen:
         why: in words.
         rate: of the analysis [Hz].
         rated: why it is that, in words.
+        integrated: joints in MOTION of which a speed alone is told, and enough.
         smoothing: corner of the low-pass of positions [Hz].
         noise: column -> sd of one row in SI, and how it was told.
         either: the motion could be given as well.
@@ -73,6 +76,7 @@ class Chosen:
     homes: Mapping[str, tuple[float, str]] = field(default_factory=dict)
     typical: Mapping[str, Mapping[str, float]] = field(default_factory=dict)
     rated: str = "the efforts have no more in them"
+    integrated: tuple[str, ...] = ()
 
 
 def chosen(
@@ -88,9 +92,9 @@ def chosen(
     in, and the efforts of others are compared.
 
     Where motion is given, the band is that of the efforts, or the lower one in which the noise of
-    differentiated positions stays below DROWNED: it grows with the band's power of 2.5. A short
-    log, which leaves few rows in that band, is predicted from its efforts instead; where that tells
-    nothing, either, more rows are taken than the band has.
+    differentiated positions stays below DROWNED: it grows with the band's power of 2.5 (of speeds:
+    1.5). A short log, which leaves few rows in that band, is predicted from its efforts instead;
+    where that tells nothing, either, more rows are taken than the band has.
 
     Args:
         log: the columns.
@@ -118,6 +122,7 @@ def chosen(
     unknown = _moved_by(model) & single - {m.spot.joint for m in efforts}
     told = {m.spot.name for m in positions}
     imposed = tuple(sorted(unknown & told))
+    moving = [*positions, *_summed(log, check, efforts, told, model)]
     drives = [m for m in efforts if _is_plain(m, model) and m.spot.joint in told]
     wide = model.nv - len(check.locked)
     felt = closed_chain(model, [m.spot.joint for m in drives])
@@ -125,7 +130,8 @@ def chosen(
     if felt and not steady:
         moved_by = [m for m in positions if m.spot.name in felt]
         return _of_loops(log, moved_by, drives, model, noise, felt)
-    whole = check.motion is not None and single <= told and wide == len(single) and not together
+    moved = {m.spot.name for m in moving}
+    whole = check.motion is not None and single <= moved and wide == len(single) and not together
     if not whole or driven | unknown != single or not driven:
         free = sorted(single - driven)
         why = f"no effort is told at {', '.join(free)}" if free else "not every position is told"
@@ -136,8 +142,10 @@ def chosen(
     if steady:
         why = f"{', '.join(steady)} never changes, and what never changes is a command"
         return Chosen(Mode.CONTROL, why, RATES[1], check.corner, noise, imposed=imposed)
-    positions = [m for m in positions if m.spot.name in driven]
+    positions = [m for m in moving if m.spot.name in driven]
     why = "every joint has a position and an effort"
+    if summed := ", ".join(sorted(moved - told)):
+        why = f"every joint has a motion and an effort; the speed of {summed} is integrated"
     if unknown:
         why = f"every joint has a position; what moves {', '.join(imposed)} is not told"
     otherwise = Chosen(Mode.CONTROL, why, RATES[1], check.corner, noise, True, imposed)
@@ -163,8 +171,12 @@ def _of_motion(
         closed: why nothing can be predicted open loop; None: as far as is known, it can.
     """
     noise, band = dict(otherwise.noise), _band(log, efforts)
-    share = max(_induced(m, noise, efforts, model, log, band)[1] for m in positions)
-    quiet, loud = (band * (most / max(share, 1e-9)) ** 0.4 for most in (DROWNED, LOUD))
+    shares = [induced(m, noise, efforts, model, log, band)[1] for m in positions]
+    powers = [1.0 / (differentiations(m) + 0.5) for m in positions]
+    quiet, loud = (
+        band * min((most / max(share, 1e-9)) ** k for share, k in zip(shares, powers, strict=True))
+        for most in (DROWNED, LOUD)
+    )
     least = 0.5 * RATES[0] if closed is None else min(_swung(log, positions, model), loud)
     band = max(min(band, quiet), least)
     length, rate, rated = log.period * log.rows, 2.0 * band, Chosen.rated
@@ -176,17 +188,19 @@ def _of_motion(
         rate, rated = min(ENOUGH / length, 1.0 / log.period), "as many rows as a diagnosis needs"
     rate = _in_whole_rows(rate, log)
     band = min(band, 0.5 * rate) if rated != Chosen.rated else 0.5 * rate
-    sharp = {m.column: _induced(m, noise, efforts, model, log, band, rate) for m in positions}
+    sharp = {m.column: induced(m, noise, efforts, model, log, band, rate) for m in positions}
     worst = max(sharp, key=lambda column: sharp[column][1])
+    summed = {m.column: m.spot.name for m in positions if differentiations(m) == 1}
     if sharp[worst][1] > DROWNED and closed is None:
-        share = sharp[worst][1]
-        why = f"{worst} is too noisy to be differentiated twice ({share:.0%} of the effort)"
+        share, twice = sharp[worst][1], " twice" * (worst not in summed)
+        why = f"{worst} is too noisy to be differentiated{twice} ({share:.0%} of the effort)"
         return replace(otherwise, why=why)
     of_joint = {m.spot.name: sharp[m.column][0] for m in positions}
     for m in efforts:
-        noise[m.column] = _with_position(noise[m.column], of_joint[m.spot.joint])
+        noise[m.column] = with_motion(noise[m.column], of_joint[m.spot.joint])
     why = (closed or otherwise.why) + _beyond(efforts, log, band)
-    return Chosen(Mode.MOTION, why, rate, CORNER * band, noise, rated=rated)
+    names = tuple(summed.values())
+    return Chosen(Mode.MOTION, why, rate, CORNER * band, noise, rated=rated, integrated=names)
 
 
 def _swung(log: LogColumns, positions: Sequence[Match], model: mujoco.MjModel) -> float:
@@ -310,17 +324,35 @@ def _of_loops(
     The band is that of the efforts, or in which differentiated noise stays below DROWNED.
     """
     band = _band(log, drives)
-    share = max(_induced(m, noise, drives, model, log, band, felt=felt)[1] for m in positions)
+    share = max(induced(m, noise, drives, model, log, band, felt=felt)[1] for m in positions)
     band = max(min(band, band * (DROWNED / max(share, 1e-9)) ** 0.4), 0.5 * RATES[0])
     of_joint = {
-        m.spot.name: _induced(m, noise, drives, model, log, band, felt=felt)[0] for m in positions
+        m.spot.name: induced(m, noise, drives, model, log, band, felt=felt)[0] for m in positions
     }
     for m in drives:
-        noise[m.column] = _with_position(noise[m.column], of_joint[m.spot.joint])
+        noise[m.column] = with_motion(noise[m.column], of_joint[m.spot.joint])
     why = "the model's loops leave no motion but that of its drives, which have positions"
     homes = {m.column: home for m in positions if (home := home_of(m, model, log))}
     names = tuple(m.spot.name for m in positions)
     return Chosen(Mode.CONTROL, why, 2.0 * band, CORNER * band, noise, imposed=names, homes=homes)
+
+
+def _summed(
+    log: LogColumns,
+    check: Checked,
+    efforts: Sequence[Match],
+    told: Container[str],
+    model: mujoco.MjModel,
+) -> list[Match]:
+    """Speeds of joints without a position, where that changes no effort: their integral is enough.
+
+    None behind a command whose constant is fitted: by a motion it has the error of the model's
+    inertia in it (see `as_commanded`).
+    """
+    if any(m.fitted and is_command(log.said.get(m.column, m.column)) for m in efforts):
+        return []
+    speeds = [m for m in check.found if m.spot.quantity is Quantity.SPEED]
+    return [m for m in speeds if m.spot.name not in told and is_cyclic(model, m.spot.name)]
 
 
 def _is_plain(match: Match, model: mujoco.MjModel) -> bool:
@@ -331,38 +363,3 @@ def _moved_by(model: mujoco.MjModel) -> set[str]:
     """Joints that an actuator moves."""
     drives = [model.actuator(i) for i in range(model.nu)]
     return {model.joint(int(d.trnid[0])).name for d in drives if int(d.trntype[0]) == ON_JOINT}
-
-
-def _induced(
-    position: Match,
-    noise: Mapping[str, tuple[float, str]],
-    efforts: list[Match],
-    model: mujoco.MjModel,
-    log: LogColumns,
-    band: float,
-    rate: float = 0.0,
-    felt: Mapping[str, float] | None = None,
-) -> tuple[float, float]:
-    """Noise that a position makes in its joint's effort: of one row [SI], and as a share of it.
-
-    Of one row: that which makes as much on the rows of the analysis, twice the band if no rate.
-
-    White noise s of rows T apart, differentiated twice within a band f: s (2 pi)^2
-    sqrt(2 T f^5 / 5). The joint moves the inertia of its branch, or that which is `felt` there.
-    """
-    (effort,) = (m for m in efforts if m.spot.joint == position.spot.name)
-    sd, _ = noise[position.column]
-    pull = sd * (2.0 * np.pi) ** 2 * np.sqrt(2.0 * log.period * band**5 / 5.0)
-    actuator, joint = model.actuator(effort.spot.name), model.joint(position.spot.name)
-    gain = abs(float(actuator.gear[0] * actuator.gainprm[0])) or 1.0
-    inertia = model.dof_M0[int(joint.dofadr[0])] if felt is None else felt[position.spot.name]
-    within = float(inertia) * pull / gain
-    size = float(np.std(effort.factor * log.column(effort.column)))
-    return within * np.sqrt(1.0 / (log.period * (rate or 2.0 * band))), within / size
-
-
-def _with_position(own: tuple[float, str], induced: float) -> tuple[float, str]:
-    """Noise of an effort with that which its joint's position makes, and how it was told."""
-    sd, how = own
-    more = "; most of it is the position's, differentiated twice" if induced > sd else ""
-    return float(np.hypot(sd, induced)), how + more

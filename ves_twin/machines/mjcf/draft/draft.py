@@ -11,7 +11,13 @@ from ves_twin.machines.mjcf.draft.by_number import by_number
 from ves_twin.machines.mjcf.draft.check import Checked
 from ves_twin.machines.mjcf.draft.chosen import Chosen
 from ves_twin.machines.mjcf.draft.constants import with_constants
-from ves_twin.machines.mjcf.draft.draft_text import compared, signal_name, slower_of, used
+from ves_twin.machines.mjcf.draft.draft_text import (
+    compared,
+    integrated,
+    signal_name,
+    slower_of,
+    used,
+)
 from ves_twin.machines.mjcf.draft.drafting import Drafting
 from ves_twin.machines.mjcf.draft.estimates import LOW_PASSED
 from ves_twin.machines.mjcf.draft.given_model import GivenModel
@@ -176,6 +182,7 @@ def _guesses(check: Checked, mode: Chosen) -> tuple[Guess, ...]:
         if match.fitted:
             unit = f"{match.unit}, {match.constant}"
         sign = "-" if match.scale < 0.0 else ""
-        taken = f"{sign}{match.spot.label} [{unit}], {way} as {signal_name(match)}"
+        way = f"integrated, {way}" if integrated(match, mode) else way
+        taken = f"{sign}{match.spot.label} [{unit}], {way} as {signal_name(match, mode)}"
         found.append(Guess(match.column, taken, ", ".join(match.reasons), "; ".join(match.others)))
     return tuple(found)

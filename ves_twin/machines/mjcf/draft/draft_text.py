@@ -87,12 +87,12 @@ def draft_text(
     needed = [m for m in check.found if m.spot.joint and m.spot.joint in mode.imposed]
     lines += ["", "[compare]   # what drives must give; no drive is fed in"] if needed else []
     lines += [
-        f"{_quoted(signal_name(m))} = {{ actuator = {_quoted(m.spot.name)} }}" for m in needed
+        f"{_quoted(signal_name(m, mode))} = {{ actuator = {_quoted(m.spot.name)} }}" for m in needed
     ]
     fitted = any(match.fitted for match in check.found)
     why = "   # efforts by the fitted scale: they change with it" if fitted else ""
     lines += ["", f"[typical.joint]{why}", *_joints(log, check, mode, model)]
-    spans = list(_spans(log, check))
+    spans = list(_spans(log, check, mode))
     lines += ["", "[typical.signal]", *spans] if spans else []
     starts = list(_starts(log, check, mode)) if mode.mode is Mode.CONTROL else []
     lines += ["", "[start]", *starts] if starts else []
@@ -126,10 +126,17 @@ def _effects(check: Checked, model: mujoco.MjModel) -> str:
     return f'effects = [{"".join(own)}{{ kind = "*", on = ["*"] }}]   # {why}'
 
 
-def signal_name(match: Match) -> str:
+def signal_name(match: Match, mode: Chosen) -> str:
     """What the signal of a column is called."""
-    bare = re.sub(r"\W+", "_", match.spot.name)
-    return bare if match.spot.quantity is Quantity.SENSOR else f"{bare}.{match.spot.quantity.value}"
+    bare, quantity = re.sub(r"\W+", "_", match.spot.name), match.spot.quantity
+    if integrated(match, mode):
+        quantity = Quantity.POSITION
+    return bare if quantity is Quantity.SENSOR else f"{bare}.{quantity.value}"
+
+
+def integrated(match: Match, mode: Chosen) -> bool:
+    """Whether a speed is integrated, and fed in as its joint's position."""
+    return match.spot.quantity is Quantity.SPEED and match.spot.name in mode.integrated
 
 
 def compared(match: Match, mode: Chosen) -> bool:
@@ -146,7 +153,8 @@ def compared(match: Match, mode: Chosen) -> bool:
 def used(match: Match, mode: Chosen) -> bool:
     """Whether the mode feeds it in or predicts it."""
     fed = mode.mode is Mode.MOTION or match.spot.name in mode.imposed
-    return not (fed and match.spot.quantity is Quantity.SPEED)
+    speed = match.spot.quantity is Quantity.SPEED
+    return not (fed and speed) or integrated(match, mode)
 
 
 def _drive(mode: Chosen, locked: tuple[str, ...]) -> str:
@@ -209,15 +217,7 @@ def _signal(group: list[Match], mode: Chosen, log: LogColumns) -> str:
         keys["offset"] = f"{zero:.7g}"
     slower = [log.slower[c].repeats for c in slower_of(group, mode, log)]
     keys |= {"repeats": f"{max(slower)}"} if slower else {}
-    if first.spot.quantity in (Quantity.POSITION, Quantity.SPEED):
-        keys["joint"] = _quoted(first.spot.name)
-        if first.spot.quantity is Quantity.SPEED:
-            keys["of"] = _quoted("speed")
-    else:
-        kind = "actuator" if first.spot.quantity is Quantity.EFFORT else "sensor"
-        keys[kind] = _quoted(first.spot.name)
-        if len(group) < first.spot.width:
-            keys["axis"] = _quoted("xyz"[first.spot.axis])
+    keys |= _place(group, mode)
     if first.spot.joint and first.spot.joint in mode.imposed:
         del keys["actuator"]  # [compare] says it: here it would be fed in
     reasons = list(first.reasons) + ([] if first.told else [f"unit {first.unit} is a guess"])
@@ -232,7 +232,21 @@ def _signal(group: list[Match], mode: Chosen, log: LogColumns) -> str:
         )
     text = ", ".join(f"{key} = {value}" for key, value in keys.items())
     why = "; ".join([", ".join(reasons), *first.others])
-    return f"{_quoted(signal_name(first))} = {{ {text} }}   # {why}"
+    return f"{_quoted(signal_name(first, mode))} = {{ {text} }}   # {why}"
+
+
+def _place(group: list[Match], mode: Chosen) -> dict[str, str]:
+    """Keys of where the model has a signal."""
+    spot = group[0].spot
+    if spot.quantity in (Quantity.POSITION, Quantity.SPEED):
+        keys = {"joint": _quoted(spot.name)}
+        if integrated(group[0], mode):
+            return {**keys, "integrated": "true"}
+        speed = spot.quantity is Quantity.SPEED
+        return {**keys, "of": _quoted("speed")} if speed else keys
+    kind = "actuator" if spot.quantity is Quantity.EFFORT else "sensor"
+    axis = {"axis": _quoted("xyz"[spot.axis])} if len(group) < spot.width else {}
+    return {kind: _quoted(spot.name), **axis}
 
 
 def _joints(log: LogColumns, check: Checked, mode: Chosen, model: mujoco.MjModel) -> Iterator[str]:
@@ -278,13 +292,13 @@ def _speed(log: LogColumns, position: Match, corner: float) -> float:
     return typical(np.gradient(values, log.period))
 
 
-def _spans(log: LogColumns, check: Checked) -> Iterator[str]:
+def _spans(log: LogColumns, check: Checked, mode: Chosen) -> Iterator[str]:
     """Typical range of sensors; that of a joint's signals follows from the joint."""
     groups: dict[str, float] = {}
     for match in check.found:
         if match.spot.quantity is Quantity.SENSOR:
             size = travel(match.factor * log.column(match.column))
-            name = signal_name(match)
+            name = signal_name(match, mode)
             groups[name] = max(groups.get(name, 0.0), size)
     for name, size in groups.items():
         yield f"{_quoted(name)} = {{ span = {size:g} }}"

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -20,9 +20,11 @@ from ves_twin.data.formats.log import Kind, Log
 from ves_twin.data.formats.open_log import open_log
 from ves_twin.data.mapping.column_expression import ColumnExpression
 from ves_twin.data.repeats import unheld
+from ves_twin.machines.mjcf.parts.cyclic import turned_by
 from ves_twin.machines.mjcf.parts.joint_units import joint_units
 from ves_twin.machines.mjcf.parts.turned import turned
 from ves_twin.machines.mjcf.recordings.signals import rig_signals
+from ves_twin.machines.mjcf.rig.column import Column
 from ves_twin.machines.mjcf.rig.description import Mode, RigDescription
 from ves_twin.machines.mjcf.rig.machine import Rig
 
@@ -73,14 +75,15 @@ def read_rig_recording(path: Path, rig: Rig) -> Recording:
         said.append(f"{words}: {np.count_nonzero(twice)}")
     for name, column in told.signals.items():
         whole = [table.column(c, inside, path, held(rig, name), poses) for c in column.columns]
-        signals[name] = np.asarray(column.scale * np.stack(whole, axis=1) + column.offset)
+        signals[name] = _value(column, whole, time)
         if not poses and _turns(rig, name):
             angle, wraps = unwrapped(signals[name][:, 0], 2.0 * np.pi)
             signals[name] = angle[:, None]
             said += [f"{path.name}: {name} wraps {wraps} times: whole turns are added"] * (
                 wraps > 0
             )
-        read = [unheld(values, column.repeats) for values in signals[name].T]
+        repeats = 1 if column.integrated else column.repeats
+        read = [unheld(values, repeats) for values in signals[name].T]
         signals[name] = np.stack(read, axis=1)
     for name, column in told.signals.items():
         if column.into:
@@ -98,10 +101,20 @@ def read_rig_recording(path: Path, rig: Rig) -> Recording:
     return _even(Recording(time, signals, info), rig)
 
 
+def _value(column: Column, read: Sequence[FloatArray], time: FloatArray) -> FloatArray:
+    """A signal (n, w) of the columns behind it (n,)."""
+    if not column.integrated:
+        return np.asarray(column.scale * np.stack(read, axis=1) + column.offset)
+    (speed,) = read
+    angle = turned_by(column.scale * unheld(speed, column.repeats), time)
+    return np.asarray(angle[:, None] + column.offset)
+
+
 def _turns(rig: Rig, signal: str) -> bool:
     """Whether a signal is the angle of a joint."""
     one = rig.description.signals[signal]
-    if not one.joint or one.of != "position" or len(one.columns) != 1 or one.into:
+    told = one.of == "position" and not one.integrated
+    if not one.joint or not told or len(one.columns) != 1 or one.into:
         return False
     return joint_units(rig.model, one.joint)[0] == "rad"
 

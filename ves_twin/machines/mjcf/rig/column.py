@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Literal
+from typing import Annotated, Literal, Self
 
 from pydantic import Field, model_validator
 
@@ -20,6 +20,9 @@ LAB_UNITS = {
 }
 """Other units that a signal may have, which are converted -> SI unit."""
 
+INTEGRALS = {"rad/s": "rad", "m/s": "m"}
+"""Unit of a speed -> that of its integral."""
+
 Unit = Annotated[str, named("unit", sorted({*SI_UNITS, *LAB_UNITS}))]
 Number = float | str
 """A number in SI, or a text with a unit; the place that reads it knows which."""
@@ -34,6 +37,10 @@ class Column(Part):
     `compare` and none in `drive`: that mode and place decide whether it is fed in or compared.
     `repeats`: rows that a reading stands for until the next one comes; those between are taken
     straight. `axis`: the one number of three that is measured of the sensor, in its own frame.
+
+    An `integrated` column is a speed, in the unit of one. The position of its joint is the integral
+    of scale * column from the first row on, plus offset (rad or m): enough where efforts do not
+    hang on where the joint stands (a rotor, a wheel), else as good as the offset is.
     """
 
     columns: tuple[str, ...] = Field(min_length=1)
@@ -48,6 +55,7 @@ class Column(Part):
     actuator: str = ""
     sensor: str = ""
     axis: Literal["", "x", "y", "z"] = ""
+    integrated: bool = False
     source: str = ""
 
     @model_validator(mode="before")
@@ -57,13 +65,28 @@ class Column(Part):
         if not isinstance(content, dict):
             return content
         given, numbers = content.get("unit"), [content.get(k, 0.0) for k in ("scale", "offset")]
-        if not isinstance(given, str) or given not in LAB_UNITS or not all(map(_number, numbers)):
-            return content
-        si_unit = LAB_UNITS[given]
-        factor, zero = to_unit(given, si_unit, "unit")
-        scale, offset = content.get("scale", 1.0), content.get("offset", 0.0)
-        si = {"unit": si_unit, "scale": factor * scale, "offset": factor * offset + zero}
-        return {**content, **si}
+        if isinstance(given, str) and given in LAB_UNITS and all(map(_number, numbers)):
+            factor, zero = to_unit(given, LAB_UNITS[given], "unit")
+            scale, offset = content.get("scale", 1.0), content.get("offset", 0.0)
+            whole = content.get("integrated") is True  # an offset is one of the integral then
+            shift = offset if whole else factor * offset + zero
+            si = {"unit": LAB_UNITS[given], "scale": factor * scale, "offset": shift}
+            content = {**content, **si}
+        return _of_integral(content) if content.get("integrated") is True else content
+
+    @model_validator(mode="after")
+    def _of_one_joint(self) -> Self:
+        if self.integrated and (not self.joint or self.of == "speed" or len(self.columns) != 1):
+            raise ValueError("integrated: expected one column, and the joint whose position it is")
+        return self
+
+
+def _of_integral(content: dict[str, object]) -> dict[str, object]:
+    """With the unit of a speed's integral."""
+    unit = content.get("unit")
+    if unit not in INTEGRALS:
+        raise ValueError(f"integrated: unit {unit!r}; expected that of a speed, as rad/s")
+    return {**content, "unit": INTEGRALS[str(unit)]}
 
 
 def _number(value: object) -> bool:
