@@ -128,9 +128,12 @@ def test_a_sign_is_told_where_a_simulation_of_the_whole_log_explains_nothing(tmp
 
 
 def test_dry_friction_that_the_model_lacks_is_asked_after_before_another_unit(tmp_path):
-    """Of a worm drive in order a tenth of its torque explained 84 %, and was asked after alone."""
+    """Of a worm drive in order a tenth of its torque explained 84 %, and was asked after alone.
+
+    A spring of nearly nothing, so that its speed alone is no motion to be fed in.
+    """
     text = """<mujoco><option timestep="0.002" integrator="implicitfast" gravity="0 0 0"/>
-    <worldbody><body><joint name="shaft" axis="0 0 1" damping="3e-4"{rubs}/>
+    <worldbody><body><joint name="shaft" axis="0 0 1" damping="3e-4" stiffness="1e-5"{rubs}/>
     <inertial pos="0 0 0" mass="0.02" diaginertia="2e-5 2e-5 2e-5"/></body></worldbody>
     <actuator><motor name="drive" joint="shaft"/></actuator></mujoco>"""
     given, true = tmp_path / "shaft.xml", text.format(rubs=' frictionloss="0.03"')

@@ -31,6 +31,7 @@ from ves_twin.machines.mjcf.draft.swing import SHARE, turns_of
 from ves_twin.machines.mjcf.draft.turns_back import words_of_one_way
 from ves_twin.machines.mjcf.parts.cyclic import is_cyclic
 from ves_twin.machines.mjcf.parts.loops import freedom
+from ves_twin.machines.mjcf.parts.ties import Ties
 
 
 @dataclass(frozen=True)
@@ -109,6 +110,8 @@ def _checked(log: LogColumns, matches: Matches, model: mujoco.MjModel, corner: f
     positions = matches.of(Quantity.POSITION)
     locked, cyclic = locked_joints(model, matches.found), _cyclic(matches, model)
     moved = {*(m.spot.name for m in positions), *locked, *cyclic}
+    ties = Ties.of(model, moved, locked=locked)
+    moved |= {one.joint for one in ties.followers}
     drives = _drives(matches, model)
     every = [model.joint(i).name for i in range(model.njnt)]
     moved |= {*every} if drives else set()
@@ -116,7 +119,7 @@ def _checked(log: LogColumns, matches: Matches, model: mujoco.MjModel, corner: f
     absent = [name for name in every if name not in moved]
     found, findings = followed(log, list(matches.found), model)
     found, said = in_degrees_by_stops(log, found, model)
-    findings += [*said, *words_of_locked(locked, model, found)]
+    findings += [*said, *words_of_locked(locked, ties.followers)]
     motion, explained, scales = None, dict[str, float](), dict[Match, float]()
     lifts, rubs, gravity = dict[str, Load](), tuple[str, ...](), ""
     before = len(findings)

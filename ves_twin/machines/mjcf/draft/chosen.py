@@ -22,6 +22,7 @@ from ves_twin.machines.mjcf.draft.spots import ON_JOINT, Quantity, is_motor, sin
 from ves_twin.machines.mjcf.draft.swing import SHARE, turns_of
 from ves_twin.machines.mjcf.parts.chain import chain
 from ves_twin.machines.mjcf.parts.cyclic import is_cyclic
+from ves_twin.machines.mjcf.parts.ties import Ties
 from ves_twin.machines.mjcf.rig.description import CORNER, Mode
 
 BAND = 2.0
@@ -123,14 +124,16 @@ def chosen(
     told = {m.spot.name for m in positions}
     imposed = tuple(sorted(unknown & told))
     moving = [*positions, *_summed(log, check, efforts, told, model)]
+    moved = {m.spot.name for m in moving}
     drives = [m for m in efforts if _is_plain(m, model) and m.spot.joint in told]
-    wide = model.nv - len(check.locked)
+    follow = {one.joint for one in Ties.of(model, moved, locked=check.locked).followers}
+    single -= follow
+    wide = model.nv - len(check.locked) - len(follow)
     felt = closed_chain(model, [m.spot.joint for m in drives])
     steady = [m.column for m in efforts if m.column in log.steady]
     if felt and not steady:
         moved_by = [m for m in positions if m.spot.name in felt]
         return _of_loops(log, moved_by, drives, model, noise, felt)
-    moved = {m.spot.name for m in moving}
     whole = check.motion is not None and single <= moved and wide == len(single) and not together
     if not whole or driven | unknown != single or not driven:
         free = sorted(single - driven)

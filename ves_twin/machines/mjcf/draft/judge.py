@@ -69,6 +69,10 @@ TOOL = 10.0
 """Factor within which efforts are those of a model that lacks a tool, in its own unit."""
 
 
+_Asked = tuple[tuple[Match, ...], frozenset[str]]
+"""Columns of a motion, and joints that efforts are told of."""
+
+
 def _is_turned(new: list[Match], found: list[Match]) -> bool:
     """Whether a column counts the other way in a change."""
     return any(a.scale == -b.scale for a, b in zip(new, found, strict=True))
@@ -104,7 +108,7 @@ class Judge:
     locked: tuple[str, ...] = ()
     cyclic: tuple[str, ...] = ()
     drives: tuple[str, ...] = ()
-    _kept: dict[tuple[Match, ...], Motion] = field(default_factory=dict, init=False, compare=False)
+    _kept: dict[_Asked, Motion] = field(default_factory=dict, init=False, compare=False)
 
     def motion(self, found: list[Match]) -> Motion:
         """Along the positions as they are matched, and the speeds of joints without one.
@@ -112,11 +116,12 @@ class Judge:
         It is kept: a change of an effort's sign leaves it, and who weighs a change asks twice.
         """
         moving = tuple(m for m in found if m.spot.quantity is not Quantity.EFFORT)
-        if moving not in self._kept:
-            self._kept[moving] = self._motion(moving)
-        return self._kept[moving]
+        key = moving, frozenset(m.spot.joint for m in found) - {""}
+        if key not in self._kept:
+            self._kept[key] = self._motion(*key)
+        return self._kept[key]
 
-    def _motion(self, found: tuple[Match, ...]) -> Motion:
+    def _motion(self, found: tuple[Match, ...], pushed: frozenset[str]) -> Motion:
         positions = {}
         for m in found:
             if self.drives and m.spot.name not in self.drives:
@@ -130,7 +135,7 @@ class Judge:
                 time = np.arange(len(speed), dtype=float) * self.log.period
                 positions[m.spot.name] = turned_by(speed, time)
         loops = bool(self.drives)
-        return motion_of(self.model, positions, self.log.period, self.corner, loops)
+        return motion_of(self.model, positions, self.log.period, self.corner, loops, pushed)
 
     def corrected(self, found: list[Match]) -> tuple[list[Match], list[str], Mounted | None]:
         """With the changes of positions that explain more, the best first, and words for them.

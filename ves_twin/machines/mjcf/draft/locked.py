@@ -10,6 +10,7 @@ from ves_twin.machines.mjcf.draft.match import Match
 from ves_twin.machines.mjcf.draft.spots import Quantity, single_joints
 from ves_twin.machines.mjcf.parts.chain import chain
 from ves_twin.machines.mjcf.parts.loops import has_loops
+from ves_twin.machines.mjcf.parts.ties import Follower, Ties
 from ves_twin.machines.mjcf.rig.places import driven_joint, tendon_joints
 
 LIGHT = 0.1
@@ -25,6 +26,7 @@ def locked_joints(model: mujoco.MjModel, found: Sequence[Match]) -> tuple[str, .
 
     They have no column, no joint with one hangs on them, and they are driven (by what, no column
     tells), follow a driven one, or carry little. A whole robot's model beside the log of its arm.
+    Those that an equality ties to a joint with a column follow it, and are none.
 
     Returns:
         None of a machine without actuators, whose loops close, or without a measured position.
@@ -37,6 +39,7 @@ def locked_joints(model: mujoco.MjModel, found: Sequence[Match]) -> tuple[str, .
     ):
         return ()
     names = [model.joint(i).name for i in single_joints(model)]
+    told |= {one.joint for one in Ties.of(model, told).followers}
     bodies = {name: int(model.joint(name).bodyid[0]) for name in names}
     measured = [bodies[name] for name in names if name in told]
     moved = _moved(model)
@@ -49,24 +52,14 @@ def locked_joints(model: mujoco.MjModel, found: Sequence[Match]) -> tuple[str, .
     )
 
 
-def words_of_locked(
-    names: Sequence[str], model: mujoco.MjModel, found: Sequence[Match]
-) -> list[str]:
-    """Sentences for people; none where nothing is locked."""
-    told = {m.spot.joint or m.spot.name for m in found}
-    tied = {
-        name: other
-        for pair in _ties(model)
-        for name, other in (pair, pair[::-1])
-        if name in names and other in told
-    }
-    free = [name for name in names if name not in tied]
-    few = [*free[:FEW], *([f"{len(free) - FEW} more"] if len(free) > FEW else [])]
+def words_of_locked(names: Sequence[str], followers: Sequence[Follower]) -> list[str]:
+    """Sentences for people; none where nothing is locked, and nothing follows."""
+    few = [*names[:FEW], *([f"{len(names) - FEW} more"] if len(names) > FEW else [])]
     words = f"no column tells {', '.join(few)}: taken as locked; if one moved, name its column"
-    return [words] * bool(free) + [
-        f"{name} follows {other} in the model (equality) and no column tells it: taken as locked,"
-        f" what it adds to {other} is left out; give {other} that inertia (armature) and load"
-        for name, other in tied.items()
+    return [words] * bool(names) + [
+        f"{one.joint} follows {one.leader} as the model has it (equality): what it needs is needed"
+        f" at {one.leader}"
+        for one in followers
     ]
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass
 
 import mujoco
@@ -12,6 +12,7 @@ from scipy.signal import welch
 from ves_twin.core.types import FloatArray
 from ves_twin.machines.mjcf.motion.inverse import smoothed
 from ves_twin.machines.mjcf.parts.loop_motion import LoopMotion
+from ves_twin.machines.mjcf.parts.ties import Ties
 
 MOST = 1500
 """Rows at which the efforts are computed: enough to tell a sign, and a tenth of a second."""
@@ -46,6 +47,7 @@ def motion_of(
     period: float,
     corner: float,
     loops: bool = False,
+    pushed: Collection[str] = (),
 ) -> Motion:
     """MuJoCo's inverse dynamics along recorded positions, low-passed without phase.
 
@@ -56,6 +58,7 @@ def motion_of(
         corner: of the low-pass [Hz].
         loops: others move as the model's loops have it, and what they need is needed at those
             whose positions are told.
+        pushed: joints that have efforts: what joints that follow these need is needed there.
     """
     count = len(next(iter(positions.values())))
     trim = min(int(1.0 / (corner * period)), count // 8)
@@ -70,7 +73,11 @@ def motion_of(
         q[:, at], v[:, dof] = smooth[rows], speed[rows]
         a[:, dof] = np.gradient(speed, period)[rows]
     if not loops:
-        return Motion(rows, v, *_needed(model, q, v, a, np.zeros_like(a)))
+        ties, coasts = Ties.of(model, positions, pushed), np.zeros_like(a)
+        ties.follow(model, (q, v, coasts))
+        ties.follow(model, (q, v, a))
+        effort, steady = (ties.at_leaders(model, q, one) for one in _needed(model, q, v, a, coasts))
+        return Motion(rows, v, effort, steady)
     joints = [model.joint(joint) for joint in positions]
     drives = np.array([int(joint.dofadr[0]) for joint in joints])
     along = q[:, [int(joint.qposadr[0]) for joint in joints]]

@@ -20,6 +20,7 @@ from ves_twin.effects.shifted import shifted
 from ves_twin.machines.mjcf.motion.work import Work, measured_variables, sensor_rows, variables
 from ves_twin.machines.mjcf.parts.inertials import with_inertials_of
 from ves_twin.machines.mjcf.parts.rigid_efforts import Moved, RigidEfforts, inverted
+from ves_twin.machines.mjcf.parts.ties import Ties
 from ves_twin.machines.mjcf.rig.transmission import Transmission
 
 ORDER = 4
@@ -80,16 +81,17 @@ def efforts_along(
 
 def moved_along(work: Work, position: FloatArray, speed: FloatArray, pull: FloatArray) -> Moved:
     """Rigid-body efforts along qpos (n, nq), qvel and qacc (n, nv)."""
-    return inverted(_rigid(work.model), position, speed, pull)
+    return inverted(_rigid(work.model, work.ties), position, speed, pull)
 
 
-def _rigid(model: mujoco.MjModel) -> mujoco.MjModel:
+def _rigid(model: mujoco.MjModel, ties: Ties) -> mujoco.MjModel:
     """A copy without what is added to its rigid-body efforts, or acts through a command."""
-    return _bared(copy.copy(model))
+    return _bared(copy.copy(model), ties)
 
 
-def _bared(model: mujoco.MjModel) -> mujoco.MjModel:
+def _bared(model: mujoco.MjModel, ties: Ties) -> mujoco.MjModel:
     """The same of the model itself."""
+    ties.free(model)
     model.dof_frictionloss[:] = 0.0
     model.dof_damping[:] = 0.0
     model.tendon_frictionloss[:] = 0.0
@@ -138,7 +140,7 @@ def _moved_of(work: Work) -> Moved:
     Where an effect changes anything else of the model, or what a joint's sensor shows, most fits
     have a motion of their own, of which directions would not be used again.
     """
-    nominal, content = _nominal(work.rig.model)
+    nominal, content = _nominal(work.rig.model, work.ties)
     fed = _single(work)
     recorded = {j: work.programme.drive[s][:, 0] for j, s in fed}
     positions = {j: work.position(j, work.seen(s)[:, 0]) for j, s in fed}
@@ -148,18 +150,19 @@ def _moved_of(work: Work) -> Moved:
         digest.update(np.ascontiguousarray(part).tobytes())
     path = _Path(digest.hexdigest(), work, positions)
     as_recorded = all(np.array_equal(positions[j], recorded[j]) for j in recorded)
-    if as_recorded and _content(_bared(with_inertials_of(work.model, nominal))) == content:
+    alike = _bared(with_inertials_of(work.model, nominal), work.ties) if as_recorded else None
+    if alike is not None and _content(alike) == content:
         efforts = _efforts(_Motion(path, _hash(content), as_recorded, nominal))
         if efforts.linear:
             return efforts.of(work.model)
-    rigid = _rigid(work.model)
+    rigid = _rigid(work.model, work.ties)
     return _moved(_Motion(path, _hash(_content(rigid)), as_recorded, rigid))
 
 
 @lru_cache(maxsize=4)
-def _nominal(model: mujoco.MjModel) -> tuple[mujoco.MjModel, bytes]:
+def _nominal(model: mujoco.MjModel, ties: Ties) -> tuple[mujoco.MjModel, bytes]:
     """The rigid model of a rig's own, and its numbers."""
-    rigid = _rigid(model)
+    rigid = _rigid(model, ties)
     return rigid, _content(rigid)
 
 
@@ -210,7 +213,15 @@ def _transmission(model: mujoco.MjModel, name: str, compared: tuple[str, ...]) -
 
 
 def needed_effort(work: Work, name: str, moved: Moved) -> FloatArray:
-    """What must act at a joint of one coordinate (n,)."""
+    """What must act at a joint of one coordinate (n,), for those that follow it, too."""
+    effort = _effort_at(work, name, moved)
+    if work.rig.description.drive.held:
+        effort = shifted(effort, work.programme.time, -0.5 * work.programme.period)
+    return effort
+
+
+def _effort_at(work: Work, name: str, moved: Moved) -> FloatArray:
+    """The same at the instant of each row."""
     model, joint = work.model, work.model.joint(name)
     dof = int(joint.dofadr[0])
     speed = moved.speed[:, dof]
@@ -222,8 +233,9 @@ def needed_effort(work: Work, name: str, moved: Moved) -> FloatArray:
     if any(law.kind is LawKind.EFFORT for law in work.laws):
         along = measured_variables(work, np.hstack([moved.position, moved.speed]))
         effort = effort - work.lawful(joint.name, along)
-    if work.rig.description.drive.held:
-        effort = shifted(effort, work.programme.time, -0.5 * work.programme.period)
+    for one in work.ties.after(joint.name):
+        ratio = one.ratio(moved.position[:, int(joint.qposadr[0])])
+        effort = effort + ratio * _effort_at(work, one.joint, moved)
     return np.asarray(effort)
 
 
@@ -247,6 +259,7 @@ def _states(path: _Path) -> tuple[FloatArray, FloatArray, FloatArray]:
             q[:, at] = smooth
             v[:, dof] = np.gradient(smooth, work.period)
             a[:, dof] = np.gradient(v[:, dof], work.period)
+    work.ties.follow(model, (q, v, a))
     return q, v, a
 
 

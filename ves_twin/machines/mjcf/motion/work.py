@@ -18,9 +18,11 @@ from ves_twin.effects.element import Element
 from ves_twin.effects.joints import CoulombFriction
 from ves_twin.effects.law import Law, LawKind, LawShape, joints_of, variable_along
 from ves_twin.effects.place import Place
+from ves_twin.machines.mjcf.parts.ties import Ties
 from ves_twin.machines.mjcf.rig.description import Compared
 from ves_twin.machines.mjcf.rig.machine import Rig
 from ves_twin.machines.mjcf.rig.places import SINGLE, tendon_joints, typical_speed
+from ves_twin.machines.mjcf.rig.tied import ties_of
 
 SMOOTH = 0.0005
 """Share of the typical speed over which a sign is smoothed, chosen on EMPS: four times as much
@@ -80,6 +82,11 @@ class Work:
         mujoco.mj_resetData(self.model, data)
         return data
 
+    @cached_property
+    def ties(self) -> Ties:
+        """Joints that follow those whose motion is fed in."""
+        return ties_of(self.rig.description, self.rig.model)
+
     @property
     def period(self) -> float:
         """Time that a row takes in the machine [s]."""
@@ -116,8 +123,15 @@ class Work:
         level = CoulombFriction(joint).present(self.model)
         if level == 0.0:
             return np.zeros_like(speed)
-        slow = SMOOTH * typical_speed(joint, self.rig.description, self.model)
-        return np.asarray(level * np.tanh(speed / slow))
+        return np.asarray(level * np.tanh(speed / (SMOOTH * self._typical_speed(joint))))
+
+    def _typical_speed(self, joint: str) -> float:
+        """Of a joint [m/s or rad/s]; of one that follows and says none that of its leader."""
+        for one in self.ties.followers:
+            untold = joint not in self.rig.description.typical.joint and one.powers[1] != 0.0
+            if one.joint == joint and untold:
+                return abs(one.powers[1]) * self._typical_speed(one.leader)
+        return typical_speed(joint, self.rig.description, self.model)
 
     def held(self, joint: str, position: FloatArray) -> FloatArray:
         """Effort [N, N m] against a joint along given positions (n,)."""

@@ -22,6 +22,7 @@ from ves_twin.machines.mjcf.plausible.reading import Reading
 from ves_twin.machines.mjcf.plausible.readings import Readings
 from ves_twin.machines.mjcf.rig.machine import Rig
 from ves_twin.machines.mjcf.rig.places import SINGLE, driven_joint
+from ves_twin.machines.mjcf.rig.tied import ties_of
 from ves_twin.machines.mjcf.rig.transmission import told_by_motion
 
 ROWS = 10_000
@@ -70,7 +71,8 @@ class Seen:
         """None where a joint's position or every effort is missing: servos alone tell none."""
         told, model, forward = rig.description, rig.model, MjcfForward.of(rig)
         joints = [model.joint(i).name for i in range(model.njnt)]
-        places = {j: forward.position_of(j) for j in joints if j not in told.drive.locked}
+        still = {*told.drive.locked, *(one.joint for one in ties_of(told, model).followers)}
+        places = {j: forward.position_of(j) for j in joints if j not in still}
         single = all(int(model.jnt_type[model.joint(j).id]) in SINGLE for j in joints)
         wheels = _wheels(
             rig, recording, [j for j, s in places.items() if s not in recording.signals]
@@ -193,6 +195,7 @@ class Seen:
             if not self.fed.poses:
                 v[:, at.dofadr[0]] = np.gradient(smooth, self.fed.period)
                 a[:, at.dofadr[0]] = np.gradient(v[:, at.dofadr[0]], self.fed.period)
+        self._plain.ties.follow(model, (q, v, a))
         few = self._few(rows)
         return q[few], v[few], a[few]
 

@@ -9,6 +9,7 @@ from ves_twin.core.units import to_si
 from ves_twin.machines.mjcf.parts.joint_units import joint_units
 from ves_twin.machines.mjcf.rig.description import Compared, Mode, RigDescription
 from ves_twin.machines.mjcf.rig.places import SINGLE, driven_joint, typical_speed
+from ves_twin.machines.mjcf.rig.tied import ties_of
 from ves_twin.machines.mjcf.rig.transmission import Transmission
 
 BALL = int(mujoco.mjtJoint.mjJNT_BALL)
@@ -102,8 +103,9 @@ def _moved(told: RigDescription, model: mujoco.MjModel) -> None:
             expected = "a hinge or a slide that is not locked"
             raise InvalidInputError("drive.imposed", joint, expected)
     if drive.mode is Mode.MOTION:
+        follow = {one.joint for one in ties_of(told, model).followers}
         for joint in (model.joint(i).name for i in range(model.njnt)):
-            if joint not in drive.joints and joint not in drive.locked:
+            if joint not in {*drive.joints, *drive.locked, *follow}:
                 expected = (
                     f"its signal in drive.joints, drive.locked with {joint} if it stands still,"
                     " or mode 'control' with the other joints in drive.imposed to integrate it"
