@@ -10,6 +10,7 @@ from ves_twin.core.errors import InvalidInputError
 from ves_twin.core.recording.recording import Recording, RecordingInfo
 from ves_twin.diagnosis.model.forward import Excitation
 from ves_twin.machines.mjcf.motion.forward import MjcfForward
+from ves_twin.machines.mjcf.parts.cyclic import is_cyclic
 from ves_twin.machines.mjcf.parts.ties import Ties
 from ves_twin.machines.mjcf.plausible.implausible import implausible
 from ves_twin.machines.mjcf.rig.description import RigDescription
@@ -142,3 +143,13 @@ def test_a_chain_of_ties_is_followed_to_its_end_and_no_locked_joint_follows():
     assert efforts[0, 0] == pytest.approx(1.0 + 2.0 * (10.0 + 0.25 * 100.0))
     assert [one.joint for one in Ties.of(model, ["a"], locked=["c"]).followers] == ["b"]
     assert Ties.of(model, ["a"], locked=["c"]).loose == (0, 1)
+
+
+@pytest.mark.parametrize(
+    ("powers", "axis", "cyclic"),
+    [("0 0.2 0 0 0", "0 0 1", True), ("0 0.2 0.1 0 0", "0 0 1", False), ("0 0.2", "0 1 0", False)],
+    ids=["wheel", "cam", "lever"],
+)
+def test_where_a_motor_stands_tells_where_its_load_does(powers, axis, cyclic):
+    text = DRIVE.format(powers=powers, friction="").replace('axis="0 1 0"', f'axis="{axis}"')
+    assert is_cyclic(mujoco.MjModel.from_xml_string(text), "motor") is cyclic

@@ -7,6 +7,7 @@ import numpy as np
 from scipy.integrate import cumulative_trapezoid
 
 from ves_twin.core.types import FloatArray
+from ves_twin.machines.mjcf.parts.ties import Ties
 
 STATES = 3
 """States, drawn at random, in which a joint is turned: in one alone little may hang on it."""
@@ -18,12 +19,21 @@ ROUNDING = 1e-9
 def is_cyclic(model: mujoco.MjModel, joint: str) -> bool:
     """Whether efforts of all joints are the same wherever a joint stands, as of a reaction wheel.
 
-    By inverse dynamics of states drawn at random, the joint where it is drawn and elsewhere.
+    By inverse dynamics of states drawn at random, the joint where it is drawn and elsewhere. Of
+    joints that equalities tie to it the same, and each turns in proportion.
 
     Args:
         model: without contacts of interest.
         joint: of one coordinate.
     """
+    after = Ties.of(model, (joint,)).followers
+    if any(any(one.powers[2:]) or not _is_alone(model, one.joint) for one in after):
+        return False
+    return _is_alone(model, joint)
+
+
+def _is_alone(model: mujoco.MjModel, joint: str) -> bool:
+    """The same of one joint, without those that it moves."""
     at, rng = int(model.joint(joint).qposadr[0]), np.random.default_rng(0)
     quiet = model.opt.disableflags
     model.opt.disableflags |= int(mujoco.mjtDisableBit.mjDSBL_CONSTRAINT)
