@@ -1,7 +1,7 @@
 """Diagnose measured machines of public data and print the table: what is left, what is proved.
 
     python benchmarks/real_machines.py [SET...] [--only TEXT] [--law] [--exclude KIND...]
-        [--data FOLDER] [--out FOLDER]
+        [--noise SEED] [--data FOLDER] [--out FOLDER]
 
 The data are no part of the project: sets that are not there are left out, and said to be.
 """
@@ -51,6 +51,7 @@ def main() -> int:
     parser.add_argument("--only", default="", metavar="TEXT", help="questions that have it in them")
     parser.add_argument("--law", action="store_true", help="look for a law of what causes leave")
     parser.add_argument("--exclude", nargs="*", default=(), metavar="KIND", help="causes left out")
+    parser.add_argument("--noise", type=int, metavar="SEED", help="add noise of the declared sd")
     told = parser.parse_args()
     settings, rows = replace(SETTINGS, laws=told.law), []
     for name in told.names or SETS:
@@ -64,6 +65,7 @@ def main() -> int:
         module = importlib.import_module(f"real.{name}")
         asked = module.sets(Path(told.data), told.out / name)
         for one in (one for one in asked if told.only in one.name):
+            one = one if told.noise is None else one.noisy(told.noise)
             rows.append(row(one, told.out / name, settings, told.exclude))
             print(rows[-1], flush=True)
     print("\n".join(["", *HEAD, *rows]))

@@ -5,12 +5,15 @@ from __future__ import annotations
 import json
 import xml.etree.ElementTree as ElementTree
 from collections.abc import Callable, Iterable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import mujoco
+import numpy as np
 
 from ves_twin.core.recording.recording import Recording
+from ves_twin.diagnosis.model.forward import Channel
+from ves_twin.machines.mjcf.motion.forward import MjcfForward
 from ves_twin.machines.mjcf.recordings.columns import read_rig_recording
 from ves_twin.machines.mjcf.rig.machine import Rig
 
@@ -29,6 +32,25 @@ class Set:
     expert: str
     asked: str
     error: Callable[[Rig, Sequence[Recording]], str] | None = None
+
+    def noisy(self, seed: int) -> Set:
+        """With white noise of the declared sd more in all that is compared: what hangs on it?"""
+        rng, channels = np.random.default_rng(seed), MjcfForward.of(self.rig).channels
+        groups = [
+            [_noisy(one, channels, rng) for one in group] for group in (self.fitted, self.held_out)
+        ]
+        return replace(self, fitted=groups[0], held_out=groups[1])
+
+
+def _noisy(
+    recording: Recording, channels: Sequence[Channel], rng: np.random.Generator
+) -> Recording:
+    signals = {name: np.array(values) for name, values in recording.signals.items()}
+    for channel in channels:
+        if channel.signal in signals:
+            noise = channel.sd * rng.standard_normal(len(recording.time))
+            signals[channel.signal][:, channel.column] += noise
+    return replace(recording, signals=signals)
 
 
 def machine(folder: Path, name: str, model: str, description: str) -> Rig:
