@@ -11,6 +11,8 @@ from pydantic import ValidationError
 from ves_twin.cli.main import main
 from ves_twin.core.units import to_si
 from ves_twin.diagnosis.model.forward import Excitation
+from ves_twin.machines.machine import SETPOINTS
+from ves_twin.machines.mjcf.inputs.excitations import write_inputs
 from ves_twin.machines.mjcf.motion.forward import MjcfForward
 from ves_twin.machines.mjcf.recordings.columns import read_rig_recording
 from ves_twin.machines.mjcf.rig.column import Column
@@ -105,6 +107,16 @@ def test_a_speed_too_noisy_to_be_differentiated_is_predicted(rotor, write):
     loud = log["speed_rpm"] + 300.0 * np.random.default_rng(0).standard_normal(ROWS)
     found, _ = drafted(rotor, write(log | {"speed_rpm": loud}))
     assert "speed_rpm is too noisy to be differentiated (" in found.mode
+
+
+def test_set_points_of_a_next_experiment_are_speeds_in_the_unit_of_the_log(rotor, write, tmp_path):
+    rig = drafted(rotor, write(turned_by_a_motor()))[1]
+    time = PERIOD * np.arange(500)
+    angle = np.sin(2.0 * time)[:, None]
+    write_inputs(MjcfForward.of(rig), Excitation("next", time, {"shaft.position": angle}), tmp_path)
+    read = np.genfromtxt(tmp_path / SETPOINTS, delimiter=",", names=True)
+    wanted = 2.0 * np.cos(2.0 * time) / RPM
+    assert read["speed_rpm"][1:-1] == pytest.approx(wanted[1:-1], abs=0.01)  # of 19 rpm, by steps
 
 
 def test_an_integral_has_the_unit_of_a_position():

@@ -16,6 +16,7 @@ from ves_twin.diagnosis.model.forward import Excitation
 from ves_twin.machines.machine import SETPOINTS
 from ves_twin.machines.mjcf.inputs.inputs import Input, inputs_of, strain
 from ves_twin.machines.mjcf.motion.forward import MjcfForward
+from ves_twin.machines.mjcf.rig.column import Column
 from ves_twin.machines.mjcf.rig.description import Mode
 
 SECONDS = 10.0
@@ -86,12 +87,19 @@ def write_inputs(forward: MjcfForward, excitation: Excitation, folder: Path) -> 
     for signal in forward.fed:
         column = told.signals[signal]
         names += column.columns
-        columns += list(((excitation.drive[signal] - column.offset) / column.scale).T)
+        columns += list(_as_logged(column, excitation.drive[signal], excitation.time).T)
     text = StringIO()
     writer = csv.writer(text, lineterminator="\n")
     writer.writerow(names)
     writer.writerows([f"{value:.12g}" for value in row] for row in np.column_stack(columns))
     write_whole(folder / SETPOINTS, text.getvalue())
+
+
+def _as_logged(column: Column, rows: FloatArray, time: FloatArray) -> FloatArray:
+    """Rows (n, w) of a signal as the log's columns have them."""
+    if column.integrated:
+        return np.asarray(np.gradient(rows, time, axis=0) / column.scale)
+    return np.asarray((rows - column.offset) / column.scale)
 
 
 def _menu(
