@@ -17,9 +17,10 @@ from ves_twin.core.types import FloatArray
 from ves_twin.effects.effect import Effect
 from ves_twin.effects.law import LawKind
 from ves_twin.effects.shifted import shifted
+from ves_twin.machines.mjcf.motion.kept_efforts import KeptEfforts
 from ves_twin.machines.mjcf.motion.work import Work, measured_variables, sensor_rows, variables
 from ves_twin.machines.mjcf.parts.inertials import with_inertials_of
-from ves_twin.machines.mjcf.parts.rigid_efforts import Moved, RigidEfforts, inverted
+from ves_twin.machines.mjcf.parts.rigid_efforts import Moved, RigidEfforts, inverted, size_of
 from ves_twin.machines.mjcf.parts.ties import Ties
 from ves_twin.machines.mjcf.rig.transmission import Transmission
 
@@ -41,7 +42,7 @@ PICKED = 20
 KEPT = 24
 """Models along a motion whose efforts are kept: few causes change them."""
 
-RECORDED = 64
+RECORDED = 1024
 """Recorded motions that are kept: as many as anybody fits together."""
 
 
@@ -152,8 +153,10 @@ def _moved_of(work: Work) -> Moved:
     as_recorded = all(np.array_equal(positions[j], recorded[j]) for j in recorded)
     alike = _bared(with_inertials_of(work.model, nominal), work.ties) if as_recorded else None
     if alike is not None and _content(alike) == content:
-        efforts = _efforts(_Motion(path, _hash(content), as_recorded, nominal))
-        if efforts.linear:
+        motion = _Motion(path, _hash(content), as_recorded, nominal)
+        size = size_of(nominal, len(work.programme.time))
+        efforts = _efforts(nominal).of(motion, size, lambda: _made(motion))
+        if efforts is not None and efforts.linear:
             return efforts.of(work.model)
     rigid = _rigid(work.model, work.ties)
     return _moved(_Motion(path, _hash(_content(rigid)), as_recorded, rigid))
@@ -166,9 +169,13 @@ def _nominal(model: mujoco.MjModel, ties: Ties) -> tuple[mujoco.MjModel, bytes]:
     return rigid, _content(rigid)
 
 
-@lru_cache(maxsize=RECORDED)
-def _efforts(motion: _Motion) -> RigidEfforts:
-    """Of a motion as it was recorded."""
+@lru_cache(maxsize=2)
+def _efforts(model: mujoco.MjModel) -> KeptEfforts:
+    """Those of a rig's own model, along motions as they were recorded."""
+    return KeptEfforts()
+
+
+def _made(motion: _Motion) -> RigidEfforts:
     return RigidEfforts(motion.model, *motion.states())
 
 

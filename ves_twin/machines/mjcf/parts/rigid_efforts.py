@@ -79,8 +79,8 @@ class RigidEfforts:
     def __init__(self, model: mujoco.MjModel, q: FloatArray, v: FloatArray, a: FloatArray) -> None:
         self.model, self.speed, self.pull = copy.copy(model), v, a
         self._base = inverted(model, q, v, a)
-        size = 80 * model.nbody * len(q) * (model.nv + model.nsensordata)
-        self.linear = not self._base.bound and _is_linear(model) and size <= LARGEST
+        few = size_of(model, len(q)) <= LARGEST
+        self.linear = not self._base.bound and _is_linear(model) and few
         self._phi = inertials(model)
         self._unit = _units(self._phi)
         self._known: dict[tuple[int, int], tuple[FloatArray, FloatArray]] = {}
@@ -130,6 +130,11 @@ class RigidEfforts:
         moved = inverted(there, self._base.position, self.speed, self.pull)
         left = moved.effort - more * self.pull - effort
         return left / STEP, (moved.sensed - sensed) / STEP
+
+
+def size_of(model: mujoco.MjModel, rows: int) -> int:
+    """Bytes that all directions along a motion take."""
+    return 80 * int(model.nbody) * rows * int(model.nv + model.nsensordata)
 
 
 def _units(phi: FloatArray) -> FloatArray:
