@@ -197,10 +197,13 @@ def _plant_sentence(found: Diagnosis) -> str:
             "The extended plant is plant.toml. The model as it was given predicts every held-out"
             " channel as well or better."
         )
-    return (
+    from ves_twin.report.diagnosis.mjcf_lines import mjcf_lines
+
+    told = (
         "The extended plant is plant.toml; it passed on held-out recordings. ves-twin info --plant"
         " plant.toml --mjcf improved.xml writes it as plain MJCF, and says what that cannot carry."
     )
+    return " ".join([told, *mjcf_lines(found.carried)])
 
 
 def law_lines(verdict: Verdict) -> list[str]:
@@ -225,6 +228,7 @@ def _text(found: Diagnosis, folder: Path) -> str:
     from ves_twin.report.diagnosis.basis import gain_words, rests_on
     from ves_twin.report.diagnosis.coarse_step import coarse_sentence
     from ves_twin.report.diagnosis.flaws import flaw_lines
+    from ves_twin.report.diagnosis.mjcf_lines import mjcf_lines
     from ves_twin.report.diagnosis.out_of_step import out_of_step_sentence
     from ves_twin.report.diagnosis.proved import (
         inseparable_lines,
@@ -271,6 +275,7 @@ def _text(found: Diagnosis, folder: Path) -> str:
     if (folder / PLANT).is_file():
         beside = verdict.law is not None and verdict.law.claimed and bool(verdict.proved)
         lines.append(f"  as MJCF   ves-twin info --plant {folder / PLANT} --mjcf improved.xml")
+        lines += [f"            {text}" for text in mjcf_lines(found.carried)]
         lines += [f"            {NO_LAW}"] * beside
     return "\n".join(lines)
 

@@ -13,7 +13,10 @@ if TYPE_CHECKING:
 NOTHING = 0.05
 """Share of every column's power below which columns, or the model, may be other ones."""
 
-ONE = "too short for --alternate: causes are proved by every second tenth; --held-out proves more"
+ONE = (
+    "too short for --alternate: give a second log as --held-out. Without one, many causes are"
+    " proved by every second tenth, and one or two by nothing"
+)
 """What is held out of a log in which no stretches are long enough."""
 
 
@@ -40,7 +43,8 @@ def new_text(found: NewMachine, model: Path, logs: Sequence[Path]) -> str:
     if draft.gravity:
         first = "draft again from it; then "
     if draft.untold:
-        unit = ", ".join(dict.fromkeys(draft.untold.values()))
+        units = dict.fromkeys(draft.untold.values())
+        unit = ", ".join(f"units {u}" if u.startswith("of ") else u for u in units)
         asked = " ".join(f"--scale {shlex.quote(c + '=...')}" for c in draft.untold)
         first = f"draft again with what the motors give ({asked}, in {unit}); then "
     if draft.gravity:

@@ -16,6 +16,7 @@ from ves_twin.diagnosis.model.forward import Excitation
 from ves_twin.diagnosis.record.runs import Progress, silent
 from ves_twin.diagnosis.settings import Settings
 from ves_twin.diagnosis.verdict.verdict import Verdict
+from ves_twin.machines.carried import Carried
 from ves_twin.machines.load import Given, machine_of, named
 from ves_twin.machines.machine import Machine, Material, Named, Prepared
 from ves_twin.scenario.experiment_file import ExperimentFile
@@ -33,6 +34,7 @@ class Diagnosis:
         refused: why the extension is only a candidate; empty where it passed on held-out data.
         excitation: that should part the causes, where they cannot be told apart.
         nearest: it with what comes nearest, where no causes are named; None if nothing does.
+        carried: what its MJCF file leaves on held-out recordings, where that has a part alone.
     """
 
     verdict: Verdict
@@ -41,6 +43,7 @@ class Diagnosis:
     refused: str
     excitation: Excitation | None = None
     nearest: Machine | None = None
+    carried: Carried | None = None
 
 
 def diagnose(
@@ -97,23 +100,28 @@ def diagnose(
         offered.extend(machine.excitations(measured[0]))
         return offered
 
+    left_out = [one.recording for one in material.held_out]
+    chosen = settings_of(machine, settings, measured[0])
     verdict = core.diagnose(
         machine.forward,
         measured,
-        held_out=[one.recording for one in material.held_out],
+        held_out=left_out,
         commissioning=[one.recording for one in material.commissioning],
         standstill=material.standstill,
         baseline=[one.recording for one in material.baseline],
         next_programmes=menu,
         exclude=machine.causes(exclude),
-        settings=settings_of(machine, settings, measured[0]),
+        settings=chosen,
         progress=progress,
         budget=budget,
     )
     cut = len(measured) if len(measured) > whole else 0
     basis = replace(verdict.basis, recordings=_origin(given), pieces=cut)
     verdict = replace(_shortened(verdict), quality=prepared.flaws, basis=basis)
-    return _concluded(verdict, machine, offered)
+    found = _concluded(verdict, machine, offered)
+    if found.extended is None:
+        return found
+    return replace(found, carried=Carried.of(machine, found.extended, left_out, chosen.rate))
 
 
 def _named(

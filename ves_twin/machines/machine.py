@@ -239,6 +239,14 @@ class Machine(ABC):
             InvalidInputError: numbers that no rigid body can have.
         """
 
+    def as_mjcf(self) -> tuple[Machine | None, tuple[str, ...]]:
+        """The machine that its MJCF file is, and what that lacks; None where it lacks nothing.
+
+        Raises:
+            InvalidInputError: as `mjcf`.
+        """
+        return None, ()
+
     @abstractmethod
     def excitations(self, like: Recording | None = None) -> Sequence[Excitation]:
         """What the machine could be fed next, within its limits.

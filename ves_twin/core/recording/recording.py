@@ -147,7 +147,11 @@ class Recording(ReadOnly):
     def __post_init__(self) -> None:
         super().__post_init__()
         if not np.all(np.isfinite(self.time)) or np.any(np.diff(self.time) <= 0):
-            raise InvalidInputError("recording time", _fall(self.time), "strictly increasing times")
+            raise InvalidInputError(
+                "recording time",
+                _fall(self.time),
+                "strictly increasing times; two runs in one file are two logs",
+            )
         for name, values in self.signals.items():
             if values.ndim != 2 or values.shape[0] != len(self.time):
                 raise InvalidInputError(

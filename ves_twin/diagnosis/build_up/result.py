@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
 TOGETHER = " + "
@@ -33,6 +33,11 @@ IMPROPER = SUBLINEAR | {"coulomb_asymmetry", "viscous_asymmetry"}
 
 STRAIGHT = frozenset({"viscous_friction", "coulomb_friction"})
 """Kinds that share such a friction among them where it has no kind of its own."""
+
+
+def is_sublinear(effect: str, sizes: Sequence[float]) -> bool:
+    """Whether a cause is one of SUBLINEAR with a negative first size."""
+    return effect in SUBLINEAR and len(sizes) > 0 and sizes[0] < 0.0
 
 
 @dataclass(frozen=True)
@@ -100,9 +105,8 @@ class Proved:
 
     @property
     def sublinear(self) -> bool:
-        """Whether it is one of SUBLINEAR with a negative size: the shape of another friction."""
-        first = next(iter(self.parameters.values()), None)
-        return self.effect in SUBLINEAR and first is not None and first.value < 0.0
+        """Whether it is the shape of another friction."""
+        return is_sublinear(self.effect, [size.value for size in self.parameters.values()])
 
     @property
     def standing_in(self) -> str:

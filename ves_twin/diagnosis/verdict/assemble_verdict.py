@@ -9,7 +9,7 @@ import numpy as np
 from scipy.stats import norm
 
 from ves_twin.core.types import FloatArray, SingleArray
-from ves_twin.diagnosis.build_up.result import BuildUp, Proved, Size
+from ves_twin.diagnosis.build_up.result import BuildUp, Proved, Size, is_sublinear
 from ves_twin.diagnosis.build_up.sizes import half_widths
 from ves_twin.diagnosis.experiment.aliases import Lookalike, lookalikes
 from ves_twin.diagnosis.experiment.findable import findable_sizes, twins
@@ -295,7 +295,8 @@ def _cause(
     """Firm if it is no commissioning parameter, or further off than commissioning errors go.
 
     Not where every interval holds what the model has already: such a size may be none. Nor a delay
-    of less than a row of a log, nor what a reversal alone would tell from another cause.
+    of less than a row of a log, nor what a reversal alone would tell from another cause, nor of a
+    log what reads so of another friction.
     """
     runs = findings.seen.runs
     z = float(norm.isf(0.5 * (1.0 - findings.settings.confidence)))
@@ -313,6 +314,8 @@ def _cause(
     row = _row(findings.seen) if findings.logged else 0.0
     below = any(_below(name, e, row) for name, e in estimates.items())
     like = findings.twins.get(hypothesis.label, ())
+    values = [one.value for one in estimates.values()]
+    shown = shown and not (findings.logged and is_sublinear(hypothesis.effect, values))
     return Cause(
         effect=hypothesis.effect,
         target=hypothesis.target,

@@ -6,6 +6,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
+from tempfile import TemporaryDirectory
 from time import perf_counter
 
 from ves_twin.core.errors import InvalidInputError, UnknownNameError
@@ -43,7 +44,7 @@ from ves_twin.machines.mjcf.rig.account import account
 from ves_twin.machines.mjcf.rig.drawn import drawn
 from ves_twin.machines.mjcf.rig.extend import extended, write_rig
 from ves_twin.machines.mjcf.rig.machine import Rig
-from ves_twin.machines.mjcf.rig.mjcf_export import mjcf_of
+from ves_twin.machines.mjcf.rig.mjcf_export import mjcf_of, rig_of_mjcf
 from ves_twin.scenario.experiment_file import BY_NUMBERS, ExperimentFile
 
 SORTS = ("measured", "held_out", "commissioning", "baseline")
@@ -187,6 +188,14 @@ class MjcfMachine(Machine):
     def mjcf(self, folder: Path) -> MjcfExport:
         """Its model with the numbers of its file."""
         return mjcf_of(self.rig, folder)
+
+    def as_mjcf(self) -> tuple[MjcfMachine | None, tuple[str, ...]]:
+        """By the file itself, with the log's columns and the typical sizes of this one."""
+        with TemporaryDirectory() as place:
+            export = mjcf_of(self.rig, Path(place))
+            if not export.lost:
+                return None, ()
+            return replace(self, rig=rig_of_mjcf(self.rig, export.text, Path(place))), export.lost
 
     def excitations(self, like: Recording | None = None) -> tuple[Excitation, ...]:
         """Multisines within the typical sizes of the file, and releases."""

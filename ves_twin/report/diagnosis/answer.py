@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from ves_twin.core.quantity import percent
-from ves_twin.diagnosis.build_up.result import TOGETHER, UNFINISHED
+from ves_twin.diagnosis.build_up.result import TOGETHER, UNFINISHED, is_sublinear
 from ves_twin.diagnosis.explain.disagreement import disagree
 from ves_twin.diagnosis.law.result import LAW
 from ves_twin.diagnosis.unseen.gain import Gain
@@ -296,6 +296,8 @@ def why_loose(cause: Cause) -> str:
     if cause.acts_like:
         like = " or ".join(map(spoken, cause.acts_like))
         return f"in a motion that does not turn round {like} reads the same"
+    if is_sublinear(cause.effect, [size.value for size in cause.parameters.values()]):
+        return "friction that grows less than in proportion to speed reads so"
     if not cause.sigmas or all(e.low <= e.nominal <= e.high for e in cause.parameters.values()):
         return "its interval holds what the model has already"
     return f"{cause.sigmas:.1f} {OFF}"

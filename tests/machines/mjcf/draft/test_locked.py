@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 from ves_twin.machines.mjcf.draft.draft import draft
+from ves_twin.machines.mjcf.rig.machine import Rig
 
 ARM = """
 <mujoco>
@@ -97,3 +98,28 @@ def test_a_load_that_the_model_ties_to_a_measured_joint_follows_it(tmp_path):
     (words,) = (words for words in found.look if "equality" in words)
     assert words.startswith("rope follows motor as the model has it (equality)")
     assert min(found.explained.values()) > 0.99
+
+
+def test_a_motor_behind_a_gear_is_drafted_by_the_position_of_its_load(tmp_path):
+    """Typical sizes of the motor were 3e4 times too large: its effort was told, its angle not."""
+    ratio, time = 500.0, 0.005 * np.arange(1600)
+    text = f"""<mujoco><worldbody><body><joint name="motor" axis="0 0 1" damping="1e-4"/>
+    <inertial pos="0 0 0" mass="0.1" diaginertia="1e-5 1e-5 1e-5"/></body>
+    <body pos="0.1 0 0"><joint name="rod" type="slide" axis="1 0 0"/>
+    <inertial pos="0 0 0" mass="20" diaginertia="1e-5 1e-5 1e-5"/></body></worldbody>
+    <equality><joint joint1="rod" joint2="motor" polycoef="0 {1.0 / ratio} 0 0 0"/></equality>
+    <actuator><motor name="drive" joint="motor"/></actuator></mujoco>"""
+    place = 0.05 * np.sin(1.3 * time) + 0.01 * np.sin(4.1 * time)
+    speed = np.gradient(place, time)
+    pull = np.gradient(speed, time)
+    torque = (1e-5 * ratio + 20.0 / ratio) * pull + 1e-4 * ratio * speed
+    (tmp_path / "axis.xml").write_text(text)
+    rows = np.column_stack([time, place, torque])
+    np.savetxt(tmp_path / "log.csv", rows, delimiter=",", header="t_s,rod_m,drive_Nm")
+    found = draft(tmp_path / "axis.xml", [tmp_path / "log.csv"], tmp_path / "rig.toml")
+    assert found.mode.startswith("motion: every joint has a position and an effort")
+    assert min(found.explained.values()) > 0.99
+    (tmp_path / "rig.toml").write_text(found.text)
+    typical = Rig.load(str(tmp_path / "rig.toml")).description.typical.joint
+    assert typical["motor"].speed == pytest.approx(ratio * typical["rod"].speed, rel=1e-3)
+    assert np.std(torque) < typical["motor"].effort <= 1.1 * np.max(np.abs(torque))

@@ -122,7 +122,7 @@ def test_volts_in_steps_are_not_coarse(swing, write):
     [
         (1500, "--alternate 2 "),
         (210, "--alternate 1 "),  # no usual one
-        (190, "held out  too short for --alternate: causes are proved by every second tenth"),
+        (190, "held out  too short for --alternate: give a second log as --held-out"),
     ],
 )
 def test_a_length_of_stretches_is_told_or_that_there_is_none(swing, write, rows, told):

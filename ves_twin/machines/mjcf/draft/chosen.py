@@ -22,7 +22,7 @@ from ves_twin.machines.mjcf.draft.spots import ON_JOINT, Quantity, is_motor, sin
 from ves_twin.machines.mjcf.draft.swing import SHARE, turns_of
 from ves_twin.machines.mjcf.parts.chain import chain
 from ves_twin.machines.mjcf.parts.cyclic import is_cyclic
-from ves_twin.machines.mjcf.parts.ties import Ties
+from ves_twin.machines.mjcf.parts.ties import Follower, Ties
 from ves_twin.machines.mjcf.rig.description import CORNER, Mode
 
 BAND = 2.0
@@ -117,18 +117,19 @@ def chosen(
     noise = _noise(log, check, positions)
     if shaken:
         return _of_base(log, check, model, noise, shaken)
-    pushed = [m.spot.joint for m in efforts if _is_plain(m, model)]
-    driven, together = set(pushed), sorted({j for j in pushed if pushed.count(j) > 1})
-    single = {model.joint(i).name for i in single_joints(model)} - {*check.locked}
-    unknown = _moved_by(model) & single - {m.spot.joint for m in efforts}
     told = {m.spot.name for m in positions}
-    imposed = tuple(sorted(unknown & told))
     moving = [*positions, *_summed(log, check, efforts, told, model)]
     moved = {m.spot.name for m in moving}
+    leads = {one.joint: one for one in Ties.of(model, moved, locked=check.locked).followers}
+    geared = _felt(efforts, leads, model)
+    efforts = [_at_leader(m, leads) for m in efforts]
+    pushed = [m.spot.joint for m in efforts if _is_plain(m, model)]
+    driven, together = set(pushed), sorted({j for j in pushed if pushed.count(j) > 1})
+    single = {model.joint(i).name for i in single_joints(model)} - {*check.locked, *leads}
+    unknown = _moved_by(model) & single - {m.spot.joint for m in efforts}
+    imposed = tuple(sorted(unknown & told))
     drives = [m for m in efforts if _is_plain(m, model) and m.spot.joint in told]
-    follow = {one.joint for one in Ties.of(model, moved, locked=check.locked).followers}
-    single -= follow
-    wide = model.nv - len(check.locked) - len(follow)
+    wide = model.nv - len(check.locked) - len(leads)
     felt = closed_chain(model, [m.spot.joint for m in drives])
     steady = [m.column for m in efforts if m.column in log.steady]
     if felt and not steady:
@@ -152,7 +153,7 @@ def chosen(
     if unknown:
         why = f"every joint has a position; what moves {', '.join(imposed)} is not told"
     otherwise = Chosen(Mode.CONTROL, why, RATES[1], check.corner, noise, True, imposed)
-    return _of_motion(otherwise, log, efforts, positions, model, closed)
+    return _of_motion(otherwise, log, efforts, positions, model, closed, geared)
 
 
 def _of_motion(
@@ -162,6 +163,7 @@ def _of_motion(
     positions: list[Match],
     model: mujoco.MjModel,
     closed: str | None,
+    geared: Mapping[str, float],
 ) -> Chosen:
     """Motion given, in a band that positions can bear; otherwise efforts, if these tell anything.
 
@@ -172,9 +174,10 @@ def _of_motion(
         positions: of joints that are driven.
         model: of the machine.
         closed: why nothing can be predicted open loop; None: as far as is known, it can.
+        geared: inertia that is felt where another joint's motor turns one.
     """
     noise, band = dict(otherwise.noise), _band(log, efforts)
-    shares = [induced(m, noise, efforts, model, log, band)[1] for m in positions]
+    shares = [induced(m, noise, efforts, model, log, band, felt=geared)[1] for m in positions]
     powers = [1.0 / (differentiations(m) + 0.5) for m in positions]
     quiet, loud = (
         band * min((most / max(share, 1e-9)) ** k for share, k in zip(shares, powers, strict=True))
@@ -191,7 +194,9 @@ def _of_motion(
         rate, rated = min(ENOUGH / length, 1.0 / log.period), "as many rows as a diagnosis needs"
     rate = _in_whole_rows(rate, log)
     band = min(band, 0.5 * rate) if rated != Chosen.rated else 0.5 * rate
-    sharp = {m.column: induced(m, noise, efforts, model, log, band, rate) for m in positions}
+    sharp = {
+        m.column: induced(m, noise, efforts, model, log, band, rate, geared) for m in positions
+    }
     worst = max(sharp, key=lambda column: sharp[column][1])
     summed = {m.column: m.spot.name for m in positions if differentiations(m) == 1}
     if sharp[worst][1] > DROWNED and closed is None:
@@ -338,6 +343,32 @@ def _of_loops(
     homes = {m.column: home for m in positions if (home := home_of(m, model, log))}
     names = tuple(m.spot.name for m in positions)
     return Chosen(Mode.CONTROL, why, 2.0 * band, CORNER * band, noise, imposed=names, homes=homes)
+
+
+def _at_leader(effort: Match, leads: Mapping[str, Follower]) -> Match:
+    """The effort of a joint that follows a measured one, as that one's."""
+    joint = effort.spot.joint
+    while joint in leads:
+        joint = leads[joint].leader
+    return replace(effort, spot=replace(effort.spot, joint=joint))
+
+
+def _felt(
+    efforts: Sequence[Match], leads: Mapping[str, Follower], model: mujoco.MjModel
+) -> dict[str, float]:
+    """Inertia that a motor feels whose joint y follows a measured one, x: J_x dx/dy + J_y dy/dx."""
+    found = {}
+    for m in efforts:
+        joint, ratio = m.spot.joint, 1.0
+        while joint in leads:
+            joint, ratio = leads[joint].leader, ratio * abs(leads[joint].powers[1])
+        if joint != m.spot.joint and ratio > 0.0:
+            own, other = (
+                float(model.dof_M0[int(model.joint(name).dofadr[0])])
+                for name in (m.spot.joint, joint)
+            )
+            found[joint] = other / ratio + own * ratio
+    return found
 
 
 def _summed(

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 
 import mujoco
@@ -20,6 +20,7 @@ from ves_twin.machines.mjcf.draft.match import Match, Matches
 from ves_twin.machines.mjcf.draft.spots import Quantity, is_damped_motor, servo_limit
 from ves_twin.machines.mjcf.motion.inverse import smoothed
 from ves_twin.machines.mjcf.parts.servo import FILTERS, is_servo
+from ves_twin.machines.mjcf.parts.ties import Follower, Ties
 from ves_twin.machines.mjcf.rig.column import LAB_UNITS
 from ves_twin.machines.mjcf.rig.description import Mode
 from ves_twin.machines.mjcf.rig.places import carries
@@ -253,7 +254,7 @@ def _joints(log: LogColumns, check: Checked, mode: Chosen, model: mujoco.MjModel
     """Typical effort, speed and travel of each joint that was recorded, behind its gear."""
     efforts = {m.spot.joint: m for m in check.found if m.spot.quantity is Quantity.EFFORT}
     placed = {m.spot.name for m in check.found if m.spot.quantity is Quantity.POSITION}
-    told = set[str]()
+    told = dict[str, dict[str, float]]()
     for match in check.found:
         if match.spot.quantity is Quantity.POSITION:
             position = match.factor * log.column(match.column)
@@ -266,9 +267,7 @@ def _joints(log: LogColumns, check: Checked, mode: Chosen, model: mujoco.MjModel
         sizes = {"speed": speed, "travel": travel(position)}
         own = efforts.get(match.spot.name)
         if own is not None and is_damped_motor(model, model.actuator(own.spot.name).id):
-            drive = model.actuator(own.spot.name)
-            gain = abs(float(drive.gear[0] * drive.gainprm[0])) or 1.0
-            sizes = {"effort": typical(gain * own.factor * log.column(own.column)), **sizes}
+            sizes = {"effort": _given(log, own, model), **sizes}
         elif own is not None and (most := servo_limit(model, own.spot.name)):
             sizes = {"effort": most, **sizes}  # what it gives is not logged, and may be all it has
         elif check.motion is not None:
@@ -278,12 +277,37 @@ def _joints(log: LogColumns, check: Checked, mode: Chosen, model: mujoco.MjModel
         why = "   # effort as the model moves: no column tells it" * bool(as_moved)
         text = ", ".join(f"{k} = {v:g}" for k, v in {**as_moved, **sizes}.items() if v > 0.0)
         yield f"{_key(match.spot.name)} = {{ {text} }}{why}"
-        told.add(match.spot.name)
+        told[match.spot.name] = sizes
+    for one in Ties.of(model, told).followers:
+        ratio, leader = abs(one.powers[1]), told[one.leader]
+        told[one.joint] = {key: ratio * leader[key] for key in ("speed", "travel")}
+        yield from _pushed(one, efforts, told[one.joint], log, model)
     for joint, given in mode.typical.items():
         if joint in told:
             continue
         text = ", ".join(f"{k} = {v:g}" for k, v in given.items())
         yield f"{_key(joint)} = {{ {text} }}   # as the model moves: no column tells it"
+
+
+def _pushed(
+    follower: Follower,
+    efforts: Mapping[str, Match],
+    moved: Mapping[str, float],
+    log: LogColumns,
+    model: mujoco.MjModel,
+) -> Iterator[str]:
+    """A line for a joint that follows a measured one, where its own motor is logged."""
+    if follower.joint in efforts:
+        sizes = {"effort": _given(log, efforts[follower.joint], model), **moved}
+        text = ", ".join(f"{k} = {v:g}" for k, v in sizes.items() if v > 0.0)
+        yield f"{_key(follower.joint)} = {{ {text} }}   # as it follows {follower.leader}"
+
+
+def _given(log: LogColumns, effort: Match, model: mujoco.MjModel) -> float:
+    """Typical effort of a motor at its joint."""
+    drive = model.actuator(effort.spot.name)
+    gain = abs(float(drive.gear[0] * drive.gainprm[0])) or 1.0
+    return typical(gain * effort.factor * log.column(effort.column))
 
 
 def _speed(log: LogColumns, position: Match, corner: float) -> float:

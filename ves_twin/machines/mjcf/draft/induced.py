@@ -37,7 +37,7 @@ def induced(
     pull = sd * (2.0 * np.pi) ** times * np.sqrt(2.0 * log.period * band**power / power)
     actuator, joint = model.actuator(effort.spot.name), model.joint(motion.spot.name)
     gain = abs(float(actuator.gear[0] * actuator.gainprm[0])) or 1.0
-    inertia = model.dof_M0[int(joint.dofadr[0])] if felt is None else felt[motion.spot.name]
+    inertia = (felt or {}).get(motion.spot.name, model.dof_M0[int(joint.dofadr[0])])
     within = float(inertia) * pull / gain
     size = float(np.std(effort.factor * log.column(effort.column)))
     return within * np.sqrt(1.0 / (log.period * (rate or 2.0 * band))), within / size

@@ -127,8 +127,8 @@ def _of(found: Sequence[Match], quantity: Quantity) -> dict[str, Match]:
 
 
 def _unit(match: Match, slope: float) -> str:
-    """Another unit whose factor the slope is; empty if it is none's."""
-    units = UNITS.get(match.spot.unit, {})
+    """Another unit whose factor the slope is; empty if it is none's, or its own."""
+    units = {u: f for u, f in UNITS.get(match.spot.unit, {}).items() if u != match.unit}
     return next((u for u, f in units.items() if abs(slope / f - 1.0) < SAME), "")
 
 

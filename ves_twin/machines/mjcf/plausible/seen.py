@@ -85,7 +85,7 @@ class Seen:
         sources = {
             a: (s, sign)
             for a, (s, sign) in sources.items()
-            if s in recording.signals and driven_joint(model, a) in {*places, *wheels}
+            if s in recording.signals and driven_joint(model, a) in {*places, *wheels, *still}
             if not is_servo(model, model.actuator(a).id)  # a set-point is no effort
         }
         sources = {a: sources[a] for a in told_by_motion(model, sources)}

@@ -77,6 +77,16 @@ def mjcf_of(rig: Rig, folder: Path) -> MjcfExport:
     return MjcfExport.of(title, body, carried, lost, NEVER)
 
 
+def rig_of_mjcf(rig: Rig, text: str, folder: Path) -> Rig:
+    """A rig whose model is such a file, written into a folder, and that changes nothing of it."""
+    name = "carried.xml"
+    (folder / name).write_text(text, encoding="utf-8")
+    plain: dict[str, object] = {"model": name, "parameters": (), "present": {}, "laws": ()}
+    read = Rig(rig.description.model_copy(update=plain), folder, rig.file)
+    _ = read.model, read.identity  # while the file is there
+    return read
+
+
 def _numbers(model: mujoco.MjModel) -> NDArray[np.uint8]:
     """All that a model holds, byte by byte."""
     held = np.empty(mujoco.mj_sizeModel(model), np.uint8)

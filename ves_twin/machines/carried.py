@@ -1,0 +1,74 @@
+"""Carried: what is left on held-out recordings of what a plain MJCF file has of an answer."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from ves_twin.core.errors import VesTwinError
+from ves_twin.core.recording.recording import Recording
+from ves_twin.core.types import FloatArray
+from ves_twin.diagnosis.model.forward import Channel, Excitation, Forward
+from ves_twin.diagnosis.model.grid import AnalysisGrid
+from ves_twin.machines.machine import Machine
+
+
+@dataclass(frozen=True)
+class Carried:
+    """Rms errors of each channel [its unit] on held-out recordings, nothing fitted to them.
+
+    Attributes:
+        lacking: what of the extended machine an MJCF file has no place for.
+        errors: channel -> by the model as given, by the extended machine, by its MJCF.
+        units: of the channels.
+    """
+
+    lacking: tuple[str, ...] = ()
+    errors: Mapping[str, tuple[float, float, float]] = field(default_factory=dict)
+    units: Mapping[str, str] = field(default_factory=dict)
+
+    @staticmethod
+    def of(
+        given: Machine, extended: Machine, held_out: Sequence[Recording], rate: float
+    ) -> Carried | None:
+        """None where the file has all of it, none can be written, or nothing was held out.
+
+        Args:
+            given: the machine as its file has it.
+            extended: with what was found.
+            held_out: recordings that were not fitted.
+            rate: of the analysis [Hz].
+        """
+        try:
+            part, lacking = extended.as_mjcf()
+        except VesTwinError:  # MuJoCo cannot write it: the command says so
+            return None
+        if part is None or not held_out:
+            return None
+        machines = given.forward, extended.forward, part.forward
+        recorded = set.intersection(*(set(one.signals) for one in held_out))
+        channels = [c for c in given.forward.channels if c.signal in recorded]
+        left = np.array([_left(forward, held_out, channels, rate) for forward in machines])
+        errors = {c.name: (a, b, d) for c, (a, b, d) in zip(channels, left.T.tolist(), strict=True)}
+        return Carried(lacking, errors, {c.name: c.unit for c in channels})
+
+    @property
+    def worse(self) -> tuple[str, ...]:
+        """Channels that the MJCF predicts worse than the model as given."""
+        return tuple(name for name, (given, _, part) in self.errors.items() if not part <= given)
+
+
+def _left(
+    forward: Forward, recordings: Sequence[Recording], channels: Sequence[Channel], rate: float
+) -> FloatArray:
+    """Rms error of each channel (c,) at the rows of the analysis; NaN where nothing is finite."""
+    off, names = [], [channel.name for channel in forward.channels]
+    at = [names.index(channel.name) for channel in channels]
+    for one in recordings:
+        fed = Excitation.of(one, forward.drive, rate=rate)
+        measured = np.stack([one[c.signal][:, c.column] for c in channels], axis=1)
+        rest = measured - forward.simulate(fed, {})[:, at]
+        off.append(AnalysisGrid.of(fed.period, rate).reduce(rest))
+    return np.asarray(np.sqrt(np.mean(np.square(np.concatenate(off), dtype=float), axis=0)))
