@@ -9,7 +9,7 @@ from linear import Linear, recorded, seen
 
 from ves_twin.diagnosis.build_up import builder as builder_module
 from ves_twin.diagnosis.build_up.builder import Builder
-from ves_twin.diagnosis.build_up.plain_selector import GEARED, USUAL, PlainSelector
+from ves_twin.diagnosis.build_up.plain_selector import DRY, GEARED, USUAL, PlainSelector
 from ves_twin.diagnosis.build_up.select import Selector
 from ves_twin.diagnosis.record.runs import silent
 
@@ -47,5 +47,14 @@ def test_frictions_alone_leave_the_rotors(builder, monkeypatch):
     assert not any("rotor" in name for name in proved(builder.best()))
 
 
+def test_dry_friction_of_all_joints_is_offered_by_itself(builder, monkeypatch):
+    """Of 25 s of a youBot at 8 Hz both frictions of each joint left all but two out."""
+    monkeypatch.setattr(builder_module, "DRY", ("viscous",))
+    for kinds in ("USUAL", "GEARED"):
+        monkeypatch.setattr(builder_module, kinds, ())
+    assert proved(builder.best()) == {"viscous@a", "viscous@b"}
+
+
 def test_kinds_of_geared_machines_are_usual_ones_and_a_rotor():
     assert set(GEARED) - set(USUAL) == {"rotor_inertia"}
+    assert set(DRY) < set(USUAL)

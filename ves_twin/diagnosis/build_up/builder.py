@@ -15,7 +15,7 @@ from ves_twin.diagnosis.build_up.halves import Halves, halves_at
 from ves_twin.diagnosis.build_up.in_full import in_full
 from ves_twin.diagnosis.build_up.next_of_kin import next_of_kin
 from ves_twin.diagnosis.build_up.offer import Offer, preferred
-from ves_twin.diagnosis.build_up.plain_selector import GEARED, USUAL, PlainSelector
+from ves_twin.diagnosis.build_up.plain_selector import DRY, GEARED, USUAL, PlainSelector
 from ves_twin.diagnosis.build_up.proof import Proof
 from ves_twin.diagnosis.build_up.select import Selector
 from ves_twin.diagnosis.build_up.trials import Library, Trial
@@ -121,9 +121,10 @@ class Builder:
         Neither serves all: whitening in time hides what acts slowly (a double pendulum's
         frictions, an excavator's valve), and plain squares have few independent rows (TX40). Of
         the choices that plain squares make on their way, and of all usual frictions, with rotors
-        and without, alone and beside the last choice, the best is offered, too. The choice that
-        promises more is fitted in full first: there may be no time for the other. One that is far
-        behind is not, nor one that adds nothing to what was offered before.
+        and without, and of dry friction by itself, alone and beside the last choice, the best is
+        offered, too. The choice that promises more is fitted in full first: there may be no time
+        for the other. One that is far behind is not, nor one that adds nothing to what was offered
+        before.
 
         Args:
             halves: linear about the point.
@@ -148,7 +149,7 @@ class Builder:
             found.append(self.offer(*self.settled(way, halves, chosen, point), known))
             known = found[-1].known
         beside = [] if present else [[], path[-1]]
-        usual = [plain.usual(kinds, some) for kinds in (USUAL, GEARED) for some in beside]
+        usual = [plain.usual(kinds, some) for kinds in (DRY, USUAL, GEARED) for some in beside]
         few, known = best_proved(halves, [*path, *filter(None, usual)], known)
         labels = frozenset(halves.regression.trials[n].cause.label for n in few)
         if few and labels not in [offer.proved for offer in found]:

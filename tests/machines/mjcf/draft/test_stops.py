@@ -49,6 +49,14 @@ def test_angles_before_a_gear_of_a_hundred_are_no_degrees(stopped, write, column
     assert "a motor before its gear?" in words
 
 
+def test_an_angle_a_little_beyond_its_stop_may_have_another_zero(stopped, write, columns):
+    """Zeros of a youBot in another pose went unheard of; files round stops, by a tenth or less."""
+    moved = {**columns, "q3": columns["q3"] + 0.6 * REACH["bend"]}
+    words, _ = look(stopped, write, moved, 1.0)
+    assert "another zero, sign, or joint?" in words
+    assert "a motor before its gear?" not in words
+
+
 def test_angles_within_their_stops_stay_what_they_are(stopped, write, columns):
     words, scales = look(stopped, write, columns, 1.0)
     assert "stops of the joints" not in words

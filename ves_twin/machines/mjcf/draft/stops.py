@@ -21,19 +21,23 @@ may be told before a gear."""
 NEAR = 0.1
 """Share of its range by which an angle may pass a stop: files round them."""
 
+FAR = "another unit, or a motor before its gear?"
+"""What is asked where a position leaves the range of its joint by more than that is wide."""
+
 OVER = 1.5
 """Times its limit that an effort may come to: a file may give what a drive can bear for long."""
 
 
 def beyond(log: LogColumns, found: list[Match], model: mujoco.MjModel) -> Iterator[str]:
-    """Positions that leave the range of their joint by more than that range is wide."""
+    """Positions that leave the range of their joint, and what may be wrong by how far they do."""
     for match, low, high in _stopped(found, model):
         lowest, highest = _ends(log, match)
-        if max(low - lowest, highest - high) > high - low:
+        over = max(low - lowest, highest - high) / (high - low)
+        why = "another zero, sign, or joint?" if over < 1.0 else FAR
+        if over > NEAR:
             yield (
                 f"{match.column} goes from {lowest:.3g} to {highest:.3g} {match.spot.unit}, joint"
-                f" {match.spot.name} from {low:.3g} to {high:.3g}: another unit, or a motor before"
-                " its gear?"
+                f" {match.spot.name} from {low:.3g} to {high:.3g}: {why}"
             )
 
 
