@@ -380,11 +380,12 @@ def _summed(
 ) -> list[Match]:
     """Speeds of joints without a position, where that changes no effort: their integral is enough.
 
-    None behind a command whose constant is fitted: by a motion it has the error of the model's
-    inertia in it (see `as_commanded`).
+    None behind volts, or a command, whose constant is fitted: by a motion it has the error of the
+    model's inertia in it (see `as_commanded`).
     """
-    if any(m.fitted and is_command(log.said.get(m.column, m.column)) for m in efforts):
-        return []
+    for m in efforts:
+        if m.fitted and (m.unit in ("V", "mV") or is_command(log.said.get(m.column, m.column))):
+            return []
     speeds = [m for m in check.found if m.spot.quantity is Quantity.SPEED]
     return [m for m in speeds if m.spot.name not in told and is_cyclic(model, m.spot.name)]
 
