@@ -8,7 +8,7 @@ from two_link import TARGETS, programme, rig
 
 from ves_twin.machines.mjcf.motion import inverse
 from ves_twin.machines.mjcf.motion.forward import MjcfForward
-from ves_twin.machines.mjcf.motion.kept_efforts import KeptEfforts
+from ves_twin.machines.mjcf.motion.kept_efforts import IDLE, KeptEfforts
 from ves_twin.machines.mjcf.parts import rigid_efforts
 
 ROUND_OFF = 1e-9
@@ -108,3 +108,17 @@ def test_without_room_the_first_ones_stay_and_predictions_are_the_same(forward, 
     passes, rounds = counted(forward, short(), monkeypatch)
     assert 0 < passes <= MANY - 10
     assert rounds[1] == pytest.approx(kept[1], rel=ROUND_OFF, abs=ROUND_OFF)
+
+
+def test_motions_of_an_earlier_diagnosis_make_room_and_those_of_this_one_stay():
+    kept, made = KeptEfforts(3.0), []
+
+    def of(motion):
+        return kept.of(motion, 1, lambda: made.append(motion) or motion)
+
+    assert [of(day) for day in ("a", "b", "c")] == ["a", "b", "c"]
+    assert of("d") is None
+    for _ in range(IDLE * 3):
+        assert of("c") == "c"
+    assert (of("d"), of("e"), of("f")) == ("d", "e", None)
+    assert made == ["a", "b", "c", "d", "e"]

@@ -12,6 +12,11 @@ WHOLE = 1e9
 stretches of 2 s, takes a quarter of it."""
 
 
+IDLE = 100
+"""Rounds over as many motions as are kept after which one that nobody asks for makes room: it is of
+another diagnosis, as of the day before in a trend."""
+
+
 class KeptEfforts:
     """Efforts by the motion that they are of; those that came first stay.
 
@@ -24,8 +29,9 @@ class KeptEfforts:
     """
 
     def __init__(self, most: float = WHOLE) -> None:
-        self._left = most
+        self._left, self._asked = most, 0
         self._found: dict[Hashable, RigidEfforts] = {}
+        self._told: dict[Hashable, tuple[int, int]] = {}  # size, and when it was asked for
         self._lock = RLock()
 
     def of(
@@ -39,9 +45,20 @@ class KeptEfforts:
             made: makes them, where they are not there.
         """
         with self._lock:
+            self._asked += 1
             if motion not in self._found:
+                if size > self._left:
+                    self._make_room()
                 if size > self._left:
                     return None
                 self._left -= size
                 self._found[motion] = made()
+            self._told[motion] = size, self._asked
             return self._found[motion]
+
+    def _make_room(self) -> None:
+        """Drop what has not been asked for in IDLE rounds."""
+        since = self._asked - IDLE * len(self._found)
+        for motion in [one for one, (_, last) in self._told.items() if last < since]:
+            self._left += self._told.pop(motion)[0]
+            del self._found[motion]
