@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy.signal import butter, filtfilt
 
-from ves_twin.machines.mjcf.motion.inverse import smoothed
+from ves_twin.machines.mjcf.motion.smoothed import smoothed
 
 PERIOD = 0.002
 TIME = PERIOD * np.arange(5000)

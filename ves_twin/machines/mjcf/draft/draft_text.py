@@ -18,7 +18,6 @@ from ves_twin.machines.mjcf.draft.estimates import travel, two_digits, typical
 from ves_twin.machines.mjcf.draft.log_columns import LogColumns
 from ves_twin.machines.mjcf.draft.match import Match, Matches
 from ves_twin.machines.mjcf.draft.spots import Quantity, is_damped_motor, servo_limit
-from ves_twin.machines.mjcf.motion.inverse import smoothed
 from ves_twin.machines.mjcf.parts.servo import FILTERS, is_servo
 from ves_twin.machines.mjcf.parts.ties import Follower, Ties
 from ves_twin.machines.mjcf.rig.column import LAB_UNITS
@@ -312,7 +311,7 @@ def _given(log: LogColumns, effort: Match, model: mujoco.MjModel) -> float:
 
 def _speed(log: LogColumns, position: Match, corner: float) -> float:
     """Typical speed of a joint whose position was recorded."""
-    values = smoothed(position.factor * log.column(position.column), log.period, corner)
+    values = position.factor * log.smooth(position.column, corner)
     return typical(np.gradient(values, log.period))
 
 

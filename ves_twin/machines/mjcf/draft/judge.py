@@ -29,7 +29,7 @@ from ves_twin.machines.mjcf.draft.mounted import Mounted, mounted
 from ves_twin.machines.mjcf.draft.rates import differs
 from ves_twin.machines.mjcf.draft.spots import Quantity
 from ves_twin.machines.mjcf.draft.too_much_friction import too_much_friction
-from ves_twin.machines.mjcf.motion.inverse import smoothed
+from ves_twin.machines.mjcf.motion.smoothed import smoothed
 from ves_twin.machines.mjcf.parts.cyclic import turned_by
 from ves_twin.machines.mjcf.parts.servo import is_servo
 from ves_twin.machines.mjcf.rig.places import driven_joint
@@ -129,11 +129,12 @@ class Judge:
             if m.spot.quantity is Quantity.POSITION:
                 home = home_of(m, self.model, self.log) if self.drives else None
                 zero = home[0] * m.factor / m.scale if home else m.zero
-                positions[m.spot.name] = m.factor * self.log.column(m.column) + zero
+                positions[m.spot.name] = m.factor * self.log.smooth(m.column, self.corner) + zero
             elif m.spot.quantity is Quantity.SPEED and m.spot.name in self.cyclic:
                 speed = m.factor * self.log.column(m.column)
                 time = np.arange(len(speed), dtype=float) * self.log.period
-                positions[m.spot.name] = turned_by(speed, time)
+                turned = turned_by(speed, time)
+                positions[m.spot.name] = smoothed(turned, self.log.period, self.corner)
         loops = bool(self.drives)
         return motion_of(self.model, positions, self.log.period, self.corner, loops, pushed)
 
@@ -286,8 +287,7 @@ class Judge:
 
     def smooth(self, match: Match) -> FloatArray:
         """A recorded effort (n,) in SI, low-passed as the motion."""
-        column = smoothed(self.log.column(match.column), self.log.period, self.corner)
-        return np.asarray(match.factor * column)
+        return np.asarray(match.factor * self.log.smooth(match.column, self.corner))
 
     def recorded(self, match: Match, motion: Motion) -> FloatArray:
         """A recorded effort (m,) in SI, at the motion's rows."""

@@ -21,6 +21,7 @@ from ves_twin.data.formats.open_log import open_log
 from ves_twin.data.mapping.column_expression import ColumnExpression
 from ves_twin.data.repeats import read_at, repeats, unheld
 from ves_twin.machines.mjcf.draft.said import said
+from ves_twin.machines.mjcf.motion.smoothed import smoothed
 
 FEWEST = 64
 """Rows below which neither noise nor motion can be told."""
@@ -96,6 +97,9 @@ class LogColumns:
     called: Mapping[str, str] = field(default_factory=dict)
     steady: Mapping[str, FloatArray] = field(default_factory=dict)
     slower: Mapping[str, Readings] = field(default_factory=dict)
+    _smooth: dict[tuple[str, float], FloatArray] = field(
+        default_factory=dict, init=False, repr=False, compare=False
+    )
 
     @property
     def rows(self) -> int:
@@ -111,6 +115,12 @@ class LogColumns:
         """Rows (n,) of a column, or of a formula of columns as a machine's file may hold one."""
         found = self.values.get(text)
         return ColumnExpression(text).value(self.values) if found is None else found
+
+    def smooth(self, text: str, corner: float) -> FloatArray:
+        """The same (n,) behind a low-pass [Hz] without phase; kept, as it is asked for often."""
+        if (text, corner) not in self._smooth:
+            self._smooth[text, corner] = smoothed(self.column(text), self.period, corner)
+        return self._smooth[text, corner]
 
     def as_logged(self, text: str) -> FloatArray:
         """The same without interpolation, which takes half of the noise of jittering rows away."""

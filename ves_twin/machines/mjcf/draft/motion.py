@@ -10,7 +10,6 @@ import numpy as np
 from scipy.signal import welch
 
 from ves_twin.core.types import FloatArray
-from ves_twin.machines.mjcf.motion.inverse import smoothed
 from ves_twin.machines.mjcf.parts.loop_motion import LoopMotion
 from ves_twin.machines.mjcf.parts.ties import Ties
 
@@ -49,13 +48,13 @@ def motion_of(
     loops: bool = False,
     pushed: Collection[str] = (),
 ) -> Motion:
-    """MuJoCo's inverse dynamics along recorded positions, low-passed without phase.
+    """MuJoCo's inverse dynamics along recorded positions that are low-passed without phase.
 
     Args:
         model: without contacts of interest.
         positions: joint -> position [m or rad] (n,) at even rows; others stay where they are.
         period: of the rows [s].
-        corner: of the low-pass [Hz].
+        corner: of that low-pass [Hz], of which a period is left out at both ends.
         loops: others move as the model's loops have it, and what they need is needed at those
             whose positions are told.
         pushed: joints that have efforts: what joints that follow these need is needed there.
@@ -68,9 +67,8 @@ def motion_of(
     v, a = np.zeros((2, len(rows), model.nv))
     for joint, values in positions.items():
         at, dof = int(model.joint(joint).qposadr[0]), int(model.joint(joint).dofadr[0])
-        smooth = smoothed(values, period, corner)
-        speed = np.gradient(smooth, period)
-        q[:, at], v[:, dof] = smooth[rows], speed[rows]
+        speed = np.gradient(values, period)
+        q[:, at], v[:, dof] = values[rows], speed[rows]
         a[:, dof] = np.gradient(speed, period)[rows]
     if not loops:
         ties, coasts = Ties.of(model, positions, pushed), np.zeros_like(a)

@@ -12,7 +12,6 @@ from ves_twin.machines.mjcf.draft.changes import DEGREE, TURN
 from ves_twin.machines.mjcf.draft.log_columns import LogColumns
 from ves_twin.machines.mjcf.draft.match import Match
 from ves_twin.machines.mjcf.draft.spots import Quantity
-from ves_twin.machines.mjcf.motion.inverse import smoothed
 from ves_twin.machines.mjcf.parts.predecessor import predecessor
 
 FOLLOWS = 0.5
@@ -103,8 +102,8 @@ def differs(log: LogColumns, found: Sequence[Match], corner: float) -> float:
 
 def ratio(log: LogColumns, speed: Match, position: Match, corner: float) -> tuple[float, float]:
     """Correlation of a column with the rate of a position, and its slope on it, both in SI."""
-    v = speed.factor * smoothed(log.column(speed.column), log.period, corner)
-    q = position.factor * smoothed(log.column(position.column), log.period, corner)
+    v = speed.factor * log.smooth(speed.column, corner)
+    q = position.factor * log.smooth(position.column, corner)
     rate = np.gradient(q, log.period)
     power = float(rate @ rate)
     if not power or not np.ptp(v):

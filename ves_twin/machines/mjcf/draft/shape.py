@@ -12,7 +12,7 @@ from ves_twin.machines.mjcf.draft.log_columns import LogColumns
 from ves_twin.machines.mjcf.draft.match import Match, Matches
 from ves_twin.machines.mjcf.draft.motion import band_of
 from ves_twin.machines.mjcf.draft.spots import Quantity, Spot
-from ves_twin.machines.mjcf.motion.inverse import smoothed
+from ves_twin.machines.mjcf.motion.smoothed import smoothed
 
 CLEAR = 0.05
 """Share of its power by which an effort must be explained better than the other way round."""

@@ -10,7 +10,8 @@ import numpy as np
 from scipy.interpolate import CubicSpline
 
 from ves_twin.core.types import FloatArray, IntArray
-from ves_twin.machines.mjcf.motion.inverse import efforts_along, smoothed
+from ves_twin.machines.mjcf.motion.inverse import efforts_along
+from ves_twin.machines.mjcf.motion.smoothed import smoothed
 from ves_twin.machines.mjcf.motion.work import Work
 from ves_twin.machines.mjcf.parts.loops import assemble
 from ves_twin.machines.mjcf.rig.places import driven_joint

@@ -4,37 +4,24 @@ from __future__ import annotations
 
 import copy
 import hashlib
-import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import lru_cache
 
 import mujoco
 import numpy as np
-from scipy.signal import butter, sosfiltfilt
 
 from ves_twin.core.types import FloatArray
 from ves_twin.effects.effect import Effect
 from ves_twin.effects.law import LawKind
 from ves_twin.effects.shifted import shifted
 from ves_twin.machines.mjcf.motion.kept_efforts import KeptEfforts
+from ves_twin.machines.mjcf.motion.smoothed import smoothed
 from ves_twin.machines.mjcf.motion.work import Work, measured_variables, sensor_rows, variables
 from ves_twin.machines.mjcf.parts.inertials import with_inertials_of
 from ves_twin.machines.mjcf.parts.rigid_efforts import Moved, RigidEfforts, inverted, size_of
 from ves_twin.machines.mjcf.parts.ties import Ties
 from ves_twin.machines.mjcf.rig.transmission import Transmission
-
-ORDER = 4
-"""Of the Butterworth low-pass before differentiation, run forth and back: no phase."""
-
-BEYOND, TOLD = 2.0, 1.0
-"""Periods of its corner by which a column is continued beyond its ends before the low-pass, and of
-which it is continued as a parabola: a motion that a log cuts off has its acceleration there. Where
-scipy turns 15 rows about the end, the first period was off by twice the acceleration (sin 2 t
-below 5 Hz), now by a tenth; half a period follows faster motions, and triples white noise there."""
-
-FEWEST = 3
-"""Numbers of a parabola."""
 
 PICKED = 20
 """Rounds after which drives that pick up a half of each other's command are known to 1e-6."""
@@ -303,34 +290,3 @@ def _move_free(
         mujoco.mj_differentiatePos(model, rate, (after - before) * period, q[before], q[after])
         v[k, dof : dof + 6] = rate[dof : dof + 6]
     a[:, dof : dof + 6] = np.gradient(v[:, dof : dof + 6], period, axis=0)
-
-
-def smoothed(column: FloatArray, period: float, corner: float) -> FloatArray:
-    """A column (n,) behind a low-pass [Hz] without phase; as it is where the corner is too high."""
-    share = 2.0 * corner * period
-    if share >= 0.9:
-        return column
-    beyond = math.ceil(BEYOND / (corner * period))
-    count = min(math.ceil(TOLD / (corner * period)) + FEWEST, len(column))
-    before, after = (_onward(end[-count:], beyond) for end in (column[::-1], column))
-    whole = np.concatenate([before[::-1], column, after])
-    return np.asarray(sosfiltfilt(_low_pass(share), whole, padlen=beyond)[beyond:-beyond])
-
-
-def _onward(column: FloatArray, beyond: int) -> FloatArray:
-    """Rows after the last of a column (n,), by the parabola nearest to it (beyond,)."""
-    fit, powers = _parabola(len(column), beyond)
-    return np.asarray(powers @ (fit @ column))
-
-
-@lru_cache
-def _parabola(count: int, beyond: int) -> tuple[FloatArray, FloatArray]:
-    """Numbers of the parabola nearest to a count of rows (p, count), and its next rows of these."""
-    powers = np.vander(np.arange(1.0 - count, beyond + 1.0) / count, min(FEWEST, count))
-    return np.asarray(np.linalg.pinv(powers[:count]), float), powers[count:]
-
-
-@lru_cache
-def _low_pass(share: float) -> FloatArray:
-    """Sections of a corner as a share of half the rate; its design takes longer than its use."""
-    return np.asarray(butter(ORDER, share, output="sos"), float)

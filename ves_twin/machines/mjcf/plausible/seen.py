@@ -13,7 +13,8 @@ from ves_twin.core.recording.recording import POSES, Recording
 from ves_twin.core.types import FloatArray
 from ves_twin.diagnosis.model.forward import Excitation
 from ves_twin.machines.mjcf.motion.forward import MjcfForward
-from ves_twin.machines.mjcf.motion.inverse import efforts_along, smoothed
+from ves_twin.machines.mjcf.motion.inverse import efforts_along
+from ves_twin.machines.mjcf.motion.smoothed import smoothed
 from ves_twin.machines.mjcf.motion.work import Work
 from ves_twin.machines.mjcf.parts.cyclic import is_cyclic, turned_by
 from ves_twin.machines.mjcf.parts.inertials import inertials, point_mass, set_inertials
