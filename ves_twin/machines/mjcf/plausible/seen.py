@@ -54,8 +54,8 @@ class Seen:
     Attributes:
         rig: the machine.
         fed: the rows.
-        positions: of every joint that is not locked (n,).
-        efforts: of each actuator (n,), as the model signs them.
+        positions: of every joint that is not locked (n,), low-passed without phase.
+        efforts: of each actuator (n,), as the model signs them, low-passed as the positions.
         names: signal of each effort.
         wheels: angles of joints whose speed alone was recorded, from where they began (n,).
     """
@@ -106,6 +106,10 @@ class Seen:
         if len(recording.time) < FEWEST:
             return None
         fed = Excitation("seen", recording.time[rows], {}, poses, told.rate)
+        if not poses:
+            for group in (positions, wheels, efforts):
+                for name, column in group.items():
+                    group[name] = smoothed(column, fed.period, told.drive.smoothing)
         names = tuple(signal for signal, _ in sources.values())
         return Seen(rig, fed, positions, efforts, names, wheels)
 
@@ -186,15 +190,14 @@ class Seen:
 
     def _path(self, positions: Mapping[str, FloatArray], rows: int) -> tuple[FloatArray, ...]:
         """Qpos (n, nq), qvel and qacc (n, nv) at some rows."""
-        model, corner = self.rig.model, self.rig.description.drive.smoothing
+        model = self.rig.model
         q = np.tile(model.qpos0, (len(self.fed.time), 1))
         v, a = np.zeros((len(q), model.nv)), np.zeros((len(q), model.nv))
         for joint, column in positions.items():
             at = model.joint(joint)
-            smooth = column if self.fed.poses else smoothed(column, self.fed.period, corner)
-            q[:, at.qposadr[0]] = smooth
+            q[:, at.qposadr[0]] = column
             if not self.fed.poses:
-                v[:, at.dofadr[0]] = np.gradient(smooth, self.fed.period)
+                v[:, at.dofadr[0]] = np.gradient(column, self.fed.period)
                 a[:, at.dofadr[0]] = np.gradient(v[:, at.dofadr[0]], self.fed.period)
         self._plain.ties.follow(model, (q, v, a))
         few = self._few(rows)
@@ -229,14 +232,12 @@ class Seen:
         """
         if float(np.ptp(effort)) <= ROUNDING * float(np.max(np.abs(effort))):
             return 0.0
-        model, corner = self.rig.model, self.rig.description.drive.smoothing
+        model = self.rig.model
         own = speed[:, int(model.joint(driven_joint(model, actuator)).dofadr[0])]
         gain = float(model.actuator(actuator).gear[0] * model.actuator(actuator).gainprm[0])
         quiet = QUIET * max(float(np.max(np.abs(own))), 1e-30)
         one = np.ones_like(own)
         basis = np.stack([own / gain, np.tanh(own / quiet) / gain, one, -one], axis=1)
-        if not self.fed.poses:
-            effort = smoothed(effort, self.fed.period, corner)
         effort = effort[self._few(rows)]
         scale = np.maximum(np.linalg.norm(basis, axis=0), 1e-30)
         _, rest = nnls(basis / scale, effort - need)
