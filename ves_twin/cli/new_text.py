@@ -45,8 +45,11 @@ def new_text(found: NewMachine, model: Path, logs: Sequence[Path]) -> str:
     if draft.untold:
         units = dict.fromkeys(draft.untold.values())
         unit = ", ".join(f"units {u}" if u.startswith("of ") else u for u in units)
+        counts = [unit for unit in units if unit.endswith("per count")]
+        known = "what the motors give" if not counts else "constants that you know"
+        known = "what a count is" if len(counts) == len(units) else known
         asked = " ".join(f"--scale {shlex.quote(c + '=...')}" for c in draft.untold)
-        first = f"draft again with what the motors give ({asked}, in {unit}); then "
+        first = f"draft again with {known} ({asked}, in {unit}); then "
     if draft.gravity:
         first = f"see to the gravity in {found.model or model.name}, and {first}"
     if draft.short:
@@ -68,6 +71,6 @@ def _first(explained: Mapping[str, float]) -> str:
     told = f"{', '.join(none)} {'is' if one else 'are'} what {'it is' if one else 'they are'}"
     it = "it" if one else "them"
     return (
-        f"look whether {told} taken for, and whether the position there is the joint's own angle:"
+        f"look whether {told} taken for, and whether the position there is the joint's own:"
         f" the model explains nothing of {it}, unless friction is most of {it}; then "
     )

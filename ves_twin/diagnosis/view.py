@@ -19,7 +19,7 @@ from ves_twin.diagnosis.model.forward import Excitation, Forward
 from ves_twin.diagnosis.record.by_motion import by_motion
 from ves_twin.diagnosis.record.likeness import check_likeness
 from ves_twin.diagnosis.record.preprocess import Dataset, preprocess
-from ves_twin.diagnosis.record.repeated import repeated
+from ves_twin.diagnosis.record.repeated import moved_alike, repeated
 from ves_twin.diagnosis.record.runs import Progress, Runs
 from ves_twin.diagnosis.record.whitening import Whitening, whitening_of
 from ves_twin.diagnosis.settings import Settings
@@ -116,16 +116,18 @@ class View:
             baseline="measured" if material.baseline else "none",
             baseline_differs=self.findings.differs,
             by_motion=self.moved,
-            held_out_repeats=repeated(self._fed(material.held_out), self._fed(material.recordings)),
+            held_out_repeats=self._repeats,
         )
 
-    def _fed(self, recordings: Sequence[Recording]) -> list[Excitation]:
-        """What was fed into the plant while recordings were made."""
-        found = []
-        for one in recordings:
-            drive = tuple(name for name in self.forward.drive if name in one.signals)
-            found.append(Excitation.of(one, drive))
-        return found
+    @property
+    def _repeats(self) -> bool:
+        """Whether what is held out was fed in, or moved, as what is fitted."""
+        held, fitted = self.material.held_out, self.material.recordings
+        fed = tuple(self.forward.drive)
+        seen = tuple(dict.fromkeys(one.signal for one in self.forward.channels))
+        return repeated(_told(held, fed), _told(fitted, fed)) or moved_alike(
+            _told(held, seen), _told(fitted, seen)
+        )
 
     @property
     def limits(self) -> Limits:
@@ -192,6 +194,11 @@ def _changed(
     changed = differential(seen, baseline, again, whitening)
     own = whitening_of(changed.seen.runs, standstill)
     return changed.seen, replace(own, level=own.level * changed.noise), changed.differs
+
+
+def _told(recordings: Sequence[Recording], names: Sequence[str]) -> list[Excitation]:
+    """Those of some signals that recordings have."""
+    return [Excitation.of(one, tuple(n for n in names if n in one.signals)) for one in recordings]
 
 
 def _bank(seen: Dataset, settings: Settings, progress: Progress) -> SignatureLibrary:

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from ves_twin.diagnosis.model.forward import Excitation
-from ves_twin.diagnosis.record.repeated import repeated
+from ves_twin.diagnosis.record.repeated import moved_alike, repeated
 
 
 def programme(begin: float = 0.0, length: float = 10.0, noise: float = 0.0, speed: float = 1.0):
@@ -61,3 +61,11 @@ def test_a_small_joint_beside_a_large_one_counts_by_its_own_range():
     told = Excitation("a", one.time, {"q": both})
     assert repeated([told], [told])
     assert not repeated([Excitation("b", one.time, {"q": apart})], [told])
+
+
+def test_one_motion_by_other_commands_is_that_motion_again():
+    """Switched currents of a cart's swing-up come at other instants, and the cart moves alike."""
+    first, again, other = programme(), programme(noise=0.01), programme(speed=1.05)
+    assert moved_alike([again], [first])
+    assert not moved_alike([other], [first])
+    assert not moved_alike([again, other], [first])

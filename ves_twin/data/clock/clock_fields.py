@@ -9,6 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ves_twin.core.types import FloatArray
+from ves_twin.data.clock.usual_period import is_usual
 from ves_twin.data.formats.log import Block, Column, Kind
 from ves_twin.data.formats.unit_names import TIME, bare_name
 
@@ -23,6 +24,9 @@ _COUNTER = re.compile(r"^(?:idx|index|i|n|row|sample|samples|count|counter|seq)$
 
 EPOCHS = ((1e9, 4e9, "s"), (1e12, 4e12, "ms"), (1e15, 4e15, "us"), (1e18, 4e18, "ns"))
 """Sizes of a count since 1970 (years 2001 to 2096) in each unit."""
+
+FINER = ("s", "ms", "us")
+"""Units that nobody says, the likeliest first; whole numbers are no seconds."""
 
 EVEN = 0.9
 """Share of steps within half of the usual one that a column called q1 beside q2 needs to be a
@@ -115,5 +119,6 @@ def _unit(column: Column, values: FloatArray) -> tuple[str, bool]:
         if low <= size <= high:
             return unit, True
     step = float(np.median(np.abs(np.diff(told)))) if len(told) > 1 else np.nan
-    whole = bool(np.all(np.mod(told, 1.0) == 0.0))
-    return ("ms", True) if whole and step >= 1.0 else ("s", True)
+    whole = step >= 1.0 and bool(np.all(np.mod(told, 1.0) == 0.0))
+    usual = (u for u in FINER if is_usual(step * TIME[u]) and not (whole and u == "s"))
+    return next(usual, "ms" if whole else "s"), True

@@ -150,7 +150,9 @@ def test_dry_friction_that_the_model_lacks_is_asked_after_before_another_unit(tm
     log = tmp_path / "log.csv"
     rows = np.column_stack([TIME, speed, torque])
     np.savetxt(log, rows, "%.6g", ",", header="t,shaft_speed_rad_s,drive_cmd", comments="")
-    asked = "\n".join(draft(given, [log], tmp_path / "machine.toml").look)
+    found = draft(given, [log], tmp_path / "machine.toml")
+    asked = "\n".join(found.look)
+    assert found.rubs == ("shaft.speed",)  # so that nobody is sent to look for another column
     assert "with dry friction at shaft the model explains" in asked
     before, _, after = asked.partition("with dry friction at shaft")
     assert "another unit" not in before

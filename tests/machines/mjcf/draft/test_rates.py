@@ -162,7 +162,7 @@ def test_what_is_current_is_no_ampere(arm, columns, write, names):
 @pytest.mark.parametrize("sign", [1.0, -1.0])
 def test_a_torque_a_thousand_times_off_is_told_whatever_its_sign(arm, columns, write, sign):
     found, _ = drafted(arm, write(changed(columns, tau2=sign * 1e3 * columns["tau2"])))
-    expected = f"times{', turned,' * (sign < 0.0)} what the model needs: another unit"
+    expected = f"times{', turned,' * (sign < 0.0)} what the model needs: another unit (mN*m?)"
     assert any(expected in words for words in found.look)
     late = {n: v for n, v in columns.items() if n != "t"} | {"time_s": 1e3 * columns["t"]}
     found, _ = drafted(arm, write(changed(late, tau2=1e3 * columns["tau2"])))

@@ -1,8 +1,8 @@
-"""counted, other_angle: angles that are counts of an encoder, or hide their unit in a constant."""
+"""counted, other_angle: positions that count an encoder, or hide their unit in a constant."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 
 import numpy as np
 
@@ -12,7 +12,7 @@ from ves_twin.machines.mjcf.draft.match import Match
 from ves_twin.machines.mjcf.draft.spots import Quantity
 
 COUNTS = 16.0 * np.pi
-"""Whole numbers as large as that are no radians: eight turns."""
+"""Whole numbers as large as that are no radians, eight turns, and no metres."""
 
 
 def other_angle(
@@ -32,13 +32,22 @@ def other_angle(
             )
 
 
-def counted(log: LogColumns, found: list[Match]) -> Iterator[str]:
-    """Angles of whole numbers alone, which reach many turns: what an encoder counts."""
+def counted(log: LogColumns, found: Sequence[Match]) -> Iterator[Match]:
+    """Positions of whole numbers alone, which reach far: what an encoder counts."""
     for match in found:
-        if match.spot.quantity is Quantity.POSITION and match.spot.unit == "rad" and not match.told:
+        if match.spot.quantity is Quantity.POSITION and not match.told:
             values = log.as_logged(match.column)
             if np.ptp(values) > COUNTS and np.all(values == np.round(values)):
-                yield (
-                    f"{match.column} has whole numbers alone, {np.min(values):g} to"
-                    f" {np.max(values):g}: counts of an encoder? scale = 2 pi / counts of a turn"
-                )
+                yield match
+
+
+def words_of_counted(log: LogColumns, found: Sequence[Match]) -> Iterator[str]:
+    """What is asked of each."""
+    for match in counted(log, found):
+        values, slides = log.as_logged(match.column), match.spot.unit == "m"
+        scale = "way / counts of it" if slides else "2 pi / counts of a turn"
+        other = ", or millimetres" * slides
+        yield (
+            f"{match.column} has whole numbers alone, {np.min(values):g} to {np.max(values):g}:"
+            f" counts of an encoder{other}? scale = {scale}"
+        )

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field, replace
 
 import mujoco
 
-from ves_twin.machines.mjcf.draft.angles import counted
+from ves_twin.machines.mjcf.draft.angles import words_of_counted
 from ves_twin.machines.mjcf.draft.closed_chain import closed_chain, words_of_open
 from ves_twin.machines.mjcf.draft.judge import Judge
 from ves_twin.machines.mjcf.draft.lifted import Load, lifted
@@ -156,7 +156,7 @@ def _checked(log: LogColumns, matches: Matches, model: mujoco.MjModel, corner: f
         findings += words_of_one_way(motion, dofs, [m.spot.joint for m in judge.driving(found)])
     lost = words_of_dropouts(log, found)
     far = [f for told in (beyond, beyond_control, beyond_limit) for f in told(log, found, model)]
-    findings[before:before] = [*lost, *counted(log, found), *far]
+    findings[before:before] = [*lost, *words_of_counted(log, found), *far]
     found, said = rated(log, found, corner, model)
     times = {match.spot.joint: scale for match, scale in scales.items()}
     told = (*findings, *said)

@@ -34,6 +34,7 @@ def with_constants(matches: Matches, scales: Mapping[str, float]) -> Matches:
 
 
 def _given(match: Match, scale: float) -> Match:
-    reasons = (*match.reasons, f"{match.per} is given")
+    per = "its scale" if match.unit == match.spot.unit else match.per
+    reasons = (*match.reasons, f"{per} is given")
     unit = match.spot.unit
     return replace(match, unit=unit, told=True, scale=scale, reasons=reasons, given=True)

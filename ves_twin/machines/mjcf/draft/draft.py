@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from ves_twin.core.errors import InvalidInputError
+from ves_twin.machines.mjcf.draft.angles import counted
 from ves_twin.machines.mjcf.draft.by_number import by_number
 from ves_twin.machines.mjcf.draft.check import Checked
 from ves_twin.machines.mjcf.draft.chosen import Chosen
@@ -22,6 +23,7 @@ from ves_twin.machines.mjcf.draft.drafting import Drafting
 from ves_twin.machines.mjcf.draft.estimates import LOW_PASSED
 from ves_twin.machines.mjcf.draft.given_model import GivenModel
 from ves_twin.machines.mjcf.draft.held_stretch import held_stretch, too_short
+from ves_twin.machines.mjcf.draft.in_counts import in_counts, without_counts
 from ves_twin.machines.mjcf.draft.log_columns import LogColumns
 from ves_twin.machines.mjcf.draft.match import matched
 from ves_twin.machines.mjcf.draft.names import is_command
@@ -57,7 +59,7 @@ class Draft:
         explained: column or signal -> share of its power that the model as it is explains.
         stretch: length of stretches to hold out [s], long enough for a diagnosis; 0 where the log
             is too short for two, or in pieces already.
-        rubs: columns of efforts that friction explains, and the model does not.
+        rubs: columns or signals that friction explains, and the model does not.
         gravity: that the model should have, as its file has it; empty where it is right.
         short: whether a diagnosis would find the log, or a piece of it, too short.
         untold: column -> unit of a constant that nothing tells, where 1 is taken.
@@ -102,10 +104,10 @@ def draft(
     if not logs:
         raise InvalidInputError("logs", "none", "at least one")
     given, log = GivenModel.read(model), LogColumns.read(logs[0], rate)
-    spots = spots_of(given.model)
+    spots, log = spots_of(given.model), without_counts(log, scales or {})
     matches = by_number(log, by_shape(log, matched(log, spots), spots), spots)
     log, matches = with_steady(log, matches, spots)
-    matches = with_constants(matches, scales or {})
+    matches, counts = with_constants(matches, scales or {}), in_counts(log, spots, matches)
     measured = [m for m in matches.found if m.spot.quantity is not Quantity.EFFORT]
     measured += [
         m for m in matches.of(Quantity.EFFORT) if not is_command(log.said.get(m.column, m.column))
@@ -115,10 +117,11 @@ def draft(
     now = drafting.best()
     others = [read_rig_recording(further, now.rig) for further in logs[1:]]
     left = dict(matches.left)
+    left |= {m.column: f"{m.spot.label} in counts: what one is, nothing tells" for m in counts}
     left |= {c: "says what was asked for" for c in matches.setpoints}
     left |= {m.column: "is a speed" for m in now.check.found if not used(m, now.mode)}
     silent = untold(given.model, now.check.found, now.check.locked)
-    turned = drafting.other_way(now)
+    turned, rubs = drafting.other_way(now)
     coarse = [] if turned else now.coarse
     short, smooth = too_short(now.rig, now.part), _smooth(now.mode)
     short += [words for one in others for words in too_short(now.rig, one)]
@@ -131,6 +134,10 @@ def draft(
         *now.check.findings,
     )
     look = (*found, *silent, *turned, *coarse, *smooth, *short)
+    unknown = {m.column: m.per for m in now.check.found if m.fitted and abs(m.scale) == 1.0}
+    per_count = {
+        m.column: f"{m.spot.unit} per count" for m in (*counts, *counted(log, now.check.found))
+    }
     told = {name: max(share, 0.0) for name, share in now.explained.items()}
     return Draft(
         text=now.text,
@@ -141,11 +148,11 @@ def draft(
         mode=words,
         explained=told,
         stretch=stretch,
-        rubs=now.check.rubs,
+        rubs=tuple(now.explained) if rubs else now.check.rubs,
         gravity=now.check.gravity,
         short=bool(short),
         one_only=not (stretch or short or now.mode.horizon),
-        untold={m.column: m.per for m in now.check.found if m.fitted and abs(m.scale) == 1.0},
+        untold={**per_count, **unknown},
     )
 
 

@@ -187,15 +187,15 @@ class Drafting:
                 break
         return found
 
-    def other_way(self, now: Version) -> list[str]:
-        """Columns that, turned or in another unit, are explained better: a sentence each.
+    def other_way(self, now: Version) -> tuple[list[str], bool]:
+        """Columns that, turned or in another unit, are explained better; whether friction does so.
 
         A swing that runs away whole is told from its turned one in the shortest pieces.
         """
         if not now.poor:
-            return []
+            return [], False
         turned = other_way(now.rig, now.part)
-        cut = None if turned else self._shortest(now)
+        cut = None if turned[0] else self._shortest(now)
         return other_way(cut.rig, cut.part) if cut else turned
 
     def _leaves(self, whole: Version) -> bool:

@@ -11,6 +11,7 @@ from ves_twin.machines.mjcf.draft.angles import other_angle
 from ves_twin.machines.mjcf.draft.effort_fit import FAR, STRONG, EffortFit
 from ves_twin.machines.mjcf.draft.log_columns import LogColumns
 from ves_twin.machines.mjcf.draft.match import Match
+from ves_twin.machines.mjcf.draft.milli import ALIKE, THOUSAND
 
 ODD = 50.0
 """Times what the model needs from which on an effort is in another unit, whatever friction does."""
@@ -71,9 +72,17 @@ def words_of_size(log: LogColumns, match: Match, fit: EffortFit) -> list[str]:
         little = "and the model needs next to nothing there: nothing tells its unit"
         return [f"{match.column} is friction, {fit.share:.0%} of it, {little}"]
     turned = ", turned," * (strong and fit.slope < 0.0)
+    unit = f" ({_prefixed(match, times)}?)" if strong and _prefixed(match, times) else ""
     return [
-        f"{match.column} is {times:.3g} times{turned} what the model needs: another unit,"
+        f"{match.column} is {times:.3g} times{turned} what the model needs: another unit{unit},"
         f"{' swapped columns,' * (not 1.0 / FOREIGN < times < FOREIGN)} a gear"
         f"{', a rotor' * (times > 1.0)} or a wrong mass?"
         f"{LITTLE * (not strong and times > ODD)}"
     ]
+
+
+def _prefixed(match: Match, times: float) -> str:
+    """The unit with a prefix that so many times come near to; empty if they come near to none."""
+    units = {"m": THOUSAND, "k": 1.0 / THOUSAND}
+    near = (p for p, by in units.items() if abs(float(np.log(times / by))) < np.log(ALIKE))
+    return next((f"{prefix}{match.unit}" for prefix in near if match.unit in ("N", "N*m")), "")

@@ -44,7 +44,7 @@ UNITS = (0.01, 0.1, 10.0, 100.0)
 """What a command is multiplied with besides: a gear that the model has, too, per cent, mN m."""
 
 
-def other_way(rig: Rig, recording: Recording) -> list[str]:
+def other_way(rig: Rig, recording: Recording) -> tuple[list[str], bool]:
     """A question about the column that, turned or scaled, lets the model explain most more.
 
     Of a motion that is integrated signs and units are not told by efforts: the model is simulated
@@ -58,7 +58,8 @@ def other_way(rig: Rig, recording: Recording) -> list[str]:
         recording: of its log.
 
     Returns:
-        A sentence, two where friction explains more as well; none where nothing is worth one.
+        A sentence, two where friction explains more as well; none where nothing is worth one. Then
+        whether friction explains as much as any column read otherwise.
     """
     told = rig.description
     joints: dict[str, list[str]] = {}
@@ -69,19 +70,20 @@ def other_way(rig: Rig, recording: Recording) -> list[str]:
         joints.setdefault(joint, []).append(signal)
     commands = [[name] for name in told.drive.actuators.values()]
     if not 0 < len(joints) + len(commands) <= MOST:
-        return []
+        return [], False
     tried = [(names, -1.0) for names in (*joints.values(), *commands)]
     hinges = [j for j in joints if int(rig.model.joint(j).type[0]) == HINGE]
     tried += [(joints[j], factor) for j in hinges for factor in (DEGREE, 1.0 / DEGREE)]
     tried += [(names, factor) for names in commands for factor in UNITS]
     one = len(MjcfForward.of(rig).channels) == 1
-    of = "of it" if one else "of what it explains least of"
+    of = "of it" if one else "of each signal"
+    least = "" if one else "at least "
     within = f"in pieces of {told.drive.horizon:g} s " if told.drive.horizon else ""
     before, found = max(least_explained(rig, recording), 0.0), list[tuple[float, str]]()
     for names, factor in tried:
         signals = {n: factor * v if n in names else v for n, v in recording.signals.items()}
         share = least_explained(rig, replace(recording, signals=signals))
-        explains = f"{within}the model explains {share:.0%} {of}, {before:.0%}"
+        explains = f"{within}the model explains {least}{share:.0%} {of}, {before:.0%}"
         other = f"times {factor:g}, {{}}: another unit, or a gear?"
         question = QUESTIONS.get(factor, other).format(f"{explains} as it is")
         found.append((share, f"{names[0]} {question}"))
@@ -90,9 +92,10 @@ def other_way(rig: Rig, recording: Recording) -> list[str]:
     rubbed, rubbing = _rubbed(rig, recording)
     if rubbed > before + BETTER:
         where = ", ".join(rubbing)
-        words = f"{within}with dry friction at {where} the model explains {rubbed:.0%} {of}"
+        words = f"{within}with dry friction at {where} the model explains {least}{rubbed:.0%} {of}"
         asked.insert(0, f"{words}, {before:.0%} as it is: a diagnosis looks for it")
-    return asked if len(asked) < 2 or rubbed >= share else asked[::-1]
+    rubs = rubbed > before + BETTER and rubbed >= share
+    return (asked if len(asked) < 2 or rubs else asked[::-1]), rubs
 
 
 def _rubbed(rig: Rig, recording: Recording) -> tuple[float, list[str]]:
