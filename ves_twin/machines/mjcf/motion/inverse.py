@@ -17,6 +17,7 @@ from ves_twin.effects.law import LawKind
 from ves_twin.effects.shifted import shifted
 from ves_twin.machines.mjcf.motion.kept_efforts import KeptEfforts
 from ves_twin.machines.mjcf.motion.smoothed import smoothed
+from ves_twin.machines.mjcf.motion.thinned import Thinned
 from ves_twin.machines.mjcf.motion.work import Work, measured_variables, sensor_rows, variables
 from ves_twin.machines.mjcf.parts.inertials import with_inertials_of
 from ves_twin.machines.mjcf.parts.rigid_efforts import Moved, RigidEfforts, inverted, size_of
@@ -121,6 +122,15 @@ class _Motion:
         """See `_states`."""
         return _kept_states(self.path) if self.recorded else _states(self.path)
 
+    @property
+    def thinned(self) -> Thinned:
+        """Rows that efforts are computed at; poses at rest have nothing between them."""
+        programme, told = self.path.work.programme, self.path.work.rig.description
+        count = len(programme.time)
+        if programme.poses:
+            return Thinned(count, 1)
+        return Thinned.of(count, programme.period, told.drive.smoothing, programme.rate)
+
 
 def _moved_of(work: Work) -> Moved:
     """Efforts along the motion that is fed in: summed from directions where it is as recorded.
@@ -141,10 +151,11 @@ def _moved_of(work: Work) -> Moved:
     alike = _bared(with_inertials_of(work.model, nominal), work.ties) if as_recorded else None
     if alike is not None and _content(alike) == content:
         motion = _Motion(path, _hash(content), as_recorded, nominal)
-        size = size_of(nominal, len(work.programme.time))
+        thinned = motion.thinned
+        size = size_of(nominal, len(thinned.rows))
         efforts = _efforts(nominal).of(motion, size, lambda: _made(motion))
         if efforts is not None and efforts.linear:
-            return efforts.of(work.model)
+            return thinned.whole(efforts.of(work.model), *motion.states()[:2])
     rigid = _rigid(work.model, work.ties)
     return _moved(_Motion(path, _hash(_content(rigid)), as_recorded, rigid))
 
@@ -163,13 +174,17 @@ def _efforts(model: mujoco.MjModel) -> KeptEfforts:
 
 
 def _made(motion: _Motion) -> RigidEfforts:
-    return RigidEfforts(motion.model, *motion.states())
+    return RigidEfforts(motion.model, *motion.thinned.few(motion.states()))
 
 
 @lru_cache(maxsize=KEPT)
 def _moved(motion: _Motion) -> Moved:
     """Of any other one."""
-    return inverted(motion.model, *motion.states())
+    states, thinned = motion.states(), motion.thinned
+    moved = inverted(motion.model, *thinned.few(states))
+    if moved.bound:  # a contact is at work, whose force is not smooth
+        return inverted(motion.model, *states)
+    return thinned.whole(moved, *states[:2])
 
 
 def _single(work: Work) -> list[tuple[str, str]]:
