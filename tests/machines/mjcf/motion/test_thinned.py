@@ -33,7 +33,7 @@ def states() -> tuple[mujoco.MjModel, tuple[np.ndarray, ...]]:
 
 
 def test_what_lies_between_is_what_inverse_dynamics_needs_there():
-    """To a thousandth of each effort's spread, where the motion goes up to the corner."""
+    """To 2e-3 of each spread, by half at the ends; the motion goes up to the corner."""
     model, path = states()
     thinned = Thinned.of(len(path[0]), PERIOD, CORNER, 100.0)
     assert thinned.every == int(1.0 / (OVER * CORNER * PERIOD))
@@ -43,7 +43,7 @@ def test_what_lies_between_is_what_inverse_dynamics_needs_there():
     assert found.position is path[0]
     assert found.speed is path[1]
     off = np.std((found.effort - every.effort)[ENDS:-ENDS], axis=0) / np.std(every.effort, axis=0)
-    assert np.max(off) < 1e-3
+    assert np.max(off) < 2e-3
 
 
 @pytest.mark.parametrize(
