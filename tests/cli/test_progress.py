@@ -86,19 +86,20 @@ def test_another_stage_begins_its_own_time(now):
     assert bar.line() == "plan: second, 50 %, 1 min 10 s so far, about 10 s left in this stage"
 
 
-def _interrupted():
+def _interrupted(asks: signal.Signals):
     with RunProgress("run", 2.0) as bar:
         bar(0.5)
-        os.kill(os.getpid(), signal.SIGINT)
+        os.kill(os.getpid(), asks)
         time.sleep(0.05)
         bar(1.0)
 
 
-def test_ctrl_c_stops_between_two_slices():
-    before = signal.getsignal(signal.SIGINT)
+@pytest.mark.parametrize("asks", progress.ASKS)
+def test_ctrl_c_and_what_batch_systems_send_stop_between_two_slices(asks):
+    before = signal.getsignal(asks)
     with pytest.raises(KeyboardInterrupt):
-        _interrupted()
-    assert signal.getsignal(signal.SIGINT) is before
+        _interrupted(asks)
+    assert signal.getsignal(asks) is before
 
 
 def _pressed(bar: RunProgress) -> None:

@@ -18,12 +18,15 @@ FIRST = 1.0
 PAUSE = 10.0
 """Time between two lines where stderr is no terminal [s]: a log of an hour stays readable."""
 
+ASKS = (signal.SIGINT, signal.SIGTERM)
+"""Signals that ask for an end: of the keyboard, and of batch systems and `timeout`."""
+
 ENDING = "coming to an end with what is known by now; Ctrl-C again stops without it"
 """What the first Ctrl-C is answered with, where there is something to tell."""
 
 
 class RunProgress:
-    """Called with the amount reached; the first Ctrl-C ends the work between two slices.
+    """Called with the amount reached; a first Ctrl-C or SIGTERM ends the work between two slices.
 
     Work that can tell what it knows by then is brought to its end by `ending`, and only a second
     Ctrl-C stops it.
@@ -54,7 +57,7 @@ class RunProgress:
         self._stage, self._done = "", 0.0
         self._begun = self._stage_begun = self._stage_over = time.monotonic()
         self._asked = self._stopped = self._running = False
-        self._before: Any = None
+        self._before: dict[signal.Signals, Any] = {}
         self._over = threading.Event()
         self._teller = threading.Thread(target=self._tell, daemon=True)
 
@@ -94,7 +97,7 @@ class RunProgress:
         return text
 
     def __enter__(self) -> RunProgress:
-        self._before = signal.signal(signal.SIGINT, self._stop)
+        self._before = {one: signal.signal(one, self._stop) for one in ASKS}
         if self._bar.disable:
             self._teller.start()
         return self
@@ -103,7 +106,8 @@ class RunProgress:
         self._over.set()
         if self._teller.is_alive():
             self._teller.join()
-        signal.signal(signal.SIGINT, self._before)
+        for one, before in self._before.items():
+            signal.signal(one, before)
         self._bar.close()
 
     def _tell(self) -> None:

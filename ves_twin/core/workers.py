@@ -45,7 +45,7 @@ class Workers:
         if self._pool is not None:
             if kind is KeyboardInterrupt:  # what is being computed is of use to nobody
                 for process in multiprocessing.active_children():
-                    process.terminate()
+                    process.kill()
             self._pool.shutdown(cancel_futures=True)
             self._pool = None
 
@@ -113,8 +113,12 @@ class Workers:
 
 
 def _follow_parent() -> None:
-    """End this process when the one that began it is gone, which alone hears of Ctrl-C."""
-    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    """End this process when the one that began it is gone, which alone hears of Ctrl-C.
+
+    And of what a batch system or `timeout` sends to all of a group.
+    """
+    for one in (signal.SIGINT, signal.SIGTERM):
+        signal.signal(one, signal.SIG_IGN)
     parent = multiprocessing.parent_process()
 
     def watch() -> None:

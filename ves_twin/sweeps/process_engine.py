@@ -119,7 +119,8 @@ def _stop(worker: _Worker) -> int | None:
 
 def _serve(pipe: Connection) -> None:
     """The worker: point in, result out, until the pipe is closed."""
-    signal.signal(signal.SIGINT, signal.SIG_IGN)  # the keyboard stops the sweep, not the workers
+    for one in (signal.SIGINT, signal.SIGTERM):  # these stop the sweep, not the workers
+        signal.signal(one, signal.SIG_IGN)
     while True:
         try:
             point = pipe.recv()

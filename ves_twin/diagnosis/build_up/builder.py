@@ -171,7 +171,7 @@ class Builder:
         for last in range(ROUNDS):
             if budget.skips(ANEW):
                 break
-            self.desk.progress(0.0, f"fitting {_counted(chosen)} together")
+            self.desk.progress(0.0, f"fitting {_counted(chosen)}")
             regression = halves.regression
             evidence = self.evidence(regression.fit(chosen).residual)
             fit = in_full(regression, chosen, point, evidence)
@@ -359,7 +359,7 @@ class Builder:
 
 
 def _counted(chosen: Sequence[int]) -> str:
-    return "1 cause" if len(chosen) == 1 else f"{len(chosen)} causes"
+    return "1 cause" if len(chosen) == 1 else f"{len(chosen) or 'no'} causes"
 
 
 def _places(halves: Halves, present: Sequence[Trial]) -> list[int]:

@@ -135,6 +135,8 @@ def _shapes(
     pieces = [(piece, whitening.lost(k)) for k, piece in enumerate(evidence.runs.slices)]
     yield "time", "time", np.concatenate(whitening.times())
     for c, name in enumerate(names):
+        if not np.any(evidence.measured[:, c]):  # what a motion lacks is its own error
+            continue
         column = [predicted[piece, c].astype(float) for piece, _ in pieces]
         x, rate = (
             np.concatenate([rows[lost:] for rows, (_, lost) in zip(of, pieces, strict=True)])

@@ -127,8 +127,10 @@ def rms_words(gain: Gain) -> str:
     if len(told) > 1 and all(one.startswith("falls ") for one in told):
         words = f"{told[0]} and {told[1].removeprefix('falls ')}"
     bent = any(gain.told[name][0] < gain.errors[name][0] for name in told_of)
-    given = ", over the model as given where its tuning is worse" * bent
-    return f"the rms error on held-out recordings {words}{given}"
+    tuned = any(gain.told[name][0] < (1.0 - STAYS) * gain.given.get(name, 0.0) for name in told_of)
+    over = ", over what the model leaves with its tolerances fitted" * tuned
+    over = ", over the model as given where its tuning is worse" if bent else over
+    return f"the rms error on held-out recordings {words}{over}"
 
 
 def _moved(fall: float, name: str) -> str:

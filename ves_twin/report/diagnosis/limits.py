@@ -25,8 +25,8 @@ def rival_words(rival: Rival, best: bool) -> str:
     """Why an explanation was kept or lost."""
     if rival.standing is Standing.SCREENED:
         return (
-            "not fitted: its predicted improvement is smaller than that of the causes above"
-            f" ({digits(rival.score)} of chi^2)"
+            f"not fitted: by itself and to first order it takes {digits(rival.score)} of chi^2;"
+            " beside others it may take more or less"
         )
     if best:
         return "the best"

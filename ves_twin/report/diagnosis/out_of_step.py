@@ -12,14 +12,14 @@ def out_of_step_sentence(verdict: Verdict) -> str:
     if most is None:
         return ""
     instead = (
-        "compared are the efforts that the measured motion lacks, joint by joint (.missing)"
+        "So efforts are compared in place of motions: of each joint what its measured motion asks"
+        " for beyond the model and its commands (.missing)."
         if verdict.basis.by_motion
-        else "this record was judged by noise alone"
+        else "So this record was judged by noise alone."
     )
     return (
-        "Simulations fall out of step here, or tolerances are wide for so little noise: machines in"
-        " order, simulated with errors within the declared tolerances, leave up to"
-        f" {digits(most)} sigma in a band or stretch of time. That tells nothing, so {instead}."
+        "Simulated motions cannot be compared here: within the declared tolerances alone they leave"
+        f" the measured one by up to {digits(most)} times the noise. {instead}"
     )
 
 

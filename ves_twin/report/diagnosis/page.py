@@ -195,10 +195,10 @@ def _probability(share: float) -> str:
 
 
 def _levels(verdict: Verdict) -> list[Html]:
-    head = (
-        *("channel", "before, sigma", "after, sigma", "before", "tolerances alone"),
-        *("after", "spread of the signal"),
-    )
+    head: tuple[str, ...] = ("channel", "before, sigma", "after, sigma")
+    head += ("before", "tolerances alone", "after")
+    spreads = any(e.spread for e in verdict.residuals.values())  # what a motion lacks has none
+    head += ("spread of the signal",) * spreads
     rows = [
         (
             name,
@@ -207,7 +207,7 @@ def _levels(verdict: Verdict) -> list[Html]:
             quantity(e.before_si, e.unit),
             quantity(e.after_si if e.tolerances_si is None else e.tolerances_si, e.unit),
             quantity(e.after_si, e.unit),
-            quantity(e.spread, e.unit),
+            *(quantity(e.spread, e.unit),) * spreads,
         )
         for name, e in verdict.residuals.items()
     ]
