@@ -157,9 +157,7 @@ def test_a_simulation_that_falls_out_of_step_is_told_and_what_was_done_instead()
     by_motion = replace(by_noise, basis=replace(plain.basis, by_motion=True))
     assert not out_of_step_sentence(plain)
     assert "this record was judged by noise alone" in out_of_step_sentence(by_noise)
-    assert "compared are the efforts that the measured motion lacks" in out_of_step_sentence(
-        by_motion
-    )
+    assert "efforts are compared in place of motions" in out_of_step_sentence(by_motion)
     assert "drive.horizon" in next_step(by_noise)
     assert "drive.horizon" not in next_step(by_motion)
     unknown = replace(by_noise, verdict=Kind.UNKNOWN, causes=(), proved=())
