@@ -143,7 +143,7 @@ def _check_length(runs: Runs) -> None:
             length = float(np.ptp(programme.time)) + (fewest + 1 - len(time)) * grid.step
             span = "" if programme.poses else f", so {length:.2f} s"
             expected = (
-                f"at least {fewest}{span} in every recording, stretch (--alternate; without it"
+                f"at least {fewest}{span}: a longer recording, stretch (--alternate; without it"
                 f" every second tenth is held out) or piece (drive.horizon){_finer(programme)}"
             )
             raise InvalidInputError(what, len(time), expected)
@@ -162,7 +162,7 @@ def _finer(programme: Excitation) -> str:
     rows = len(programme.time)
     if programme.poses or rows < FEWEST_ROWS:
         return ""
-    return f", or a higher rate in the machine's file: {rows} rows were recorded"
+    return f", or a higher rate in the machine's file ({rows} rows were recorded)"
 
 
 def _marked(runs: Runs, empty: Sequence[BoolArray]) -> list[BoolArray]:

@@ -136,7 +136,7 @@ def test_a_recording_as_long_as_a_refusal_asks_is_taken(tmp_path):
     forward = MjcfForward.of(Rig.load(str(rig_in(tmp_path))))
     with pytest.raises(InvalidInputError) as refused:
         preprocess(forward, [recording_of(60)], None, 47.0)
-    seconds = float(re.search(r"at least 100, so (.*) s in", str(refused.value))[1])
+    seconds = float(re.search(r"at least 100, so (.*) s:", str(refused.value))[1])
     rows = round(seconds / 0.01) + 1
     preprocess(forward, [recording_of(rows)], None, 47.0)
     with pytest.raises(InvalidInputError, match="at least 100"):
