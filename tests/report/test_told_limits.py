@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import pytest
 
-from ves_twin.diagnosis.build_up.result import Proved
+from ves_twin.diagnosis.build_up.result import Left, Proved
 from ves_twin.diagnosis.law.result import LAW
 from ves_twin.diagnosis.record.residual_structure import ResidualStructure
 from ves_twin.diagnosis.unseen.gain import Gain
@@ -29,7 +29,7 @@ from ves_twin.report.diagnosis.answer import (
 from ves_twin.report.diagnosis.basis import gain_words, rests_on
 from ves_twin.report.diagnosis.limits import blind_causes, next_sentences
 from ves_twin.report.diagnosis.out_of_step import out_of_step_sentence
-from ves_twin.report.diagnosis.proved import standing_words
+from ves_twin.report.diagnosis.proved import proved_parts, standing_words
 from ves_twin.report.diagnosis.strained import check_sentence, tuned_words
 
 FIGURES = Statistics(1.0, 2.0, 9.0, 5.0)
@@ -248,3 +248,13 @@ def test_who_has_a_better_model_is_not_sent_to_the_extended_one(given):
     told = replace(verdict(firm=False), gain=gain)
     assert next_step(told).startswith("Keep the model as it was given") is (given < 9.0)
     assert ("as well or better" in gain_words(told)) is (given < 9.0)
+
+
+@pytest.mark.parametrize(("rms", "told"), [(0.3, True), (0.8, False)])
+def test_a_channel_of_which_less_is_left_than_its_noise_says_that_this_is_declared_too_large(
+    rms, told
+):
+    """Of a cart's pole a third of the noise was left, and two causes proved within it."""
+    one = replace(verdict(), put_to_proof=1, left={"force": Left(rms, 0.9, "N", 1.0, 0.1)})
+    text = "".join(map(str, proved_parts(one)))
+    assert ("force: less is left than the noise that is declared" in text) is told

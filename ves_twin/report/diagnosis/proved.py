@@ -17,6 +17,9 @@ NEAR = 3.0
 """Factor between a p and its limit up to which one stretch of time may turn it: the median of the
 largest change where one of 11 to 40 blocks is left out (drawn, p of 0.001 to 0.02)."""
 
+QUIET = 0.5
+"""Share of its declared noise below which what is left of a channel says that this is too large."""
+
 FEW = 4
 """Combinations that the terminal tells; the page has all."""
 
@@ -244,7 +247,9 @@ def _left(left: Mapping[str, Left]) -> list[Html]:
         "Rms on held-out data. What is left beyond noise is model error: no cause of the library"
         " explains it. Follows: a smooth law of that signal would take this share of its square."
     )
-    return [paragraph(note, "note"), table(head, rows)]
+    quiet = [name for name, one in left.items() if one.rms < QUIET * one.noise]
+    said = f"{', '.join(quiet)}: less is left than the noise that is declared, which is too large."
+    return [paragraph(note, "note"), table(head, rows), *[paragraph(said)] * bool(quiet)]
 
 
 def _largest(found: Mapping[str, float], told: Callable[[float], str]) -> str:
