@@ -37,7 +37,7 @@ def test_what_lies_between_is_what_inverse_dynamics_needs_there():
     model, path = states()
     thinned = Thinned.of(len(path[0]), PERIOD, CORNER, 100.0)
     assert thinned.every == int(1.0 / (OVER * CORNER * PERIOD))
-    found = thinned.whole(inverted(model, *thinned.few(path)), *path[:2])
+    found = thinned.inverted(model, *path)
     every = inverted(model, *path)
     assert len(thinned.rows) < len(path[0]) / (thinned.every - 1.0)
     assert found.position is path[0]
@@ -52,3 +52,14 @@ def test_what_lies_between_is_what_inverse_dynamics_needs_there():
 def test_a_slow_log_an_open_low_pass_and_a_short_log_are_computed_row_by_row(count, period, corner):
     """What an open low-pass lets through would fold back."""
     assert Thinned.of(count, period, corner, 100.0).every == 1
+
+
+def test_a_motion_beyond_a_stop_is_computed_row_by_row():
+    model, path = states()
+    model.opt.disableflags = 0
+    model.jnt_limited[1], model.jnt_range[1] = 1, (-0.5, 0.5)
+    every = inverted(model, *path)
+    assert every.bound
+    np.testing.assert_array_equal(
+        Thinned(len(path[0]), 20).inverted(model, *path).effort, every.effort
+    )

@@ -151,11 +151,10 @@ def _moved_of(work: Work) -> Moved:
     alike = _bared(with_inertials_of(work.model, nominal), work.ties) if as_recorded else None
     if alike is not None and _content(alike) == content:
         motion = _Motion(path, _hash(content), as_recorded, nominal)
-        thinned = motion.thinned
-        size = size_of(nominal, len(thinned.rows))
+        size = size_of(nominal, len(work.programme.time))
         efforts = _efforts(nominal).of(motion, size, lambda: _made(motion))
         if efforts is not None and efforts.linear:
-            return thinned.whole(efforts.of(work.model), *motion.states()[:2])
+            return efforts.of(work.model)
     rigid = _rigid(work.model, work.ties)
     return _moved(_Motion(path, _hash(_content(rigid)), as_recorded, rigid))
 
@@ -174,17 +173,13 @@ def _efforts(model: mujoco.MjModel) -> KeptEfforts:
 
 
 def _made(motion: _Motion) -> RigidEfforts:
-    return RigidEfforts(motion.model, *motion.thinned.few(motion.states()))
+    return RigidEfforts(motion.model, *motion.states(), motion.thinned.inverted)
 
 
 @lru_cache(maxsize=KEPT)
 def _moved(motion: _Motion) -> Moved:
     """Of any other one."""
-    states, thinned = motion.states(), motion.thinned
-    moved = inverted(motion.model, *thinned.few(states))
-    if moved.bound:  # a contact is at work, whose force is not smooth
-        return inverted(motion.model, *states)
-    return thinned.whole(moved, *states[:2])
+    return motion.thinned.inverted(motion.model, *motion.states())
 
 
 def _single(work: Work) -> list[tuple[str, str]]:

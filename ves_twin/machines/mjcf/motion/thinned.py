@@ -5,11 +5,12 @@ from __future__ import annotations
 from dataclasses import dataclass
 from functools import cached_property
 
+import mujoco
 import numpy as np
 from scipy.interpolate import make_interp_spline
 
 from ves_twin.core.types import FloatArray, IntArray
-from ves_twin.machines.mjcf.parts.rigid_efforts import Moved
+from ves_twin.machines.mjcf.parts.rigid_efforts import Moved, inverted
 
 OVER, ORDER = 6.0, 5
 """Rows in a period of the fastest motion that is compared, and order of the spline through them: of
@@ -56,19 +57,21 @@ class Thinned:
         last = self.count - 1 - ENDS
         return np.unique(np.append(np.arange(ENDS, last, self.every), last))
 
-    def few(self, states: tuple[FloatArray, ...]) -> tuple[FloatArray, ...]:
-        """States (n, k) at these rows (m, k)."""
-        return states if self.every == 1 else tuple(state[self.rows] for state in states)
+    def inverted(self, model: mujoco.MjModel, q: FloatArray, v: FloatArray, a: FloatArray) -> Moved:
+        """MuJoCo's inverse dynamics along a motion, (n, nq) and (n, nv), at all of its rows.
 
-    def whole(self, moved: Moved, position: FloatArray, speed: FloatArray) -> Moved:
-        """What was computed at these rows at all of them (n, ...)."""
+        Row by row where a contact, limit or equality is at work, whose force is not smooth.
+        """
         if self.every == 1:
-            return moved
-        at = np.arange(self.count)
-        effort, sensed = (
-            np.asarray(make_interp_spline(self.rows, column, ORDER)(at))
-            if column.shape[1]
-            else np.zeros((self.count, 0))
-            for column in (moved.effort, moved.sensed)
-        )
-        return Moved(position, speed, effort, sensed, moved.bound)
+            return inverted(model, q, v, a)
+        few = inverted(model, q[self.rows], v[self.rows], a[self.rows])
+        if few.bound:
+            return inverted(model, q, v, a)
+        return Moved(q, v, self._between(few.effort), self._between(few.sensed), few.bound)
+
+    def _between(self, columns: FloatArray) -> FloatArray:
+        """Columns (m, k) at those rows, at all of them (n, k)."""
+        if not columns.shape[1]:
+            return np.zeros((self.count, 0))
+        spline = make_interp_spline(self.rows, columns, ORDER)
+        return np.asarray(spline(np.arange(self.count)))

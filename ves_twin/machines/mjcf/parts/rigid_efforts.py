@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import copy
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from threading import RLock
 
@@ -59,6 +60,10 @@ class Moved:
     bound: bool
 
 
+Pass = Callable[[mujoco.MjModel, FloatArray, FloatArray, FloatArray], Moved]
+"""Inverse dynamics of a model along qpos (n, nq), qvel and qacc (n, nv)."""
+
+
 class RigidEfforts:
     """Efforts and sensors along a motion, linear in the inertial numbers phi of the bodies.
 
@@ -76,9 +81,17 @@ class RigidEfforts:
             directions are not too large to be kept.
     """
 
-    def __init__(self, model: mujoco.MjModel, q: FloatArray, v: FloatArray, a: FloatArray) -> None:
+    def __init__(
+        self,
+        model: mujoco.MjModel,
+        q: FloatArray,
+        v: FloatArray,
+        a: FloatArray,
+        passed: Pass | None = None,
+    ) -> None:
         self.model, self.speed, self.pull = copy.copy(model), v, a
-        self._base = inverted(model, q, v, a)
+        self._inverted = passed or inverted
+        self._base = self._inverted(model, q, v, a)
         few = size_of(model, len(q)) <= LARGEST
         self.linear = not self._base.bound and _is_linear(model) and few
         self._phi = inertials(model)
@@ -91,11 +104,11 @@ class RigidEfforts:
         base = self._base
         departure = (inertials(model) - self._phi) / self._unit
         places = np.argwhere(np.abs(departure) > ROUND_OFF)
-        effort, sensed = base.effort + self._of_joints(model), base.sensed
+        effort, sensed = base.effort + self._of_joints(model), base.sensed.copy()
         for body, number in places.tolist():
             of_effort, of_sensor = self._direction(body, number)
-            effort = effort + departure[body, number] * of_effort
-            sensed = sensed + departure[body, number] * of_sensor
+            effort += departure[body, number] * of_effort
+            sensed += departure[body, number] * of_sensor
         return replace(base, effort=effort, sensed=sensed)
 
     def _of_joints(self, model: mujoco.MjModel) -> FloatArray:
@@ -127,7 +140,7 @@ class RigidEfforts:
         more = STIFFER * np.max(self.model.dof_M0)
         there.dof_armature[:] += more
         set_inertials(there, body, begin)
-        moved = inverted(there, self._base.position, self.speed, self.pull)
+        moved = self._inverted(there, self._base.position, self.speed, self.pull)
         left = moved.effort - more * self.pull - effort
         return left / STEP, (moved.sensed - sensed) / STEP
 
