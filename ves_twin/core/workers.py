@@ -86,6 +86,8 @@ class Workers:
         try:
             yield
         except BrokenProcessPool:
+            for process in multiprocessing.active_children():
+                process.kill()  # the pool would ask them to end, which they leave to their parent
             raise VesTwinError(
                 f"one of the {self.count} processes that share the work was killed, for want of"
                 " memory most often"
@@ -95,7 +97,7 @@ class Workers:
     def _started(self) -> ProcessPoolExecutor:
         if self._pool is None:
             context = multiprocessing.get_context("spawn")
-            self._pool = ProcessPoolExecutor(self.count, context, initializer=_follow_parent)
+            self._pool = ProcessPoolExecutor(self.count, context, initializer=follow_parent)
         return self._pool
 
     def collect(
@@ -112,7 +114,7 @@ class Workers:
         return results
 
 
-def _follow_parent() -> None:
+def follow_parent() -> None:
     """End this process when the one that began it is gone, which alone hears of Ctrl-C.
 
     And of what a batch system or `timeout` sends to all of a group.

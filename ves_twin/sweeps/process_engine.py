@@ -6,7 +6,6 @@ an executor of the standard library only says that the whole pool is broken.
 
 from __future__ import annotations
 
-import signal
 from collections import Counter, deque
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
@@ -15,7 +14,7 @@ from multiprocessing.connection import Connection, wait
 from multiprocessing.context import SpawnProcess
 
 from ves_twin.core.errors import VesTwinError
-from ves_twin.core.workers import single_threads
+from ves_twin.core.workers import follow_parent, single_threads
 from ves_twin.sweeps.engine import BEAT, TRIES, Beat
 from ves_twin.sweeps.point import Point
 from ves_twin.sweeps.result import PointResult
@@ -66,6 +65,7 @@ class ProcessEngine:
         finally:
             for worker in busy.values():
                 worker.process.kill()
+            for worker in busy.values():
                 _stop(worker)
 
 
@@ -119,8 +119,7 @@ def _stop(worker: _Worker) -> int | None:
 
 def _serve(pipe: Connection) -> None:
     """The worker: point in, result out, until the pipe is closed."""
-    for one in (signal.SIGINT, signal.SIGTERM):  # these stop the sweep, not the workers
-        signal.signal(one, signal.SIG_IGN)
+    follow_parent()
     while True:
         try:
             point = pipe.recv()

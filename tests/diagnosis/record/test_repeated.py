@@ -69,3 +69,11 @@ def test_one_motion_by_other_commands_is_that_motion_again():
     assert moved_alike([again], [first])
     assert not moved_alike([other], [first])
     assert not moved_alike([again, other], [first])
+
+
+def test_two_wheels_that_turn_on_and_on_are_told_apart_by_what_they_do_beside_that():
+    time = np.arange(0.0, 10.0, 0.01)
+    one, other = (5.0 * time + 0.3 * np.sin(f * time) for f in (2.0, 5.1))
+    told = [Excitation("wheel", time, {"q": q[:, None]}) for q in (one, other)]
+    assert moved_alike(told[:1], told[:1])
+    assert not moved_alike(told[:1], told[1:])

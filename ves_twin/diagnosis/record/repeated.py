@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 
 import numpy as np
-from scipy.signal import correlate
+from scipy.signal import correlate, detrend
 
 from ves_twin.core.types import FloatArray
 from ves_twin.diagnosis.model.forward import Excitation
@@ -44,6 +44,7 @@ def moved_alike(held: Sequence[Excitation], fitted: Sequence[Excitation]) -> boo
 
 
 def _near(one: FloatArray, other: FloatArray) -> bool:
+    one, other = detrend(one), detrend(other)  # two wheels turn alike, and differ beside that
     return bool(np.std(one - other) < ALIKE * np.std(other))
 
 

@@ -155,7 +155,7 @@ class Basis:
     the record, of their range. `left_out` names what there was no time for. `pieces` is how many
     the measured recordings were cut into, each simulated from its own start; 0: they were whole.
     `by_motion` says that efforts which the measured motion lacks were compared, and no simulation;
-    `held_out_repeats` that what was fed in with held-out recordings is that of fitted ones.
+    `held_out_repeats` that held-out recordings were fed in, or moved, as fitted ones.
     """
 
     noise: str

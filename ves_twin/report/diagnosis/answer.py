@@ -29,8 +29,8 @@ STRANGER = 0.5
 """Share of a channel's own spread that stays unexplained where the model is hardly this machine."""
 
 AGAIN = (
-    " Held-out recordings repeat what was fed in while the fitted ones were made: what is proved is"
-    " proved for that motion, and names that only another one tells apart may be exchanged."
+    " Held-out recordings repeat the motion of the fitted ones: what is proved is proved for that"
+    " motion, and names that only another one tells apart may be exchanged."
 )
 """Beside causes that no other motion has tried."""
 

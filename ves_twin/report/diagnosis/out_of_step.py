@@ -18,8 +18,8 @@ def out_of_step_sentence(verdict: Verdict) -> str:
         else "So this record was judged by noise alone."
     )
     return (
-        "Simulated motions cannot be compared here: within the declared tolerances alone they leave"
-        f" the measured one by up to {digits(most)} times the noise. {instead}"
+        "Simulations cannot be compared here: those of machines in order, within the declared"
+        f" tolerances, differ by up to {digits(most)} times the noise. {instead}"
     )
 
 

@@ -52,3 +52,12 @@ def test_whole_numbers_under_the_name_of_a_slide_are_asked_after_as_well(tmp_pat
     asked = next(words for words in found.look if "whole numbers alone" in words)
     assert "counts of an encoder, or millimetres?" in asked
     assert found.untold == {"enc1": "m per count"}
+
+
+def test_an_effort_in_counts_keeps_its_unit_where_a_count_is_known(arm, columns, write):
+    """By its unit alone, beside the other two, it is the third motor's."""
+    log = {"torque_counts" if n == "tau3" else n: v for n, v in columns.items()}
+    log["torque_counts"] = log["torque_counts"] / 1e-3
+    scales = {"torque_counts": 1e-3}
+    found = draft(arm, [write(log, "u.csv")], arm.with_name("a.toml"), scales=scales)
+    assert 'columns = ["torque_counts"], unit = "N*m", scale = 0.001' in found.text

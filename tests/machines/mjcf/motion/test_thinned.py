@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from ves_twin.machines.mjcf.motion.smoothed import smoothed
-from ves_twin.machines.mjcf.motion.thinned import ENDS, OVER, Thinned
+from ves_twin.machines.mjcf.motion.thinned import ENDS, OVER, Thinned, is_smooth
 from ves_twin.machines.mjcf.parts.rigid_efforts import inverted
 
 PERIOD, CORNER = 0.001, 5.0
@@ -54,12 +54,44 @@ def test_a_slow_log_an_open_low_pass_and_a_short_log_are_computed_row_by_row(cou
     assert Thinned.of(count, period, corner, 100.0).every == 1
 
 
-def test_a_motion_beyond_a_stop_is_computed_row_by_row():
+@pytest.mark.parametrize("beyond", [0, 1])
+def test_a_stop_that_is_reached_for_one_row_makes_every_row_count(beyond):
+    """Of rows that are left out as well: none of those that are computed is beyond it."""
     model, path = states()
     model.opt.disableflags = 0
-    model.jnt_limited[1], model.jnt_range[1] = 1, (-0.5, 0.5)
-    every = inverted(model, *path)
-    assert every.bound
-    np.testing.assert_array_equal(
-        Thinned(len(path[0]), 20).inverted(model, *path).effort, every.effort
+    thinned = Thinned(len(path[0]), 20)
+    turn = path[0][:, 0]
+    highest = int(np.argmax(turn))
+    reached = turn[highest] if highest not in thinned.rows else np.max(turn[thinned.rows])
+    model.jnt_limited[0], model.jnt_range[0] = 1, (-10.0, reached + (0.1, -1e-9)[beyond])
+    model.geom_contype[:] = model.geom_conaffinity[:] = 0
+    assert is_smooth(model, path[0]) is not bool(beyond)
+    if beyond:
+        every = inverted(model, *path)
+        np.testing.assert_array_equal(thinned.inverted(model, *path).effort, every.effort)
+
+
+@pytest.mark.parametrize(
+    "part",
+    [
+        '<sensor><rangefinder site="eye"/></sensor>',
+        '<sensor><gyro site="eye" cutoff="1"/></sensor>',
+        '<option density="1.2"/>',
+        '<tendon><fixed stiffness="3" springlength="0.1 0.2"><joint joint="bend" coef="1"/></fixed>'
+        "</tendon>",
+    ],
+)
+def test_what_has_a_kink_is_computed_row_by_row(part):
+    text = ARM.replace("<worldbody>", '<worldbody><site name="eye"/>').replace(
+        "</mujoco>", f"{part}</mujoco>"
     )
+    model, plain = (mujoco.MjModel.from_xml_string(one) for one in (text, ARM))
+    for one in (model, plain):
+        one.geom_contype[:] = one.geom_conaffinity[:] = 0
+    at_rest = np.zeros((10, 2))
+    assert is_smooth(plain, at_rest)
+    assert not is_smooth(model, at_rest)
+
+
+def test_bodies_that_may_touch_are_computed_row_by_row():
+    assert not is_smooth(mujoco.MjModel.from_xml_string(ARM), np.zeros((10, 2)))

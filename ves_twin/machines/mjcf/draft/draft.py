@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -25,10 +25,10 @@ from ves_twin.machines.mjcf.draft.given_model import GivenModel
 from ves_twin.machines.mjcf.draft.held_stretch import held_stretch, too_short
 from ves_twin.machines.mjcf.draft.in_counts import in_counts, without_counts
 from ves_twin.machines.mjcf.draft.log_columns import LogColumns
-from ves_twin.machines.mjcf.draft.match import matched
+from ves_twin.machines.mjcf.draft.match import Match, Matches, matched
 from ves_twin.machines.mjcf.draft.names import is_command
 from ves_twin.machines.mjcf.draft.shape import by_shape
-from ves_twin.machines.mjcf.draft.spots import Quantity, spots_of
+from ves_twin.machines.mjcf.draft.spots import Quantity, Spot, spots_of
 from ves_twin.machines.mjcf.draft.steady import with_steady
 from ves_twin.machines.mjcf.draft.untold import untold
 from ves_twin.machines.mjcf.recordings.columns import read_rig_recording
@@ -104,10 +104,10 @@ def draft(
     if not logs:
         raise InvalidInputError("logs", "none", "at least one")
     given, log = GivenModel.read(model), LogColumns.read(logs[0], rate)
-    spots, log = spots_of(given.model), without_counts(log, scales or {})
-    matches = by_number(log, by_shape(log, matched(log, spots), spots), spots)
+    spots = spots_of(given.model)
+    log, matches, counts = _matched(log, spots, scales or {})
     log, matches = with_steady(log, matches, spots)
-    matches, counts = with_constants(matches, scales or {}), in_counts(log, spots, matches)
+    matches = with_constants(matches, scales or {})
     measured = [m for m in matches.found if m.spot.quantity is not Quantity.EFFORT]
     measured += [
         m for m in matches.of(Quantity.EFFORT) if not is_command(log.said.get(m.column, m.column))
@@ -136,7 +136,8 @@ def draft(
     look = (*found, *silent, *turned, *coarse, *smooth, *short)
     unknown = {m.column: m.per for m in now.check.found if m.fitted and abs(m.scale) == 1.0}
     per_count = {
-        m.column: f"{m.spot.unit} per count" for m in (*counts, *counted(log, now.check.found))
+        m.alone or m.column: f"{m.spot.unit} per count"
+        for m in (*counts, *counted(log, now.check.found))
     }
     told = {name: max(share, 0.0) for name, share in now.explained.items()}
     return Draft(
@@ -154,6 +155,16 @@ def draft(
         one_only=not (stretch or short or now.mode.horizon),
         untold={**per_count, **unknown},
     )
+
+
+def _matched(
+    log: LogColumns, spots: tuple[Spot, ...], scales: Collection[str]
+) -> tuple[LogColumns, Matches, list[Match]]:
+    """Columns with their spots, and those in counts that would have one if a count were known."""
+    found = by_number(log, by_shape(log, matched(log, spots), spots), spots)
+    counts = in_counts(log, spots, found)
+    known = [match.column for match in counts if match.column in scales]
+    return _matched(without_counts(log, known), spots, ()) if known else (log, found, counts)
 
 
 def _slower(log: LogColumns, names: Sequence[str]) -> list[str]:

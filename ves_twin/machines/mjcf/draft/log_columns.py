@@ -11,7 +11,7 @@ import numpy as np
 
 from ves_twin.core.errors import InvalidInputError
 from ves_twin.core.types import BoolArray, FloatArray
-from ves_twin.data.clock.clock_fields import clock_fields
+from ves_twin.data.clock.clock_fields import ClockField, clock_fields
 from ves_twin.data.clock.clock_report import GAP, UNEVEN, usual_step
 from ves_twin.data.clock.unwrapped import unwrapped
 from ves_twin.data.clock.usual_period import is_usual
@@ -182,14 +182,19 @@ class LogColumns:
             if fields[0].guessed:
                 ones = bool(np.all(np.diff(read[clock]) == 1.0))
                 counts = ": if it counts rows, --rate says how many a second" * ones
-                notes.append(
-                    f"clock {clock}: no unit is given, {fields[0].unit} is a guess{counts}"
-                )
+                notes.append(f"clock {clock}: {_guessed(fields[0], read[clock])}{counts}")
             period = _period(scale * read[clock], clock, notes)
         full = {c.name: table.full_name(c.name) for c in table.columns}
         named = [replace(c, name=full[c.name]) for c in table.columns]
         read = {full[name]: rows for name, rows in read.items()}
         return _sorted(named, read, full.get(clock, ""), scale, period, path, notes)
+
+
+def _guessed(field: ClockField, stamps: FloatArray) -> str:
+    """That its unit is a guess, and the rate that follows where it is no second."""
+    told = f"no unit is given, {field.unit} is a guess"
+    step = field.scale * usual_step(stamps[np.isfinite(stamps)])
+    return told if field.unit == "s" or not step else f"{told}, which makes {1.0 / step:.3g} Hz"
 
 
 def _period(time: FloatArray, clock: str, notes: list[str]) -> float:

@@ -93,7 +93,7 @@ class RigidEfforts:
         self._inverted = passed or inverted
         self._base = self._inverted(model, q, v, a)
         few = size_of(model, len(q)) <= LARGEST
-        self.linear = not self._base.bound and _is_linear(model) and few
+        self.linear = not self._base.bound and is_linear(model) and few
         self._phi = inertials(model)
         self._unit = _units(self._phi)
         self._known: dict[tuple[int, int], tuple[FloatArray, FloatArray]] = {}
@@ -159,7 +159,7 @@ def _units(phi: FloatArray) -> FloatArray:
     return np.asarray(mass[:, None] * reach[:, None] ** power)
 
 
-def _is_linear(model: mujoco.MjModel) -> bool:
+def is_linear(model: mujoco.MjModel) -> bool:
     """Whether nothing but constraints could make efforts and sensors bend."""
     discrete = model.opt.enableflags & mujoco.mjtEnableBit.mjENBL_INVDISCRETE
     loose = model.opt.disableflags & mujoco.mjtDisableBit.mjDSBL_SPRING
