@@ -11,7 +11,9 @@ from ves_twin.machines.carried import Carried
 from ves_twin.machines.mjcf.mjcf_machine import MjcfMachine
 from ves_twin.machines.mjcf.rig.description import Setting
 from ves_twin.machines.mjcf.rig.machine import Rig
+from ves_twin.machines.simulated import Simulated
 from ves_twin.report.diagnosis.mjcf_lines import mjcf_lines
+from ves_twin.report.diagnosis.simulated_lines import simulated_lines
 
 RATE = 50.0
 
@@ -64,3 +66,26 @@ def test_a_drag_beside_a_friction_is_missed_and_that_is_told(machine):
 def test_without_held_out_recordings_nothing_is_told(machine):
     full = with_present(machine, 1.0, quadratic_drag={"rail": {"drag": 3.0}})
     assert Carried.of(machine, full, [], RATE) is None
+
+
+def test_what_an_answer_by_efforts_leaves_of_motion_is_told_beside_the_model_as_given(machine):
+    full = with_present(machine, 40.0)
+    found = Simulated.of(machine, full, [recorded(full)], RATE)
+    before, after = found.errors["drive.force"]
+    assert after < 1e-6 * before
+    assert any(
+        line.startswith("Simulated, held out: drive.force ") for line in simulated_lines(found)
+    )
+    assert Simulated.of(machine, full, [], RATE) is None
+    assert simulated_lines(None) == []
+
+
+def test_a_simulation_that_diverges_is_said_to():
+    found = Simulated({"arm": (0.3, np.nan), "cart": (0.2, 0.1)}, {"arm": "rad", "cart": "m"})
+    first, second = simulated_lines(found)
+    assert first.startswith(
+        "Simulated, held out: arm out of all bounds by the extended model, 300 m"
+    )
+    assert second.startswith(
+        "Simulated, held out: cart 100 mm off by the extended model, 200 mm off"
+    )

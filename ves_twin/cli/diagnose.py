@@ -198,12 +198,13 @@ def _plant_sentence(found: Diagnosis) -> str:
             " channel as well or better."
         )
     from ves_twin.report.diagnosis.mjcf_lines import mjcf_lines
+    from ves_twin.report.diagnosis.simulated_lines import simulated_lines
 
     told = (
         "The extended plant is plant.toml; it passed on held-out recordings. ves-twin info --plant"
         " plant.toml --mjcf improved.xml writes it as plain MJCF, and says what that cannot carry."
     )
-    return " ".join([told, *mjcf_lines(found.carried)])
+    return " ".join([told, *mjcf_lines(found.carried), *simulated_lines(found.simulated)])
 
 
 def law_lines(verdict: Verdict) -> list[str]:
@@ -236,6 +237,7 @@ def _text(found: Diagnosis, folder: Path) -> str:
         proof_sentence,
         proved_line,
     )
+    from ves_twin.report.diagnosis.simulated_lines import simulated_lines
     from ves_twin.report.diagnosis.strained import tuned_words
     from ves_twin.report.diagnosis.words import ambiguity_sentences, interval_words, name_of
 
@@ -270,6 +272,7 @@ def _text(found: Diagnosis, folder: Path) -> str:
     lines += held_out_table(verdict)
     if found.extended is not None and found.refused:
         lines += ["", f"  plant.candidate.toml, no plant.toml: {found.refused}"]
+    lines += [f"  {text}" for text in simulated_lines(found.simulated)]
     files = ", ".join(sorted(p.name for p in folder.iterdir()))
     lines += ["", f"  files     {folder}/: {files}"]
     if (folder / PLANT).is_file():

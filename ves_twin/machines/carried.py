@@ -9,10 +9,8 @@ import numpy as np
 
 from ves_twin.core.errors import VesTwinError
 from ves_twin.core.recording.recording import Recording
-from ves_twin.core.types import FloatArray
-from ves_twin.diagnosis.model.forward import Channel, Excitation, Forward
-from ves_twin.diagnosis.model.grid import AnalysisGrid
 from ves_twin.machines.machine import Machine
+from ves_twin.machines.rms_left import rms_left
 
 
 @dataclass(frozen=True)
@@ -50,7 +48,7 @@ class Carried:
         machines = given.forward, extended.forward, part.forward
         recorded = set.intersection(*(set(one.signals) for one in held_out))
         channels = [c for c in given.forward.channels if c.signal in recorded]
-        left = np.array([_left(forward, held_out, channels, rate) for forward in machines])
+        left = np.array([rms_left(forward, held_out, channels, rate) for forward in machines])
         errors = {c.name: (a, b, d) for c, (a, b, d) in zip(channels, left.T.tolist(), strict=True)}
         return Carried(lacking, errors, {c.name: c.unit for c in channels})
 
@@ -58,17 +56,3 @@ class Carried:
     def worse(self) -> tuple[str, ...]:
         """Channels that the MJCF predicts worse than the model as given."""
         return tuple(name for name, (given, _, part) in self.errors.items() if not part <= given)
-
-
-def _left(
-    forward: Forward, recordings: Sequence[Recording], channels: Sequence[Channel], rate: float
-) -> FloatArray:
-    """Rms error of each channel (c,) at the rows of the analysis; NaN where nothing is finite."""
-    off, names = [], [channel.name for channel in forward.channels]
-    at = [names.index(channel.name) for channel in channels]
-    for one in recordings:
-        fed = Excitation.of(one, forward.drive, rate=rate)
-        measured = np.stack([one[c.signal][:, c.column] for c in channels], axis=1)
-        rest = measured - forward.simulate(fed, {})[:, at]
-        off.append(AnalysisGrid.of(fed.period, rate).reduce(rest))
-    return np.asarray(np.sqrt(np.mean(np.square(np.concatenate(off), dtype=float), axis=0)))

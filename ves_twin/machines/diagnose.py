@@ -19,6 +19,7 @@ from ves_twin.diagnosis.verdict.verdict import Verdict
 from ves_twin.machines.carried import Carried
 from ves_twin.machines.load import Given, machine_of, named
 from ves_twin.machines.machine import Machine, Material, Named, Prepared
+from ves_twin.machines.simulated import Simulated
 from ves_twin.scenario.experiment_file import ExperimentFile
 
 
@@ -35,6 +36,7 @@ class Diagnosis:
         excitation: that should part the causes, where they cannot be told apart.
         nearest: it with what comes nearest, where no causes are named; None if nothing does.
         carried: what its MJCF file leaves on held-out recordings, where that has a part alone.
+        simulated: what it leaves of held-out motions, where efforts were compared in their place.
     """
 
     verdict: Verdict
@@ -44,6 +46,7 @@ class Diagnosis:
     excitation: Excitation | None = None
     nearest: Machine | None = None
     carried: Carried | None = None
+    simulated: Simulated | None = None
 
 
 def diagnose(
@@ -118,10 +121,16 @@ def diagnose(
     cut = len(measured) if len(measured) > whole else 0
     basis = replace(verdict.basis, recordings=_origin(given), pieces=cut)
     verdict = replace(_shortened(verdict), quality=prepared.flaws, basis=basis)
-    found = _concluded(verdict, machine, offered)
+    return _held_against(_concluded(verdict, machine, offered), left_out, chosen.rate)
+
+
+def _held_against(found: Diagnosis, held_out: Sequence[Recording], rate: float) -> Diagnosis:
+    """With what it is worth elsewhere: as an MJCF file, and in motion where efforts told it."""
     if found.extended is None:
         return found
-    return replace(found, carried=Carried.of(machine, found.extended, left_out, chosen.rate))
+    pair = found.machine, found.extended, held_out, rate
+    simulated = Simulated.of(*pair) if found.verdict.basis.by_motion else None
+    return replace(found, carried=Carried.of(*pair), simulated=simulated)
 
 
 def _named(

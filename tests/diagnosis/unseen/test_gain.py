@@ -316,4 +316,7 @@ def test_a_gain_is_told_over_the_better_of_the_model_as_given_and_as_tuned():
     assert gain.over == gain.errors
     assert "falls by 22 % (arm), over the model as given" in rms_words(gain)
     nearer = replace(gain, given={"arm": 2.0})
-    assert rms_words(nearer).endswith("falls by 28 % (arm)")
+    assert "falls by 28 % (arm), over what the model leaves with its tolerances" in rms_words(
+        nearer
+    )
+    assert rms_words(replace(gain, given={"arm": 1.8})).endswith("falls by 28 % (arm)")

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from two_link import TARGETS, programme, rig
 
-from ves_twin.machines.mjcf.motion import inverse
+from ves_twin.machines.mjcf.motion import inverse, thinned
 from ves_twin.machines.mjcf.motion.forward import MjcfForward
 from ves_twin.machines.mjcf.motion.kept_efforts import IDLE, KeptEfforts
 from ves_twin.machines.mjcf.parts import rigid_efforts
@@ -72,7 +72,7 @@ MANY = 70
 def counted(forward, recordings, monkeypatch):
     """Passes of inverse dynamics of a second round, and what each round predicts."""
     passes, own = [], rigid_efforts.inverted
-    for module in (rigid_efforts, inverse):
+    for module in (rigid_efforts, inverse, thinned):
         monkeypatch.setattr(module, "inverted", lambda *args: passes.append(1) or own(*args))
     (mass,) = (p for p in forward.parameters if p.name == "body_mass@arm:mass")
     values, rounds = {mass.name: 1.1 * mass.nominal}, []

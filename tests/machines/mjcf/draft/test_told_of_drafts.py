@@ -52,11 +52,20 @@ def test_rows_that_no_machine_is_logged_at_ask_for_the_unit_of_the_clock(
     assert ("apart: is that its unit?" in " ".join(found.look)) is asked
 
 
-def test_milliseconds_under_a_bare_name_are_asked_for_though_few_rows_are_left(arm, columns, write):
-    """A minute of such a log has seven rows, which no filter takes: a traceback."""
+def test_milliseconds_under_a_bare_name_are_read_as_such_and_said_with_their_rate(
+    arm, columns, write
+):
+    """Rows 10 s apart, as of seconds, are those of no machine."""
     time = {"t": 2000.0 * columns["t"] + 0.25}
     found, _ = drafted(arm, write({n: v for n, v in columns.items() if n[0] != "d"} | time))
-    assert "rows are 10 s apart: is that its unit?" in " ".join(found.look)
+    assert "no unit is given, ms is a guess, which makes 100 Hz" in " ".join(found.look)
+    far, _ = drafted(arm, write({n: v for n, v in columns.items() if n[0] != "d"} | slow(columns)))
+    assert "rows are 2e+06 s apart: is that its unit?" in " ".join(far.look)
+
+
+def slow(columns):
+    """A clock that no unit explains: few rows are left, which no filter takes."""
+    return {"t": 4e8 * columns["t"] + 0.25}
 
 
 def test_a_motor_of_a_tendon_that_no_column_tells_is_no_joints(tmp_path, swing, write):
