@@ -16,7 +16,7 @@ from ves_twin.machines.mjcf.rig.places import SINGLE
 OVER, ORDER = 6.0, 5
 """Rows in a period of the fastest motion that is compared, and order of the spline through them: of
 two links that swing by a radian up to the corner it is 5e-4 of an effort's spread off, of an arm
-of seven axes at 1 kHz 4e-6."""
+of seven axes at 1 kHz 4e-6 at most."""
 
 ENDS = 2
 """Rows at either end that are continued from the others: differences of second order are one-sided
