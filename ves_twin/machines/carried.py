@@ -5,8 +5,6 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
-import numpy as np
-
 from ves_twin.core.errors import VesTwinError
 from ves_twin.core.recording.recording import Recording
 from ves_twin.machines.machine import Machine
@@ -24,7 +22,7 @@ class Carried:
     """
 
     lacking: tuple[str, ...] = ()
-    errors: Mapping[str, tuple[float, float, float]] = field(default_factory=dict)
+    errors: Mapping[str, tuple[float, ...]] = field(default_factory=dict)
     units: Mapping[str, str] = field(default_factory=dict)
 
     @staticmethod
@@ -46,11 +44,7 @@ class Carried:
         if part is None or not held_out:
             return None
         machines = given.forward, extended.forward, part.forward
-        recorded = set.intersection(*(set(one.signals) for one in held_out))
-        channels = [c for c in given.forward.channels if c.signal in recorded]
-        left = np.array([rms_left(forward, held_out, channels, rate) for forward in machines])
-        errors = {c.name: (a, b, d) for c, (a, b, d) in zip(channels, left.T.tolist(), strict=True)}
-        return Carried(lacking, errors, {c.name: c.unit for c in channels})
+        return Carried(lacking, *rms_left(machines, held_out, rate))
 
     @property
     def worse(self) -> tuple[str, ...]:

@@ -13,16 +13,26 @@ from ves_twin.diagnosis.model.grid import AnalysisGrid
 
 
 def rms_left(
-    forward: Forward, recordings: Sequence[Recording], channels: Sequence[Channel], rate: float
-) -> FloatArray:
-    """Rms error of each channel (c,) at the rows of the analysis; NaN where one diverges.
+    forwards: Sequence[Forward], recordings: Sequence[Recording], rate: float
+) -> tuple[dict[str, tuple[float, ...]], dict[str, str]]:
+    """Channel -> rms error [its unit] by each forward, and its unit; NaN where one diverges.
 
     Args:
-        forward: simulates.
-        recordings: that have the channels.
-        channels: of it.
+        forwards: of one machine, the first as its file has it: its channels that all recordings
+            have are told, at the rows of the analysis.
+        recordings: one at least.
         rate: of the analysis [Hz].
     """
+    recorded = set.intersection(*(set(one.signals) for one in recordings))
+    channels = [c for c in forwards[0].channels if c.signal in recorded]
+    left = np.array([_left(forward, recordings, channels, rate) for forward in forwards])
+    errors = {c.name: tuple(rms) for c, rms in zip(channels, left.T.tolist(), strict=True)}
+    return errors, {c.name: c.unit for c in channels}
+
+
+def _left(
+    forward: Forward, recordings: Sequence[Recording], channels: Sequence[Channel], rate: float
+) -> FloatArray:
     off, names = [], [channel.name for channel in forward.channels]
     at = [names.index(channel.name) for channel in channels]
     for one in recordings:

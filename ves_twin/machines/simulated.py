@@ -5,8 +5,6 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
-import numpy as np
-
 from ves_twin.core.recording.recording import Recording
 from ves_twin.machines.machine import Machine
 from ves_twin.machines.rms_left import rms_left
@@ -21,7 +19,7 @@ class Simulated:
         units: of the channels.
     """
 
-    errors: Mapping[str, tuple[float, float]]
+    errors: Mapping[str, tuple[float, ...]]
     units: Mapping[str, str]
 
     @staticmethod
@@ -38,9 +36,4 @@ class Simulated:
         """
         if not held_out:
             return None
-        recorded = set.intersection(*(set(one.signals) for one in held_out))
-        channels = [c for c in given.forward.channels if c.signal in recorded]
-        left = [rms_left(m.forward, held_out, channels, rate) for m in (given, extended)]
-        pairs = zip(channels, np.array(left).T.tolist(), strict=True)
-        errors = {channel.name: (before, after) for channel, (before, after) in pairs}
-        return Simulated(errors, {channel.name: channel.unit for channel in channels})
+        return Simulated(*rms_left((given.forward, extended.forward), held_out, rate))
