@@ -77,3 +77,14 @@ def test_two_wheels_that_turn_on_and_on_are_told_apart_by_what_they_do_beside_th
     told = [Excitation("wheel", time, {"q": q[:, None]}) for q in (one, other)]
     assert moved_alike(told[:1], told[:1])
     assert not moved_alike(told[:1], told[1:])
+
+
+@pytest.mark.parametrize("empty", ["held", "fitted", "both"])
+def test_of_motions_with_empty_cells_nothing_is_said(empty):
+    whole = programme()
+    path = whole.drive["q"].copy()
+    path[500] = np.nan
+    holed = Excitation("round", whole.time, {"q": path})
+    held = whole if empty == "fitted" else holed
+    fitted = whole if empty == "held" else holed
+    assert not moved_alike([held], [fitted])

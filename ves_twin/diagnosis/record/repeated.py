@@ -44,6 +44,9 @@ def moved_alike(held: Sequence[Excitation], fitted: Sequence[Excitation]) -> boo
 
 
 def _near(one: FloatArray, other: FloatArray) -> bool:
+    """Of columns with empty cells nothing is said."""
+    if not np.all(np.isfinite([one, other])):
+        return False
     one, other = detrend(one), detrend(other)  # two wheels turn alike, and differ beside that
     return bool(np.std(one - other) < ALIKE * np.std(other))
 
