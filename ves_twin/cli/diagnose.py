@@ -161,7 +161,7 @@ def _write(found: Diagnosis, folder: Path, names: str) -> None:
     write_page(folder / "report.html", page)
     write_diagnosis_rrd(found.verdict, folder / "diagnosis.rrd", found.machine.drawing())
     law = found.verdict.law
-    if law is not None and law.shape == "table":
+    if law is not None and law.curve is not None:
         save_picture(draw_law(law), folder / LAW_PICTURE)
     note = f"Extended by ves-twin diagnose: {found.verdict.words}{strained_sentence(found.verdict)}"
     if found.extended is not None and found.refused:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Mapping
 from pathlib import Path
 
 import numpy as np
@@ -16,10 +17,12 @@ from ves_twin.diagnosis.model.forward import Excitation
 from ves_twin.diagnosis.settings import Settings
 from ves_twin.diagnosis.unseen.gain import Gain
 from ves_twin.diagnosis.verdict.verdict import Kind
+from ves_twin.effects.law import Law, LawKind, LawShape
 from ves_twin.machines.diagnose import Diagnosis, diagnose
 from ves_twin.machines.mjcf.mjcf_machine import MjcfMachine
 from ves_twin.machines.mjcf.motion.forward import MjcfForward
 from ves_twin.machines.mjcf.rig.machine import Rig
+from ves_twin.report.diagnosis.law import law_figure, law_sentences
 
 HIDDEN = {"viscous_friction@a:damping": 0.8, "coulomb_friction@b:level": 0.5}
 ERROR, MEMORY = 0.03, 0.9
@@ -31,14 +34,31 @@ def root_of_speed(speed: np.ndarray) -> np.ndarray:
     return -0.8 * np.sign(speed) * np.sqrt(np.abs(speed))
 
 
-def recorded(rig: Rig, seed: int, lawful: bool) -> Recording:
+def root(path: Mapping[str, np.ndarray]) -> np.ndarray:
+    """Of both joints together."""
+    found = root_of_speed(path["speed@a"] + path["speed@b"])
+    return np.stack([found, found], axis=1)
+
+
+def tightness(angle: np.ndarray) -> np.ndarray:
+    """Dry friction beyond its mean, as of a belt on a wheel that is not round."""
+    return 0.5 * np.sin(2.0 * angle)
+
+
+def rub(path: Mapping[str, np.ndarray]) -> np.ndarray:
+    """Of the first joint alone."""
+    found = -np.sign(path["speed@a"]) * tightness(path["position@a"])
+    return np.stack([found, np.zeros_like(found)], axis=1)
+
+
+def recorded(rig: Rig, seed: int, law: str) -> Recording:
     forward = MjcfForward.of(rig)
     time, angles = motion(12.0, seed)
     fed = Excitation("", time, {"qa": angles[:, :1], "qb": angles[:, 1:]})
     rows = forward.simulate(fed, HIDDEN)
     path = forward.visited(fed, {})
-    if lawful:
-        rows = rows - root_of_speed(path["speed@a"] + path["speed@b"])[:, None]
+    if law:
+        rows = rows - {"root": root, "rub": rub}[law](path)
     noise = np.random.default_rng(seed).standard_normal(rows.shape)
     rows = rows + lfilter([1.0], [1.0, -MEMORY], ERROR * noise, axis=0)
     signals = {**fed.drive, "ta": rows[:, :1], "tb": rows[:, 1:]}
@@ -46,26 +66,23 @@ def recorded(rig: Rig, seed: int, lawful: bool) -> Recording:
 
 
 @pytest.fixture(scope="module")
-def diagnosed(tmp_path_factory: pytest.TempPathFactory) -> dict[bool, Diagnosis]:
+def diagnosed(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Diagnosis]:
     folder = tmp_path_factory.mktemp("arm")
     rig = arm(folder, {"viscous_friction": "a b", "coulomb_friction": "a b"})
     settings = Settings(nulls=20, laws=True, cache=folder / "banks")
     return {
-        lawful: diagnose(
-            [recorded(rig, 1, lawful)],
-            rig,
-            held_out=[recorded(rig, 2, lawful)],
-            settings=settings,
+        law: diagnose(
+            [recorded(rig, 1, law)], rig, held_out=[recorded(rig, 2, law)], settings=settings
         )
-        for lawful in (True, False)
+        for law in ("root", "rub", "")
     }
 
 
 @pytest.mark.slow
 def test_what_causes_leave_is_a_law_of_two_joints_together(
-    diagnosed: dict[bool, Diagnosis],
+    diagnosed: dict[str, Diagnosis],
 ) -> None:
-    verdict = diagnosed[True].verdict
+    verdict = diagnosed["root"].verdict
     assert verdict.verdict is Kind.PARTIAL
     law = verdict.law
     assert law is not None
@@ -75,8 +92,8 @@ def test_what_causes_leave_is_a_law_of_two_joints_together(
     assert law.gain is not None
     assert law.gain.low is not None
     assert law.gain.low > 0.9
-    assert diagnosed[True].verdict.gain is not None
-    causes = {n: after for n, (_, after) in diagnosed[True].verdict.gain.errors.items()}
+    assert diagnosed["root"].verdict.gain is not None
+    causes = {n: after for n, (_, after) in diagnosed["root"].verdict.gain.errors.items()}
     assert {n: before for n, (before, _) in law.gain.errors.items()} == pytest.approx(causes)
     speed = np.linspace(*law.seen[0], 200)
     found = np.interp(speed, law.knots[0], law.values)
@@ -87,9 +104,9 @@ def test_what_causes_leave_is_a_law_of_two_joints_together(
 
 @pytest.mark.slow
 def test_the_extended_machine_has_the_law_and_the_causes_as_fitted_beside_it(
-    diagnosed: dict[bool, Diagnosis], tmp_path: Path
+    diagnosed: dict[str, Diagnosis], tmp_path: Path
 ) -> None:
-    new = diagnosed[True].extended
+    new = diagnosed["root"].extended
     assert isinstance(new, MjcfMachine)
     new.save(tmp_path / "plant.toml")
     rig = Rig.load(str(tmp_path / "plant.toml"))
@@ -100,8 +117,33 @@ def test_the_extended_machine_has_the_law_and_the_causes_as_fitted_beside_it(
 
 
 @pytest.mark.slow
-def test_model_error_that_follows_no_motion_is_no_law(diagnosed: dict[bool, Diagnosis]) -> None:
-    verdict = diagnosed[False].verdict
+def test_dry_friction_that_depends_on_where_a_joint_stands_is_a_law(
+    diagnosed: dict[str, Diagnosis],
+) -> None:
+    verdict = diagnosed["rub"].verdict
+    law = verdict.law
+    assert law is not None
+    assert law.claimed
+    assert (law.place, law.of) == ("a", ("position@a", "speed@a"))
+    assert law.form == "sign(speed) times a curve of position"
+    found = Law(law.place, LawKind.EFFORT, LawShape.MESH, law.of, law.knots, law.values)
+    angle, speed = np.linspace(*law.seen[0], 100), np.full(100, 0.5 * law.seen[1][1])
+    ahead, back = found.at(angle, speed), found.at(angle, -speed)
+    assert ahead == pytest.approx(-back)  # friction: turned round with the motion
+    off = ahead + tightness(angle)
+    assert np.std(off) < 0.2 * np.std(tightness(angle))  # its mean is the Coulomb friction's
+    assert "depends on its position and its speed" in verdict.words
+    page = str(law_figure(law))
+    assert "<svg" in page
+    assert "at positive speed" in page
+    assert not any("In the formula" in line for line in law_sentences(law))
+    inside = [lo <= -tightness(x) - np.mean(off) <= hi for x, lo, hi in zip(*law.band, strict=True)]
+    assert np.mean(inside) > 0.7
+
+
+@pytest.mark.slow
+def test_model_error_that_follows_no_motion_is_no_law(diagnosed: dict[str, Diagnosis]) -> None:
+    verdict = diagnosed[""].verdict
     assert verdict.verdict is Kind.PARTIAL
     assert {cause.effect for cause in verdict.causes} == {"viscous_friction", "coulomb_friction"}
     assert verdict.law is None

@@ -16,6 +16,7 @@ from ves_twin.diagnosis.law.candidate import Closed, Table
 from ves_twin.diagnosis.law.fit_law import LawFit
 from ves_twin.diagnosis.law.propose import Search
 from ves_twin.diagnosis.law.result import LawFinding, LawNumber, LawRival
+from ves_twin.diagnosis.law.rubbing import Rubbing
 from ves_twin.diagnosis.law.screen import columns_about, values_of
 from ves_twin.diagnosis.law.smoothness import best_of, projected
 from ves_twin.diagnosis.model.law_forward import LawForward, Variable
@@ -87,6 +88,7 @@ def law_finding(
     asked = asked_of_motion(law, best, held.seen) if held else None
     reason = search.reason or (_gated(gain, causes or {}) if held else "") or refuted(asked)
     along = _along(search, law)
+    drawn = law.shape is LawShape.TABLE or isinstance(candidate, Rubbing)
     return LawFinding(
         claimed=not reason,
         reason=reason,
@@ -99,7 +101,7 @@ def law_finding(
         numbers=_numbers(best),
         knots=law.knots,
         values=law.values,
-        band=_band(search, along[0]) if law.shape is LawShape.TABLE else (),
+        band=_band(search, along[0]) if drawn else (),
         seen=tuple((float(np.min(x)), float(np.max(x))) for x in along),
         points=_points(search, law, along) if law.shape is LawShape.TABLE else (),
         transient="time" in law.of,
@@ -222,7 +224,9 @@ def _band(search: Search, x: FloatArray) -> tuple[tuple[float, ...], ...]:
         covariance = WIDER**2 * best.fit.covariance
         rng = np.random.default_rng(0)
         drawn = rng.multivariate_normal(best.numbers, covariance, DRAWN, method="eigh")
-        rows = np.array([best.candidate.law(numbers).at(at) for numbers in drawn])
+        fast = [best.candidate.fastest[1]] if isinstance(best.candidate, Rubbing) else []
+        path = at, *(np.full(PLOTTED, speed) for speed in fast)
+        rows = np.array([best.candidate.law(numbers).at(*path) for numbers in drawn])
         tail = 0.5 * (1.0 - BAND)
         ends = np.quantile(rows, [tail, 1.0 - tail], axis=0)
     return tuple(at.tolist()), tuple(ends[0].tolist()), tuple(ends[1].tolist())

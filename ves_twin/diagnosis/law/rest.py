@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -12,11 +12,12 @@ from ves_twin.diagnosis.bank.linearise import FORWARD_STEP, linearise
 from ves_twin.diagnosis.build_up.discrepancy import discrepancy
 from ves_twin.diagnosis.fit.refine import Fit, bare_residual
 from ves_twin.diagnosis.law.beside import Beside
-from ves_twin.diagnosis.law.candidate import Table
+from ves_twin.diagnosis.law.candidate import Candidate, Table
 from ves_twin.diagnosis.law.closed import closed_forms
 from ves_twin.diagnosis.law.fit_law import LawFit, fit_law
 from ves_twin.diagnosis.law.propose import CLAIM, LEADERS, WORTH, Limits, Search
 from ves_twin.diagnosis.law.rest_screen import rest_screen
+from ves_twin.diagnosis.law.rubbing import rubbings
 from ves_twin.diagnosis.law.screen import ranges, smooth_candidates
 from ves_twin.diagnosis.model.law_forward import LawForward
 from ves_twin.diagnosis.record.evidence import Evidence
@@ -74,15 +75,14 @@ def search_rest(
     none = fit_law(first, None, begin)
     limits = replace(limits, pull=max(limits.pull, none.fit.pull + STRAIN))
     ends = ranges(beside, none)
-    every = smooth_candidates(plant.law_places(), ends)
-    tables = [c for c in every if isinstance(c, Table) and c.of[0].what != "time"]
-    if not tables:
+    smooth = _smooth(plant, ends)
+    if not smooth:
         return None
-    leaders = rest_screen(first, tables, none, progress)[:LEADERS]
+    leaders = rest_screen(first, smooth, none, progress)[:LEADERS]
     found = []
-    for n, table in enumerate(leaders):
+    for n, leader in enumerate(leaders):
         progress(n / len(leaders), "fitting laws of what is left")
-        found.append(fit_law(first, table, none.fit))
+        found.append(fit_law(first, leader, none.fit))
     rest = np.asarray(bare_residual(first, found[0].fit), float)
     second = replace(first, whitening=discrepancy(runs, rest))
     none = fit_law(second, None, none.fit)
@@ -96,6 +96,13 @@ def search_rest(
     pool = (chosen, *(one for one in ranked if one is not chosen))
     search = RestSearch(second, none, pool, 0.0, limits)
     return search if search.nats > CLAIM else None
+
+
+def _smooth(plant: LawForward, ends: Mapping[str, tuple[float, float]]) -> list[Candidate]:
+    """Tables of what is no time, and frictions that depend on where a joint stands."""
+    places = plant.law_places()
+    tables = [c for c in smooth_candidates(places, ends) if isinstance(c, Table)]
+    return [*(c for c in tables if c.of[0].what != "time"), *rubbings(places, ends)]
 
 
 def _begin(causes: Fit, runs: Runs) -> Fit:

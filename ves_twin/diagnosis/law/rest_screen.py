@@ -1,4 +1,4 @@
-"""rest_screen: tables by what they make of model error, each with the error that it leaves."""
+"""rest_screen: laws by what they make of model error, each with the error that it leaves."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from ves_twin.core.types import FloatArray
-from ves_twin.diagnosis.law.candidate import Table
+from ves_twin.diagnosis.law.candidate import Candidate
 from ves_twin.diagnosis.law.fit_law import LawFit
 from ves_twin.diagnosis.law.screen import columns_about
 from ves_twin.diagnosis.law.smoothness import best_of, projected
@@ -23,38 +23,38 @@ LEAST = 1e-4
 
 
 def rest_screen(
-    evidence: Evidence, tables: Sequence[Table], about: LawFit, progress: Progress = silent
-) -> list[Table]:
-    """Tables by falling evidence beside a fit, the best width of each joint's play alone.
+    evidence: Evidence, laws: Sequence[Candidate], about: LawFit, progress: Progress = silent
+) -> list[Candidate]:
+    """Laws by falling evidence beside a fit, the best width of each joint's play alone.
 
     The size v of model error in each channel is not known: that of largest evidence is taken, for
-    no law and for each table. A law that is most of one channel's rest then leads over one that is
+    no law and for each law. One that is most of one channel's rest then leads over one that is
     a part of a larger rest:
     log E = -sum(n log v) / 2 - (z' P z - b' (G + (s^2 K)^-1)^-1 b + log|I + s^2 K G|) / 2, under v.
 
     Args:
         evidence: what was measured, by plain squares.
-        tables: with smooth priors.
+        laws: with smooth priors.
         about: commissioning errors and causes, without a law.
         progress: told how far it is.
     """
     z = about.fit.residual + about.jacobian @ about.point
-    found: dict[tuple[str, ...], tuple[float, Table]] = {}
-    for n, table in enumerate(tables):
-        progress(n / len(tables), "screening laws of what is left")
-        columns = columns_about(evidence, table, about)
+    found: dict[tuple[str, ...], tuple[float, Candidate]] = {}
+    for n, law in enumerate(laws):
+        progress(n / len(laws), "screening laws of what is left")
+        columns = columns_about(evidence, law, about)
         if not np.any(columns):
             continue
-        score = _score(columns, about.jacobian, z, table, evidence)
-        name, play, _ = table.of[0].name.partition(WITHIN)
-        family = table.place.name, name, play
+        score = _score(columns, about.jacobian, z, law, evidence)
+        name, play, _ = law.of[0].name.partition(WITHIN)
+        family = law.place.name, name, play, *(v.name for v in law.of[1:])
         if family not in found or score > found[family][0]:
-            found[family] = score, table
-    return [table for _, table in sorted(found.values(), key=lambda one: -one[0])]
+            found[family] = score, law
+    return [law for _, law in sorted(found.values(), key=lambda one: -one[0])]
 
 
 def _score(
-    columns: FloatArray, others: FloatArray, z: FloatArray, table: Table, evidence: Evidence
+    columns: FloatArray, others: FloatArray, z: FloatArray, family: Candidate, evidence: Evidence
 ) -> float:
     """Log evidence but for a constant [nats]."""
     width = evidence.whitening.mixing.shape[1]
@@ -65,8 +65,8 @@ def _score(
         unit = np.tile(np.sqrt(square), len(counted))
         law, errors, target = columns / unit[:, None], others / unit[:, None], z / unit
         gram, slope = projected(law, errors, target, 1.0)
-        smooth = best_of(gram, slope, table)
-        prior = np.linalg.inv(smooth.size**2 * table.kernels[smooth.length])
+        smooth = best_of(gram, slope, family)
+        prior = np.linalg.inv(smooth.size**2 * family.kernels[smooth.length])
         numbers = np.linalg.solve(gram + prior, slope)
         left = target - law @ numbers
         inverse = errors.T @ errors + np.eye(errors.shape[1])

@@ -10,6 +10,9 @@ from ves_twin.effects.law import WITHIN, joints_of
 LAW = "a law"
 """What a search for one is called, or begins with, where time leaves it out."""
 
+RUBS = "sign(speed) times a curve of position"
+"""Form of a dry friction that depends on where a joint stands."""
+
 
 @dataclass(frozen=True)
 class LawNumber:
@@ -98,6 +101,16 @@ class LawFinding:
         where = f"{what} {'at' if self.kind == 'effort' else 'of'} {named(self.place)}"
         said = f"{where} that depends on {along}" if self.shape in ("table", "mesh") else where
         return f"{said}: {self.form}" if self.form else said
+
+    @property
+    def curve(self) -> tuple[tuple[float, ...], tuple[float, ...]] | None:
+        """Places and values along the first variable, where that is all there is to draw.
+
+        Of a dry friction of position the values are those at positive speed.
+        """
+        if self.shape == "mesh" and self.form == RUBS:
+            return self.knots[0], self.values[len(self.knots[1]) - 1 :: len(self.knots[1])]
+        return (self.knots[0], self.values) if self.shape == "table" else None
 
     @property
     def refusal(self) -> str:

@@ -29,6 +29,9 @@ BEYOND_DOUBT = 1000.0
 WORTH_A_LOOK = 0.1
 """Share of the held-out error from which the page sends its reader to a law that is not claimed."""
 
+AHEAD = ", at positive speed; at negative speed it is turned round"
+"""Of a picture of dry friction that depends on position."""
+
 DRAWN = 400
 """Places at which a law is drawn, from end to end of what was seen."""
 
@@ -52,7 +55,7 @@ def law_sentences(law: LawFinding, out: Sequence[str] = ()) -> list[str]:
             for name, (low, high), unit in zip(law.of, law.seen, law.units, strict=False)
         ]
         said.append(f"Seen: {'; '.join(spans)}. Beyond that it is held, and was never measured.")
-    if law.form and law.of:
+    if law.form and len(law.of) == 1:
         unit = law.units[0].replace("*", " ") or "units of the command"
         said.append(
             f"In the formula x is {law.of[0]} in {unit}, the {law.kind} is in {_unit(law)}."
@@ -122,7 +125,7 @@ def law_parts(law: LawFinding, out: Sequence[str] = ()) -> list[Html]:
     lines = law_sentences(law, out)
     parts = [paragraph(lines[0], "lead open" if law.claimed else "")]
     parts += [bullets(lines[1:])] if lines[1:] else []
-    if law.shape == "table":
+    if law.curve is not None:
         parts.append(law_figure(law))
     if law.numbers:
         rows = [
@@ -146,7 +149,7 @@ def law_figure(law: LawFinding) -> Html:
     against = " It acts beside the drive, which must give as much against it."
     caption = (
         f"{capital(law.kind)} at {law.place} against {law.of[0]}.{points if law.points else ''}"
-        f" Line and band: the law.{against * (law.kind == 'effort')}"
+        f" Line and band: the law{AHEAD * (len(law.of) > 1)}.{against * (law.kind == 'effort')}"
     )
     return svg(draw_law(law), "law", caption)
 
@@ -155,9 +158,11 @@ def draw_law(law: LawFinding, truth: Callable[[FloatArray], FloatArray] | None =
     """A law against its variable, its band, and what the recordings ask for.
 
     Args:
-        law: a table.
+        law: one that has a curve.
         truth: the law itself, where somebody knows it.
     """
+    if law.curve is None:
+        raise TypeError(f"{law.words} has no curve")
     figure = new_figure(3.6)
     axes = figure.subplots()
     low, high = law.seen[0]
@@ -172,7 +177,8 @@ def draw_law(law: LawFinding, truth: Callable[[FloatArray], FloatArray] | None =
         axes.fill_between(
             along, least, most, color=AFTER, alpha=0.25, linewidth=0, label="90 % band"
         )
-    found = np.interp(x, np.array(law.knots[0]), np.array(law.values))
+    places, values = (np.array(rows, float) for rows in law.curve)
+    found = np.interp(x, places, values)
     axes.plot(x, found, color=AFTER, lw=1.4, label="law")
     if truth is not None:
         axes.plot(x, truth(x), "--", color="black", lw=1.0, label="truth")
