@@ -183,7 +183,8 @@ def draw_law(law: LawFinding, truth: Callable[[FloatArray], FloatArray] | None =
     if truth is not None:
         axes.plot(x, truth(x), "--", color="black", lw=1.0, label="truth")
     axes.set_xlabel(f"{law.of[0]}, {law.units[0].replace('*', ' ')}".rstrip(", "), fontsize=8)
-    axes.set_ylabel(f"{law.kind} at {law.place}, {law.units[-1].replace('*', ' ')}", fontsize=8)
+    ahead = " at positive speed" * (len(law.of) > 1)
+    axes.set_ylabel(f"{law.kind} at {law.place}{ahead}, {_unit(law)}", fontsize=8)
     axes.tick_params(labelsize=8)
     axes.grid(color="#e8ebee", linewidth=0.6)
     axes.legend(fontsize=7, frameon=False)
