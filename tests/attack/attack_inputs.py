@@ -124,16 +124,17 @@ def attack(name: str, seeds: range, use: Callable[[Path], object] | None = None)
     left = list(seeds)
     while left:
         part = left[:EACH]
-        done = list(_in_child(name, part, use))
+        with tempfile.TemporaryDirectory() as folder:  # of the parent: a child may be killed
+            done = list(_in_child(name, part, use, folder))
         found += done
         left = left[len(done) :]
     return found
 
 
-def _in_child(name: str, seeds: list[int], use: object) -> Iterator[Outcome]:
+def _in_child(name: str, seeds: list[int], use: object, folder: str) -> Iterator[Outcome]:
     """Outcomes until the child is through or dies; whom it died of comes last."""
     here, there = mp.Pipe(duplex=False)
-    child = mp.get_context("fork").Process(target=_work, args=(there, name, seeds, use))
+    child = mp.get_context("fork").Process(target=_work, args=(there, name, seeds, use, folder))
     child.start()
     there.close()
     try:
@@ -152,13 +153,13 @@ def _in_child(name: str, seeds: list[int], use: object) -> Iterator[Outcome]:
         child.join()
 
 
-def _work(pipe: Connection, name: str, seeds: list[int], use: object) -> None:
+def _work(pipe: Connection, name: str, seeds: list[int], use: object, folder: str) -> None:
     from kinds import KINDS
 
     kind = next(k for k in KINDS if k.name == name)
     resource.setrlimit(resource.RLIMIT_AS, (8 * MEMORY, 8 * MEMORY))  # it spares the machine
     resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
-    with tempfile.TemporaryDirectory() as folder, tempfile.TemporaryFile() as said:
+    with tempfile.TemporaryFile() as said:
         os.chdir(folder)
         os.dup2(said.fileno(), 2)
         for seed in seeds:

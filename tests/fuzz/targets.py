@@ -7,7 +7,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
-from tempfile import TemporaryDirectory, mkdtemp
+from tempfile import TemporaryDirectory
 
 import numpy as np
 import pyarrow as pa
@@ -239,6 +239,10 @@ stop = "2 s"
 """
 
 
+LAB = TemporaryDirectory()
+"""Gone with the process."""
+
+
 @cache
 def _lab() -> Path:
     """A lab file that the map fits; two recorders, the second with a clock in ms."""
@@ -246,7 +250,7 @@ def _lab() -> Path:
     seen = np.sin(3.0 * t) + 0.3 * np.sin(7.0 * t)
     columns = {"t [s]": t, "plc": 1e3 * t + 250.0, "L1 [mm]": 1e3 + seen, "seen [mm]": seen}
     columns |= {"i [mA]": 100.0 * t, "v1": t, "v2": -t, "v3": 0.0 * t}
-    path = Path(mkdtemp()) / "lab.csv"
+    path = Path(LAB.name) / "lab.csv"
     rows = (",".join(f"{v:.9g}" for v in row) for row in np.column_stack(list(columns.values())))
     path.write_text("\n".join([",".join(columns), *rows]) + "\n")
     return path
