@@ -117,3 +117,34 @@ def test_every_file_that_compiles_is_in_the_hash():
         text = path.read_text()
         if "@compiled" in text or "njit" in text:
             assert "ves_twin.core.compiled" in text or path.name == "compiled.py", path
+
+
+FORKED = """
+import os, sys, time
+from threading import Event, Thread
+from numba.core.compiler_lock import global_compiler_lock
+import ves_twin.core.compiled
+
+begun = Event()
+
+def compile_for_a_while():
+    with global_compiler_lock:
+        begun.set()
+        time.sleep(0.5)
+
+Thread(target=compile_for_a_while).start()
+begun.wait()
+child = os.fork()
+if child == 0:
+    os._exit(0 if global_compiler_lock._lock.acquire(timeout=10.0) else 7)
+sys.exit(os.waitstatus_to_exitcode(os.waitpid(child, 0)[1]))
+"""
+
+
+@pytest.mark.skipif(not hasattr(os, "fork"), reason="this system cannot fork")
+def test_a_fork_while_a_thread_compiles_leaves_the_child_able_to_compile():
+    """It waited for ever for a lock that a thread of its parent held, in one run of ten."""
+    done = subprocess.run(
+        [sys.executable, "-c", FORKED], capture_output=True, text=True, check=False, timeout=120
+    )
+    assert done.returncode == 0, done.stderr

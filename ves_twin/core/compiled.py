@@ -7,6 +7,7 @@ file would silently run the old physics. Here the folder's name carries a hash o
 from __future__ import annotations
 
 import hashlib
+import os
 import sys
 from collections.abc import Callable
 from functools import lru_cache
@@ -16,6 +17,7 @@ from typing import TypeVar, cast
 import numba
 import numpy as np
 from numba.core import config as numba_config
+from numba.core.compiler_lock import global_compiler_lock
 
 from ves_twin.core.cache_folder import cache_folder
 
@@ -23,6 +25,13 @@ Function = TypeVar("Function", bound=Callable[..., object])
 
 MARK = "ves_twin.core.compiled"
 """Files that import this module hold compiled code and enter the hash."""
+
+if hasattr(os, "register_at_fork"):  # a child has no thread that would open the lock again
+    os.register_at_fork(
+        before=global_compiler_lock.acquire,
+        after_in_parent=global_compiler_lock.release,
+        after_in_child=global_compiler_lock.release,
+    )
 
 
 def sources_hash(package: Path) -> str:
