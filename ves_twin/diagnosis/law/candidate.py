@@ -109,8 +109,8 @@ class Candidate(ABC):
 
 
 @dataclass(frozen=True)
-class Table(Candidate):
-    """Linear between knots (k,), with a smooth prior."""
+class Curve(Candidate):
+    """A curve that is linear between knots (k,) of the first variable, with a smooth prior."""
 
     knots: tuple[float, ...]
 
@@ -128,6 +128,11 @@ class Table(Candidate):
     def kernels(self) -> tuple[FloatArray, ...]:
         """Matern 3/2."""
         return tuple(matern(np.array(self.knots), length) for length in LENGTHS)
+
+
+@dataclass(frozen=True)
+class Table(Curve):
+    """The curve itself."""
 
     def law(self, numbers: FloatArray) -> Law:
         """A table."""

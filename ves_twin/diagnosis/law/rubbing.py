@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ves_twin.core.types import FloatArray
-from ves_twin.diagnosis.law.candidate import LENGTHS, Candidate, matern
+from ves_twin.diagnosis.law.candidate import Curve
 from ves_twin.diagnosis.law.forms import SHARP
 from ves_twin.diagnosis.law.result import RUBS
 from ves_twin.diagnosis.law.screen import KNOTS
@@ -17,33 +17,16 @@ from ves_twin.effects.law import Law, LawKind, LawShape
 
 
 @dataclass(frozen=True)
-class Rubbing(Candidate):
-    """sign(v) g(q), g linear between knots (k,), with a smooth prior.
+class Rubbing(Curve):
+    """sign(v) g(q), g the curve, q the position and v the speed of a joint.
 
     A belt that is tighter at one end, a rail with a dent, a screw that binds once a turn.
 
     Attributes:
-        knots: of the position [m or rad].
         fastest: ends of the speed in the recordings [m/s or rad/s], below and above zero.
     """
 
-    knots: tuple[float, ...]
     fastest: tuple[float, float]
-
-    @property
-    def start(self) -> FloatArray:
-        """No law."""
-        return np.zeros(len(self.knots))
-
-    @property
-    def sd(self) -> FloatArray:
-        """The expected size."""
-        return np.full(len(self.knots), self.place.scale)
-
-    @property
-    def kernels(self) -> tuple[FloatArray, ...]:
-        """Matern 3/2."""
-        return tuple(matern(np.array(self.knots), length) for length in LENGTHS)
 
     def law(self, numbers: FloatArray) -> Law:
         """A mesh, whose rows of speed are -g, -g, g, g."""
