@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from ves_twin.core.units import SI_UNITS, unit_tail
-from ves_twin.diagnosis.verdict.verdict import Estimate
+from ves_twin.diagnosis.verdict.cause import Estimate
 
 
 @pytest.mark.parametrize("unit", sorted(SI_UNITS))

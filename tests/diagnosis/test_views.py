@@ -11,8 +11,9 @@ from ves_twin.diagnosis.model.forward import Excitation
 from ves_twin.diagnosis.model.widened import LEAST, Widened, widening
 from ves_twin.diagnosis.unseen.gain import Gain
 from ves_twin.diagnosis.verdict.both_views import both_views
+from ves_twin.diagnosis.verdict.cause import Cause
 from ves_twin.diagnosis.verdict.refusal import refusal
-from ves_twin.diagnosis.verdict.verdict import Basis, Cause, Kind, Statistics, Verdict
+from ves_twin.diagnosis.verdict.verdict import Basis, Kind, Statistics, Verdict
 from ves_twin.machines.ves2.ves2_machine import Ves2Machine
 from ves_twin.report.diagnosis.answer import headline
 

@@ -14,7 +14,8 @@ import yaml
 
 import ves_twin as vt
 from ves_twin.cli.main import build_parser
-from ves_twin.diagnosis.verdict.verdict import Basis, Cause, Estimate, Kind, Statistics, Verdict
+from ves_twin.diagnosis.verdict.cause import Cause, Estimate
+from ves_twin.diagnosis.verdict.verdict import Basis, Kind, Statistics, Verdict
 from ves_twin.scenario.schema import Scenario
 
 ROOT = Path(__file__).parents[2]

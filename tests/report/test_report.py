@@ -26,8 +26,9 @@ from ves_twin.diagnosis.record.preprocess import preprocess
 from ves_twin.diagnosis.record.whitening import whitening_declared
 from ves_twin.diagnosis.settings import Settings
 from ves_twin.diagnosis.unseen.gain import Gain
+from ves_twin.diagnosis.verdict.cause import Estimate
 from ves_twin.diagnosis.verdict.refusal import refusal
-from ves_twin.diagnosis.verdict.verdict import ChannelError, Estimate, Kind
+from ves_twin.diagnosis.verdict.verdict import ChannelError, Kind
 from ves_twin.report.diagnosis.answer import headline, next_step, suspect_words, tone
 from ves_twin.report.diagnosis.basis import basis_sentences, gain_words, taken_words
 from ves_twin.report.diagnosis.credibility import Pedigree, credibility

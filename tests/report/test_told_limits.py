@@ -10,11 +10,10 @@ from ves_twin.diagnosis.build_up.result import Left, Proved
 from ves_twin.diagnosis.law.result import LAW
 from ves_twin.diagnosis.record.residual_structure import ResidualStructure
 from ves_twin.diagnosis.unseen.gain import Gain
+from ves_twin.diagnosis.verdict.cause import Cause, Estimate
 from ves_twin.diagnosis.verdict.verdict import (
     Basis,
-    Cause,
     ChannelError,
-    Estimate,
     Findable,
     Kind,
     Statistics,

@@ -80,6 +80,15 @@ def test_rows_of_a_slow_encoder_repeat_by_its_resolution_and_no_fault(speed, hel
     assert "come more slowly" not in words.get("repeats", "")
 
 
+def test_a_coarse_encoder_that_turns_back_between_two_rows_repeats_none():
+    """Four rows of a twin rotor, told in sixteenths of a degree, stood in every one of its pages."""
+    angle = np.array([0.0, 3.0, 7.0, 9.0, 9.0, 6.0, 1.0, -4.0, -4.0, 0.0, 5.0, 7.0, 7.0, 3.0])
+    recording = angles(np.tile(angle, 30))
+    assert "repeats" not in found(recording)
+    going = np.cumsum(np.tile([3.0, 8.0, 0.0, 8.0], 60))
+    assert "repeats" in found(angles(going))
+
+
 def test_another_rate_than_declared_is_found(healthy):
     words = found(vt.Recording(healthy.time * 1.2, healthy.signals, healthy.info))
     assert "declares 79.26 Hz" in words["rate"]
@@ -208,6 +217,16 @@ def test_a_reading_that_drops_out_is_told_with_its_rows():
     told = found(angles(swing))["dropout"]
     assert told.startswith("angle: 1 times a jump away")
     assert "at 1.000 s, for 7 rows" in told
+
+
+def test_two_runs_in_one_recording_and_a_glitch_are_told_with_their_times():
+    swing = 1.0 + 0.2 * np.sin(0.03 * np.arange(400))
+    swing[300:] -= 0.7
+    swing[120] += 0.4
+    told = found(angles(swing))
+    assert "from 2.990 s to the next row" in told["jump"]
+    assert "in 1 single rows, first at 1.200 s" in told["spike"]
+    assert not {"jump", "spike"} & {*found(angles(0.2 * np.sin(0.03 * np.arange(400))))}
 
 
 def test_a_clock_that_may_be_in_another_unit_is_doubted_and_no_flaw():

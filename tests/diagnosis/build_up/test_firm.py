@@ -11,8 +11,8 @@ from linear import Linear, halves
 from ves_twin.diagnosis.build_up.proof import prove
 from ves_twin.diagnosis.build_up.report import report_of
 from ves_twin.diagnosis.build_up.result import BuildUp, Proved
-from ves_twin.diagnosis.verdict.assemble_verdict import sized
-from ves_twin.diagnosis.verdict.verdict import Cause, Estimate
+from ves_twin.diagnosis.verdict.cause import Cause, Estimate
+from ves_twin.diagnosis.verdict.sized import sized
 from ves_twin.report.diagnosis.proved import standing_words
 
 ENDS = {"level": (0.0, 2.0)}

@@ -20,7 +20,7 @@ from ves_twin.diagnosis.build_up.proof import FALSE_SHARE, NULL_FROM, _again, _n
 from ves_twin.diagnosis.build_up.report import report_of
 from ves_twin.diagnosis.build_up.select import Selector
 from ves_twin.diagnosis.build_up.spanned import spanned_by
-from ves_twin.diagnosis.build_up.stand_ins import stand_ins
+from ves_twin.diagnosis.build_up.stand_ins import StandIns
 from ves_twin.diagnosis.build_up.trials import Trial, columns_of, trials_at
 
 PLANT = Linear()
@@ -94,7 +94,7 @@ def test_a_twin_is_a_stand_in_and_takes_the_firm_name_away():
     plant = Linear((*KINDS, "twin"))
     two = halves(plant, {"viscous@a:size": 0.5, "coulomb@b:size": 0.6}, 4)
     names, proof = found(two)
-    others = stand_ins(proof)
+    others = StandIns.of(proof).within
     trials = two.regression.trials
     like = {trials[n].cause.label: {trials[k].cause.label for k in ks} for n, ks in others.items()}
     pair = {"viscous@a", "twin@a"}
@@ -237,7 +237,7 @@ def test_a_cause_whose_held_out_simulation_breaks_off_is_not_proved_and_hinders_
         proof = prove(both.regression, held, [good, bad])
         assert proof.proved == left
         assert all(proof.dropped[n] == 1.0 for n in broken)
-        assert not set(broken) & {k for found in stand_ins(proof).values() for k in found}
+        assert not set(broken) & {k for found in StandIns.of(proof).within.values() for k in found}
 
 
 def test_held_out_columns_are_simulated_for_chosen_trials_alone():

@@ -15,7 +15,8 @@ from ves_twin.cli.main import main
 from ves_twin.core.errors import InvalidInputError, VesTwinError
 from ves_twin.core.recording.recording import POSES
 from ves_twin.core.resources import resource_folder
-from ves_twin.diagnosis.verdict.verdict import Basis, Cause, Estimate, Kind, Statistics, Verdict
+from ves_twin.diagnosis.verdict.cause import Cause, Estimate
+from ves_twin.diagnosis.verdict.verdict import Basis, Kind, Statistics, Verdict
 from ves_twin.machines.data_folder import find_data
 from ves_twin.machines.load import open_machine
 from ves_twin.machines.mjcf.motion.forward import MjcfForward

@@ -7,7 +7,8 @@ import ves_twin as vt
 from ves_twin.control.leg_loop import FilterPlace
 from ves_twin.diagnosis.model.forward import Excitation, check_forward
 from ves_twin.diagnosis.record.runs import Runs
-from ves_twin.diagnosis.verdict.verdict import Basis, Cause, Kind, Statistics, Verdict
+from ves_twin.diagnosis.verdict.cause import Cause
+from ves_twin.diagnosis.verdict.verdict import Basis, Kind, Statistics, Verdict
 from ves_twin.machines.ves2.effects_of import effects_of
 from ves_twin.machines.ves2.filter_place import WithFilterPlaces
 from ves_twin.machines.ves2.forward import DRIVE, RigForward

@@ -4,14 +4,14 @@ from __future__ import annotations
 
 import re
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from ves_twin.core.types import FloatArray
 from ves_twin.data.clock.usual_period import is_usual
 from ves_twin.data.formats.log import Block, Column, Kind
-from ves_twin.data.formats.unit_names import TIME, bare_name
+from ves_twin.data.formats.unit_names import TIME, bare_name, spelled
 
 _NAMED = re.compile(
     r"^(?:t|time|times|timestamp|time_stamp|stamp|tstamp|zeit|temps|elapsed|clock|tijd|"
@@ -21,6 +21,13 @@ _NAMED = re.compile(
 _NAMELESS = re.compile(r"(?:column|col|c|var|variable|field|unnamed|x|v)?[ _:]*#", re.IGNORECASE)
 
 _COUNTER = re.compile(r"^(?:idx|index|i|n|row|sample|samples|count|counter|seq)$", re.IGNORECASE)
+
+_UNITS = {
+    **{unit: unit for unit in ("s", "ms", "us", "ns")},
+    **dict.fromkeys(("millis", "millisecond", "milliseconds"), "ms"),
+    **dict.fromkeys(("micros", "microsecond", "microseconds"), "us"),
+}
+"""Names of columns that are a unit of time and nothing else, as counters of small boards are."""
 
 EPOCHS = ((1e9, 4e9, "s"), (1e12, 4e12, "ms"), (1e15, 4e15, "us"), (1e18, 4e18, "ns"))
 """Sizes of a count since 1970 (years 2001 to 2096) in each unit."""
@@ -60,8 +67,9 @@ def clock_fields(columns: Sequence[Column], block: Block) -> tuple[ClockField, .
         block: its first rows.
     """
     found = []
-    for place, column in enumerate(columns):
-        if column.kind is Kind.TEXT or column.name not in block:
+    timed = [_timed(column) for column in columns if column.kind is not Kind.TEXT]
+    for place, column in enumerate(timed):
+        if column.name not in block:
             continue
         values = block[column.name]
         score = _score(column, values, place, _numbered(column, columns))
@@ -70,6 +78,12 @@ def clock_fields(columns: Sequence[Column], block: Block) -> tuple[ClockField, .
             counter = _counts(column, block[column.name])
             found.append(ClockField(column.name, unit, guessed, score, counter))
     return tuple(sorted(found, key=lambda f: (f.counter, -f.score)))
+
+
+def _timed(column: Column) -> Column:
+    """With the unit that its name is: `ms` behind a text of hours."""
+    unit = _UNITS.get(spelled(bare_name(column.name).lower()), "")
+    return replace(column, unit=unit) if unit and not column.unit else column
 
 
 def _numbered(column: Column, columns: Sequence[Column]) -> bool:

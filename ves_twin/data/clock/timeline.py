@@ -8,7 +8,7 @@ import numpy as np
 
 from ves_twin.core.errors import InvalidInputError
 from ves_twin.core.types import FloatArray, IntArray
-from ves_twin.data.clock.clock_report import GAP, usual_step
+from ves_twin.data.clock.clock_report import longest_step, usual_step
 from ves_twin.data.mapping.import_map import Backward, ClockMap, Repeats
 
 
@@ -70,9 +70,10 @@ class Timeline:
             raise InvalidInputError(where, f"{len(time)} rows with a time", "at least 2")
         period = usual_step(time)
         steps = np.diff(time)
-        wide = steps[steps > GAP * period]
+        most = longest_step(steps, period)
+        wide = steps[steps > most]
         longest = float(wide.max()) if len(wide) else 0.0
-        even = steps[steps <= GAP * period]
+        even = steps[steps <= most]
         jitter = float(np.std(even)) / period if len(even) else 0.0
         if told.even:
             time = _straightened(time, period)

@@ -25,7 +25,8 @@ def check_clock(recording: Recording) -> list[Check]:
 
     A gap is a step of more than 1.5 median periods. Rows are repeats where every measured
     column equals the row before in a recording that otherwise moves: a logger that held them. Not
-    where a column that is told in steps moves by one about them: there the machine stands.
+    where a column that is told in steps moves by one about them: there the machine stands. Nor
+    where none goes on behind them as it came: there it turns back.
     """
     if len(recording) < 3:
         return [unknown("rate", f"{len(recording)} rows are too few to tell a rate")]
@@ -63,17 +64,21 @@ def _gaps(recording: Recording, steps: np.ndarray, period: float) -> Check:
 
 
 def _repeats(recording: Recording) -> Check:
-    changes, moves = np.zeros((2, len(recording) - 1), dtype=bool)
+    changes, moves, goes_on = np.zeros((3, len(recording) - 1), dtype=bool)
     for values in recording.signals.values():
         with np.errstate(invalid="ignore"):
-            steps = np.abs(np.diff(values, axis=0))
+            told = np.diff(values, axis=0)
+        steps = np.abs(told)
+        before, behind = _last(told), _last(told[::-1])[::-1]
+        first = (before == 0.0) != (behind == 0.0)  # it has not moved yet, or does not any more
+        goes_on |= np.any((before * behind > 0.0) | first, axis=1)
         changes |= np.any(steps != 0.0, axis=1)
         smallest = np.min(np.where(steps > 0.0, steps, np.inf), axis=0)
         moves |= np.any(steps > STILL * smallest, axis=1)
     if not changes.any():
         return unknown("repeats", "no signal changes at all")
     about = np.concatenate([[False], moves, [False]])
-    held = np.flatnonzero(~changes & (about[:-2] | about[2:]))
+    held = np.flatnonzero(~changes & goes_on & (about[:-2] | about[2:]))
     first, last = np.flatnonzero(changes)[[0, -1]]
     # a machine rests before and after its motion, and one row alone harms nothing
     if len(held) > 1 and np.any((held > first) & (held < last)):
@@ -81,6 +86,13 @@ def _repeats(recording: Recording) -> Check:
         said += " repeat the one before"
         return failed("repeats", f"{said}, first at {begin:.3f} s{_slower(recording)}")
     return passed("repeats", "none")
+
+
+def _last(steps: np.ndarray) -> np.ndarray:
+    """The last step of each column (n, c) that was none of zero, row by row."""
+    rows = np.arange(len(steps))[:, None]
+    at = np.maximum.accumulate(np.where(steps != 0.0, rows, 0), axis=0)
+    return np.take_along_axis(steps, at, axis=0)
 
 
 def _slower(recording: Recording) -> str:

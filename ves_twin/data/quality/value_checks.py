@@ -1,4 +1,4 @@
-"""check_values: missing numbers, stuck, saturated and dropped-out columns of a recording."""
+"""check_values: columns of a recording that lack numbers, stick, saturate, drop out or jump."""
 
 from __future__ import annotations
 
@@ -10,6 +10,8 @@ from ves_twin.core.signals import SIGNALS, Role
 from ves_twin.core.types import FloatArray
 from ves_twin.data.quality.check import Check, failed, passed, unknown
 from ves_twin.data.quality.dropouts import dropouts
+from ves_twin.data.quality.jumps import jumps
+from ves_twin.data.quality.spikes import spikes
 
 PILE = 0.02
 """Share of rows at the very largest or smallest value that counts as saturation."""
@@ -20,11 +22,14 @@ COMMANDS = {"leg.length": "leg.command", "arm.q": "arm.command"}
 RUN = 5
 """Rows in a row at an end value that count as saturation."""
 
-OF_READINGS = ("saturation", "dropout")
+OF_READINGS = ("saturation", "dropout", "jump", "spike")
 """Checks that a command does not have: it stays at its ends, and jumps, as it likes."""
 
-MOTION = frozenset({"m", "rad", "m/s", "rad/s"})
-"""Units of places and speeds."""
+PLACES = frozenset({"m", "mm", "cm", "um", "in", "rad", "mrad", "deg", "turn"})
+"""Units of places, as the table of signals and machines' own files give them."""
+
+MOTION = PLACES | {f"{unit}/s" for unit in PLACES} | {"rpm"}
+"""Those, and units of speeds."""
 
 SWITCHED = 3
 """Values that a switched command has at most."""
@@ -73,7 +78,7 @@ def _signal(recording: Recording, name: str) -> list[Check]:
         checks.append(unknown("stuck", f"{resting} never change, nor were they asked to", name))
     else:
         checks.append(passed("stuck", f"{name}: every column changes", name))
-    moves = _is_motion(recording, name)
+    moves = _has(recording, name, MOTION)
     full = [labels[i] for i in range(values.shape[1]) if _saturated(values[:, i], moves)]
     if full:
         verb = "stays at its end value" if len(full) == 1 else "stay at their end values"
@@ -83,26 +88,58 @@ def _signal(recording: Recording, name: str) -> list[Check]:
         checks.append(passed("saturation", f"{name}: no column stays at an end value", name))
     if not moves:
         return checks
-    lost = {label: dropouts(values[:, i]) for i, label in enumerate(labels)}
-    gone = {label: found for label, found in lost.items() if found}
-    if gone:
-        label, found = next(iter(gone.items()))
-        at, rows = found[0].start, found[0].stop - found[0].start
-        text = (
-            f"{', '.join(gone)}: {sum(map(len, gone.values()))} times a jump away, a stand and a"
-            f" jump back, as of a reading that drops out; {label} first at"
-            f" {recording.time[at]:.3f} s, for {rows} rows"
-        )
-        checks.append(failed("dropout", text, *gone))
-    else:
-        checks.append(passed("dropout", f"{name}: no column jumps away and back", name))
+    checks.append(_dropout(recording, name, labels))
+    if _has(recording, name, PLACES):
+        checks += [_jump(recording, name, labels), _spike(recording, name, labels)]
     return checks
 
 
-def _is_motion(recording: Recording, name: str) -> bool:
-    """Whether a signal tells places or speeds, which do not jump; forces and currents may."""
+def _dropout(recording: Recording, name: str, labels: tuple[str, ...]) -> Check:
+    values = recording[name]
+    lost = {label: dropouts(values[:, i]) for i, label in enumerate(labels)}
+    gone = {label: found for label, found in lost.items() if found}
+    if not gone:
+        return passed("dropout", f"{name}: no column jumps away and back", name)
+    label, found = next(iter(gone.items()))
+    at, rows = found[0].start, found[0].stop - found[0].start
+    text = (
+        f"{', '.join(gone)}: {sum(map(len, gone.values()))} times a jump away, a stand and a"
+        f" jump back, as of a reading that drops out; {label} first at"
+        f" {recording.time[at]:.3f} s, for {rows} rows"
+    )
+    return failed("dropout", text, *gone)
+
+
+def _jump(recording: Recording, name: str, labels: tuple[str, ...]) -> Check:
+    values, time = recording[name], recording.time
+    gone = {label: k for i, label in enumerate(labels) if (k := jumps(values[:, i], time))}
+    if not gone:
+        return passed("jump", f"{name}: no column jumps and stays", name)
+    label, rows = next(iter(gone.items()))
+    text = (
+        f"{label} is another one at once from {time[rows[0]]:.3f} s to the next row, and stays so:"
+        " two runs in one recording, a counter that was set anew, or a reading that was frozen?"
+    )
+    return failed("jump", text, *gone)
+
+
+def _spike(recording: Recording, name: str, labels: tuple[str, ...]) -> Check:
+    values = recording[name]
+    gone = {label: k for i, label in enumerate(labels) if (k := spikes(values[:, i]))}
+    if not gone:
+        return passed("spike", f"{name}: no single row is far from its neighbours", name)
+    label, rows = next(iter(gone.items()))
+    text = (
+        f"{label} is far from its neighbours in {len(rows)} single rows, first at"
+        f" {recording.time[rows[0]]:.3f} s: glitches of its sensor?"
+    )
+    return failed("spike", text, *gone)
+
+
+def _has(recording: Recording, name: str, units: frozenset[str]) -> bool:
+    """Whether a signal has such units: places and speeds do not jump, forces and currents may."""
     known = {own.name: own for own in recording.info.own_signals} | dict(SIGNALS)
-    return name in known and set(known[name].units) <= MOTION
+    return name in known and set(known[name].units) <= units
 
 
 def _asked_to_move(recording: Recording, name: str) -> NDArray[np.bool_]:

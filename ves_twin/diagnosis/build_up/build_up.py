@@ -15,6 +15,7 @@ from ves_twin.diagnosis.build_up.each_by_itself import each_by_itself
 from ves_twin.diagnosis.build_up.halves import Halves, carried_point
 from ves_twin.diagnosis.build_up.idle import idle, missed
 from ves_twin.diagnosis.build_up.in_full import in_full
+from ves_twin.diagnosis.build_up.in_its_place import Replaced
 from ves_twin.diagnosis.build_up.nearest import nearest
 from ves_twin.diagnosis.build_up.proof import Proof
 from ves_twin.diagnosis.build_up.regression import Regression
@@ -101,7 +102,8 @@ def build_up(
     if shown is not None:
         sure = _widened(evidence, shown, desk.settings.confidence, halves.regression, proof.proved)
         told = _explained(desk, start, _in_noise(plain, sure))
-    report = report_of(halves, proof, ends, points)
+    replaced = Replaced(proof, final, desk.first.screen.bank, evidence, held, desk.progress)
+    report = report_of(halves, proof, ends, points, replaced)
     return Built(told, before, report, fitted, held)
 
 

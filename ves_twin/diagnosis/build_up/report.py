@@ -10,16 +10,17 @@ import numpy as np
 from ves_twin.core.types import BoolArray, FloatArray, SingleArray
 from ves_twin.diagnosis.build_up.bench import Bench
 from ves_twin.diagnosis.build_up.halves import Halves
+from ves_twin.diagnosis.build_up.in_its_place import Replaced
 from ves_twin.diagnosis.build_up.inseparable import inseparable
 from ves_twin.diagnosis.build_up.leftover_laws import Law, by_channel, laws_left, same_motion
 from ves_twin.diagnosis.build_up.memory import memory
 from ves_twin.diagnosis.build_up.one_way import with_one_way_twins
 from ves_twin.diagnosis.build_up.proof import FALSE_SHARE, Proof
-from ves_twin.diagnosis.build_up.regression import Half
+from ves_twin.diagnosis.build_up.regression import Half, Regression
 from ves_twin.diagnosis.build_up.rests_on import rests_on
-from ves_twin.diagnosis.build_up.result import TOGETHER, BuildUp, Left, Proved
+from ves_twin.diagnosis.build_up.result import TOGETHER, Beyond, BuildUp, Left, Proved, Size
 from ves_twin.diagnosis.build_up.spanned import spanned_by
-from ves_twin.diagnosis.build_up.stand_ins import stand_ins
+from ves_twin.diagnosis.build_up.stand_ins import StandIns
 
 ALONG = 0.3
 """Correlation from which channels are said to go along with what another one leaves."""
@@ -46,6 +47,7 @@ def report_of(
     proof: Proof,
     ends: tuple[FloatArray, FloatArray],
     points: tuple[FloatArray, FloatArray] | None = None,
+    replaced: Replaced | None = None,
 ) -> BuildUp:
     """Everything that is told of a proof, sizes excepted.
 
@@ -54,20 +56,29 @@ def report_of(
         proof: what is proved.
         ends: what the extended model leaves of the fitted and of the held-out half (rows, c).
         points: its departures in the fitted and in the held-out half (coordinates,); none if None.
+        replaced: full fits with others in the place of those that columns tell alone; none if None.
     """
     regression = halves.regression
     fit = regression.solve(proof.proved, proof.bench.fit.whitening)
     bench = replace(proof.bench, fit=fit)
     left = ends[1]
     laws = laws_left(bench, *ends)
-    others = stand_ins(proof)
-    trials = regression.trials
+    found, trials = StandIns.of(proof), regression.trials
+    others = {**found.within}
     together = inseparable(proof, others)
+    if replaced is not None:
+        others |= replaced.others([n for n in proof.proved if trials[n].bent and not others[n]])
     shared = {name for one in together for name in one.names}
     lost = _unfollowed(bench.held, halves.measured, left)
-    proved = [_proved(bench, proof, n, others[n], laws, left, lost) for n in proof.proved]
+    proved = [
+        replace(
+            _proved(bench, proof, n, others[n], laws, left, lost),
+            beyond=tuple(_beyond(regression, k, size) for k, size in found.beyond[n].items()),
+        )
+        for n in proof.proved
+    ]
     proved.sort(key=lambda one: (-one.share, one.p))
-    told = (replace(p, firm=p.firm and p.label not in shared) for p in proved)
+    told = (replace(p, firm=p.firm and p.label not in shared and not p.beyond) for p in proved)
     return BuildUp(
         proved=with_one_way_twins(tuple(told), halves, points),
         tested=proof.tested,
@@ -77,6 +88,16 @@ def report_of(
         left=_left(bench, left, laws),
         inseparable=together,
     )
+
+
+def _beyond(regression: Regression, trial: int, sizes: FloatArray) -> Beyond:
+    runs, cause = regression.half.runs, regression.trials[trial].cause
+    found = {}
+    for i, size in zip(runs.indices(cause), sizes.tolist(), strict=True):
+        one = runs.coordinates[int(i)].parameter
+        name, value = one.name.rpartition(":")[2], one.nominal + size
+        found[name] = Size(value, one.low, one.high, one.unit, one.nominal)
+    return Beyond(cause.label, found)
 
 
 def _unfollowed(half: Half, measured: SingleArray, left: FloatArray) -> BoolArray:

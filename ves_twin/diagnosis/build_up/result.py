@@ -41,6 +41,19 @@ def is_sublinear(effect: str, sizes: Sequence[float]) -> bool:
 
 
 @dataclass(frozen=True)
+class Beyond:
+    """A cause that does as well in the place of a proved one, at sizes beyond its range.
+
+    Attributes:
+        label: effect@target.
+        parameters: size of each, its range as `low` and `high`.
+    """
+
+    label: str
+    parameters: Mapping[str, Size]
+
+
+@dataclass(frozen=True)
 class Proved:
     """One extension that is proved to predict better.
 
@@ -71,6 +84,7 @@ class Proved:
             place: with it, its size is that of a line through a curve.
         drives: whether the friction of its place would push the joint on with it.
         one_way: whether its joint keeps one direction, and a reversal would tell it from another.
+        beyond: causes that would do as well beyond their range, which is assumed: it is not firm.
     """
 
     effect: str
@@ -90,6 +104,7 @@ class Proved:
     bent: bool = False
     drives: bool = False
     one_way: bool = False
+    beyond: tuple[Beyond, ...] = ()
 
     @property
     def label(self) -> str:

@@ -10,7 +10,7 @@ from ves_twin.core.types import FloatArray
 from ves_twin.diagnosis.build_up.exchanged import exchanged
 from ves_twin.diagnosis.build_up.in_full import in_full
 from ves_twin.diagnosis.build_up.proof import Proof
-from ves_twin.diagnosis.build_up.stand_ins import stand_ins
+from ves_twin.diagnosis.build_up.stand_ins import StandIns
 from ves_twin.diagnosis.fit.refine import Fit
 from ves_twin.diagnosis.record.evidence import Evidence
 
@@ -40,7 +40,7 @@ def within_range(
     ends = [n for n in proof.proved if _at_end(proof, n, fit, evidence)]
     if not ends or evidence.runs.budget.skips("others in the place of what ends its range"):
         return proof, fit
-    others = stand_ins(proof)
+    others = StandIns.of(proof).within
     for n in ends:
         for other in others[n][:MOST]:
             tried = exchanged(proof, {n: other})

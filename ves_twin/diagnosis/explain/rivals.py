@@ -14,6 +14,9 @@ from ves_twin.diagnosis.fit.refine import Fit
 from ves_twin.diagnosis.model.forward import Channel
 from ves_twin.diagnosis.record.adequacy import EnergyCell, cells
 
+NEAR = 0.01
+"""Share of its range from an end within which a size is at that end: bounds hold it there."""
+
 SCREENED = 6
 """Causes that are told though the screen kept them from a fit."""
 
@@ -57,6 +60,7 @@ class Rival:
         pull: largest commissioning error that it needs, in declared sd; None if it was not fitted.
         place: where it leaves most more; None for the best, and for one that only loses by the
             commissioning errors it needs.
+        ended: whether an end of its range holds a size: a wider one may let it explain more.
     """
 
     causes: tuple[str, ...]
@@ -66,6 +70,7 @@ class Rival:
     score: float | None
     pull: float | None
     place: Place | None
+    ended: bool = False
 
 
 def rivals_of(first: Assessment, found: Explanation | None) -> tuple[Rival, ...]:
@@ -110,6 +115,11 @@ def _fitted(found: Explanation, fit: Fit, standing: Standing) -> Rival:
         score=None,
         pull=fit.pull,
         place=_place(found, fit, channels),
+        ended=any(
+            size <= runs.low[i] + NEAR * (runs.high[i] - runs.low[i]) < 0.0
+            or size >= runs.high[i] - NEAR * (runs.high[i] - runs.low[i]) > 0.0
+            for i, size in zip(free, fit.sizes, strict=True)
+        ),
     )
 
 

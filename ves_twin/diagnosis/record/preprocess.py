@@ -11,6 +11,7 @@ from ves_twin.core.errors import InvalidInputError, UnknownNameError
 from ves_twin.core.recording.recording import Recording
 from ves_twin.core.types import BoolArray, FloatArray, SingleArray
 from ves_twin.core.workers import Workers
+from ves_twin.data.clock.usual_period import is_usual
 from ves_twin.diagnosis.model.forward import Channel, Excitation, Forward, check_forward
 from ves_twin.diagnosis.model.grid import RATE, AnalysisGrid
 from ves_twin.diagnosis.record.runs import Runs
@@ -160,7 +161,12 @@ def _part(programme: Excitation) -> str:
 def _finer(programme: Excitation) -> str:
     """That a higher analysis rate would do, where the recording itself has the rows."""
     rows = len(programme.time)
-    if programme.poses or rows < FEWEST_ROWS:
+    if programme.poses:
+        return ""
+    step = float(np.median(np.diff(programme.time)))
+    if not is_usual(step):
+        return f", or the clock in its own unit (rows are {step:.3g} s apart)"
+    if rows < FEWEST_ROWS:
         return ""
     return f", or a higher rate in the machine's file ({rows} rows were recorded)"
 

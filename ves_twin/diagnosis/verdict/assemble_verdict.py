@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
 from scipy.stats import norm
 
 from ves_twin.core.types import FloatArray, SingleArray
-from ves_twin.diagnosis.build_up.result import BuildUp, Proved, Size, is_sublinear
+from ves_twin.diagnosis.build_up.result import BuildUp, is_sublinear
 from ves_twin.diagnosis.build_up.sizes import half_widths
 from ves_twin.diagnosis.experiment.aliases import Lookalike, lookalikes
 from ves_twin.diagnosis.experiment.findable import findable_sizes, twins
@@ -27,22 +27,19 @@ from ves_twin.diagnosis.record.preprocess import Dataset
 from ves_twin.diagnosis.record.residual_structure import ResidualStructure, describe
 from ves_twin.diagnosis.settings import Settings
 from ves_twin.diagnosis.unseen.gain import Gain
+from ves_twin.diagnosis.verdict.cause import Cause, Estimate
 from ves_twin.diagnosis.verdict.driving import driving
 from ves_twin.diagnosis.verdict.report_traces import ReportTraces, exhibit_of
+from ves_twin.diagnosis.verdict.sized import is_below_row, is_ended, sized
 from ves_twin.diagnosis.verdict.verdict import (
     Basis,
-    Cause,
     ChannelError,
-    Estimate,
     Findable,
     Kind,
     Proposal,
     Statistics,
     Verdict,
 )
-
-NEAR = 0.1
-"""Share of an interval within which its size is at an end of its range: bounds hold it there."""
 
 
 @dataclass(frozen=True)
@@ -185,69 +182,6 @@ def _provisional(verdict: Verdict) -> Verdict:
     )
 
 
-def sized(
-    built: BuildUp,
-    causes: Sequence[Cause],
-    ends: Mapping[str, tuple[float, float]],
-    row: float = 0.0,
-    components: Collection[str] = (),
-) -> tuple[Proved, ...]:
-    """What is proved with its sizes.
-
-    Firm only where it passes the test by itself, too, no commissioning error explains it either,
-    and no interval holds the value that the model has already: a shape that is known so little is
-    not known by name; of a vector one size must be away from it. Nor where an interval reaches an
-    end of its range, which then says the size in place of the record, nor a delay below a row,
-    which the clock of the recordings may have, nor a kind of SUBLINEAR that is less than none; and
-    as others leave it (`Proved.beside`). What full simulation fits to nothing is left out: its
-    column improved the prediction, its effect does not.
-
-    Args:
-        built: what is proved.
-        causes: with sizes.
-        ends: of the range of each parameter.
-        row: from one row of the recordings to the next [s].
-        components: parameters that are one of a vector.
-    """
-    named = {f"{cause.effect}@{cause.target}": cause for cause in causes}
-    found = []
-    for one in built.proved:
-        cause = named[one.label]
-        if all(e.value == e.nominal for e in cause.parameters.values()):
-            continue
-        sizes = {
-            name: Size(e.value, e.low, e.high, e.unit, e.nominal)
-            for name, e in cause.shortened.parameters.items()
-        }
-        away = {n: not e.low <= e.nominal <= e.high for n, e in cause.parameters.items()}
-        known = any(away.values()) and all(away[n] for n in away if n not in components)
-        known = known and one.p <= built.false_discovery_rate  # many that are sure raise its limit
-        ended = any(_ended(e, *ends[name]) for name, e in cause.parameters.items())
-        wide = not ended and any(_reaches(e, *ends[name]) for name, e in cause.parameters.items())
-        below = any(_below(name, e, row) for name, e in cause.parameters.items())
-        firm = one.firm and cause.firm and known and not (ended or wide or below)
-        told = replace(one, parameters=sizes, ended=ended, wide=wide, below_row=below)
-        found.append(replace(told, firm=firm and not told.sublinear))
-    return tuple(one.beside(found) for one in found)
-
-
-def _ended(size: Estimate, low: float, high: float) -> bool:
-    """Whether a size is at an end of its range, by the width of its interval."""
-    near = NEAR * (size.high - size.low)
-    return _reaches(size, low, high) and not low + near < size.value < high - near
-
-
-def _reaches(size: Estimate, low: float, high: float) -> bool:
-    """Whether an interval reaches an end of the range that is not what the model has already."""
-    return (size.low <= low < size.nominal) or (size.high >= high > size.nominal)
-
-
-def _below(name: str, size: Estimate, row: float) -> bool:
-    """Whether this is a delay that may be less than a row: the near end of its interval is."""
-    near = min(abs(size.low - size.nominal), abs(size.high - size.nominal))
-    return name.rpartition(":")[2] == "delay" and near < row
-
-
 def _row(seen: Dataset) -> float:
     """The longest step between rows of the recordings [s]; poses have none."""
     clocked = [programme.time for programme in seen.runs.programmes if not programme.poses]
@@ -294,9 +228,9 @@ def _cause(
 ) -> Cause:
     """Firm if it is no commissioning parameter, or further off than commissioning errors go.
 
-    Not where every interval holds what the model has already: such a size may be none. Nor a delay
-    of less than a row of a log, nor what a reversal alone would tell from another cause, nor of a
-    log what reads so of another friction.
+    Not where every interval holds what the model has already: such a size may be none. Nor a size
+    that an end of its range holds, nor a delay of less than a row of a log, nor what a reversal
+    alone would tell from another cause, nor of a log what reads so of another friction.
     """
     runs = findings.seen.runs
     z = float(norm.isf(0.5 * (1.0 - findings.settings.confidence)))
@@ -312,7 +246,12 @@ def _cause(
     absent = len(sigmas) < len(hypothesis.parameters)
     shown = any(not e.low <= e.nominal <= e.high for e in estimates.values())
     row = _row(findings.seen) if findings.logged else 0.0
-    below = any(_below(name, e, row) for name, e in estimates.items())
+    below = any(is_below_row(name, e, row) for name, e in estimates.items())
+    ends = {p.name: (p.low, p.high) for p in runs.forward.parameters}
+    estimates = {
+        name: replace(e, at_limit=is_ended(e, *ends[name])) for name, e in estimates.items()
+    }
+    ended = any(e.at_limit for e in estimates.values())
     like = findings.twins.get(hypothesis.label, ())
     values = [one.value for one in estimates.values()]
     shown = shown and not (findings.logged and is_sublinear(hypothesis.effect, values))
@@ -321,10 +260,11 @@ def _cause(
         target=hypothesis.target,
         parameters=estimates,
         probability=weight,
-        firm=shown and not below and not like and (absent or max(sigmas) >= findings.kappa),
+        firm=shown and not (below or ended or like) and (absent or max(sigmas) >= findings.kappa),
         sigmas=max(sigmas, default=None),
         below_row=below,
         acts_like=like,
+        ended=ended,
     )
 
 

@@ -8,7 +8,6 @@ from dataclasses import asdict, dataclass, field, replace
 from enum import StrEnum
 from pathlib import Path
 
-from ves_twin.core.units import unit_tail
 from ves_twin.core.whole_file import write_whole
 from ves_twin.data.quality.check import Check
 from ves_twin.diagnosis.build_up.result import Inseparable, Left, Proved
@@ -18,10 +17,8 @@ from ves_twin.diagnosis.explain.rivals import Rival
 from ves_twin.diagnosis.law.result import LawFinding
 from ves_twin.diagnosis.record.residual_structure import ResidualStructure
 from ves_twin.diagnosis.unseen.gain import Gain
+from ves_twin.diagnosis.verdict.cause import MANY, Cause, Estimate
 from ves_twin.diagnosis.verdict.report_traces import ReportTraces
-
-MANY = 6
-"""Parameters of a cause that are told one by one."""
 
 COUNTS = {2: "two", 3: "three", 4: "four"}
 """Numbers of causes as words."""
@@ -53,78 +50,6 @@ class Kind(StrEnum):
     def names_causes(self) -> bool:
         """Whether it names causes at all, rivals of one another too."""
         return self.names_a_plant or self is Kind.AMBIGUOUS
-
-
-@dataclass(frozen=True)
-class Estimate:
-    """A parameter's value and interval; the interval is of the fault's share of the departure.
-
-    `nominal` is where the departure counts from: the model's value, so that value - nominal holds
-    the commissioning error too; with a baseline, what this rig had then. `at_limit`: an end of its
-    range, or of 5 sd of its tolerance, holds it there; it stands for something else, and the
-    interval counts noise alone. `pull` is the departure in declared sd, of what has a tolerance.
-    """
-
-    value: float
-    low: float
-    high: float
-    unit: str
-    nominal: float
-    at_limit: bool = False
-    pull: float | None = None
-
-    @property
-    def words(self) -> str:
-        """The value with its unit, nominal and interval."""
-        return self.told("nominal")
-
-    def told(self, origin: str) -> str:
-        """The same; `origin` says what the departure counts from, told where it is not zero."""
-        span = f"{self.low:.4g} to {self.high:.4g}"
-        base = f"{origin} {self.nominal:.4g}"
-        if self.nominal != 0.0:
-            base += f", a change of {self.value - self.nominal:.4g}"
-        return f"{self.value:.4g}{unit_tail(self.unit)} ({base}; {span})"
-
-
-@dataclass(frozen=True)
-class Cause:
-    """One named cause.
-
-    Attributes:
-        effect, target: what and where.
-        parameters: name -> estimate.
-        probability: given the library and that one of its causes, or pairs, is at work.
-        firm: False where a commissioning error of `sigmas` declared sd is not excluded, or its size
-            may be none, or the clock of a log explains it as well.
-        sigmas: largest departure in declared sd, with a baseline in sd of what a rig in order may
-            change by since then; None if it is no commissioning parameter.
-        below_row: whether it is a delay of less than a row of a log.
-        acts_like: causes that a joint which turned round would tell from it.
-    """
-
-    effect: str
-    target: str
-    parameters: Mapping[str, Estimate]
-    probability: float
-    firm: bool
-    sigmas: float | None
-    below_row: bool = False
-    acts_like: tuple[str, ...] = ()
-
-    @property
-    def shortened(self) -> Cause:
-        """With sizes as an effect calls them: "null" for "valve_null@leg.3:null"."""
-        short = {name.rpartition(":")[2]: value for name, value in self.parameters.items()}
-        return replace(self, parameters=short)
-
-    @property
-    def largest(self) -> dict[str, Estimate]:
-        """Its parameters, or, of more than MANY, those that depart most."""
-        if len(self.parameters) <= MANY:
-            return dict(self.parameters)
-        ranked = sorted(self.parameters.items(), key=lambda p: -abs(p[1].value - p[1].nominal))
-        return dict(ranked[:MANY])
 
 
 @dataclass(frozen=True)
@@ -394,7 +319,7 @@ class Verdict:
             return f"{text}, which the held-out recordings do not confirm"
         if cause.sigmas is None:
             rows = "its clock explains that as well" if cause.below_row else "it may be none"
-            return f"{text}: {rows}"
+            return f"{text}: {'an end of its range holds it' if cause.ended else rows}"
         if changed:
             return f"{text}, {cause.sigmas:.1f} sigmas of a change since then: fault or drift"
         return f"{text}, {cause.sigmas:.1f} declared sigmas off: fault or commissioning error"

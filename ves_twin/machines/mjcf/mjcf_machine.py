@@ -39,7 +39,7 @@ from ves_twin.machines.mjcf.recordings.case import mjcf_cases
 from ves_twin.machines.mjcf.recordings.experiment import MjcfExperiment
 from ves_twin.machines.mjcf.recordings.interleaved_split import alternate
 from ves_twin.machines.mjcf.recordings.read import read_recording
-from ves_twin.machines.mjcf.recordings.signals import rig_ranges, rig_signals
+from ves_twin.machines.mjcf.recordings.signals import rig_ranges, rig_signals, with_signals
 from ves_twin.machines.mjcf.rig.account import account
 from ves_twin.machines.mjcf.rig.drawn import drawn
 from ves_twin.machines.mjcf.rig.extend import extended, write_rig
@@ -115,7 +115,7 @@ class MjcfMachine(Machine):
 
     def prepare(self, material: Material, experiment: ExperimentFile | None = None) -> Prepared:
         """The stretches that are compared, of one machine in one state."""
-        flaws = tuple(flaw for one in material.every for flaw in _flaws(one))
+        flaws = tuple(flaw for one in material.every for flaw in _flaws(one, self.rig))
         machine = self
         if experiment is not None:
             told = _of_mjcf(experiment)
@@ -249,10 +249,10 @@ def _of_mjcf(experiment: ExperimentFile) -> MjcfExperiment:
     return experiment
 
 
-def _flaws(one: Named) -> list[Check]:
+def _flaws(one: Named, rig: Rig) -> list[Check]:
     if one.recording.info.log == POSES:
         return []
-    report = quality_gate(one.recording)
+    report = quality_gate(with_signals(one.recording, rig))
     doubted = (c for c in report.checks if c.name == "rate" and c.grade is Grade.UNKNOWN)
     told = (*report.failures, *doubted)  # a clock in another unit makes sizes of every cause
     return [replace(check, message=f"{one.name}: {check.message}") for check in told]

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from ves_twin.diagnosis.verdict.verdict import Cause, Verdict
+from ves_twin.diagnosis.verdict.cause import Cause
+from ves_twin.diagnosis.verdict.verdict import Verdict
 from ves_twin.effects.effect import Effect
 from ves_twin.effects.law_table import CAUSE as LAW
 from ves_twin.effects.registry import build_effect

@@ -7,7 +7,8 @@ from ves_twin.diagnosis.build_up.result import TOGETHER, UNFINISHED, is_sublinea
 from ves_twin.diagnosis.explain.disagreement import disagree
 from ves_twin.diagnosis.law.result import LAW
 from ves_twin.diagnosis.unseen.gain import Gain
-from ves_twin.diagnosis.verdict.verdict import Cause, Kind, Verdict
+from ves_twin.diagnosis.verdict.cause import Cause
+from ves_twin.diagnosis.verdict.verdict import Kind, Verdict
 from ves_twin.report.diagnosis.basis import gain_words, taken_share
 from ves_twin.report.diagnosis.coarse_step import finer
 from ves_twin.report.diagnosis.law import worth_sentence
@@ -151,6 +152,13 @@ def _with_proved(verdict: Verdict) -> str:
         if out
         else ""
     )
+    short = list(dict.fromkeys(b.label for one in verdict.proved for b in one.beyond))
+    if short:
+        wider += (
+            f" As well would do {listed([spoken(name) for name in short[:TOLD]])} beyond the range"
+            " that is assumed: if the machine may have as much, widen it (`largest` of the effect)"
+            " and diagnose again."
+        )
     if firm:
         return f"Simulate with the extended model, and look at {listed(firm[:TOLD])}.{wider}"
     if all(one.ended for one in verdict.proved):
@@ -296,6 +304,11 @@ def why_loose(cause: Cause) -> str:
     if cause.acts_like:
         like = " or ".join(map(spoken, cause.acts_like))
         return f"in a motion that does not turn round {like} reads the same"
+    if cause.ended:
+        return (
+            "an end of its range holds it, so that it stands for something else, or the range is"
+            " too narrow (`largest` of the effect)"
+        )
     if is_sublinear(cause.effect, [size.value for size in cause.parameters.values()]):
         return "friction that grows less than in proportion to speed reads so"
     if not cause.sigmas or all(e.low <= e.nominal <= e.high for e in cause.parameters.values()):

@@ -96,7 +96,8 @@ def gain_words(verdict: Verdict) -> str:
     if _open(gain):
         square = "counted in units of noise it may be a loss as well"
     lost = "; the model as it was given predicts every channel as well or better" * gain.lost
-    return f"{rms_words(gain)}; {square}{lost}{_lost_words(verdict)}"
+    square = "" if gain.over is not gain.errors else f"; {square}"  # that is over its bad tuning
+    return f"{rms_words(gain)}{square}{lost}{_lost_words(verdict)}"
 
 
 def _open(gain: Gain) -> bool:
@@ -144,7 +145,7 @@ def _taken(gain: Gain) -> tuple[str, str, str]:
         return f"more than {100.0 * NEARLY_ALL:.0f} %", "", ""
     ends = (None if end is None else min(end, 1.0) for end in (gain.share, gain.low, gain.high))
     share, low, high = shares(*ends)
-    return share, low, high
+    return (share, "", "") if low == high else (share, low, high)
 
 
 def gain_sentence(verdict: Verdict) -> str:

@@ -22,7 +22,12 @@ is new in each row. That arm is *nothing* with 2, *unknown* with 1."""
 
 
 def rival_words(rival: Rival, best: bool) -> str:
-    """Why an explanation was kept or lost."""
+    """Why an explanation was kept or lost, and whether a range held it."""
+    held = "; held by an end of its range: with a wider one it may explain more" * rival.ended
+    return f"{_standing_words(rival, best)}{held}"
+
+
+def _standing_words(rival: Rival, best: bool) -> str:
     if rival.standing is Standing.SCREENED:
         return (
             f"not fitted: by itself and to first order it takes {digits(rival.score)} of chi^2;"

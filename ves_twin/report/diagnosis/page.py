@@ -7,8 +7,9 @@ from collections.abc import Sequence
 from ves_twin.core.quantity import UNSURE, digits, quantity
 from ves_twin.data.quality.check import Check
 from ves_twin.diagnosis.explain.rivals import Rival
+from ves_twin.diagnosis.verdict.cause import MANY, Cause
 from ves_twin.diagnosis.verdict.report_traces import ReportTraces
-from ves_twin.diagnosis.verdict.verdict import MANY, Cause, Kind, Verdict
+from ves_twin.diagnosis.verdict.verdict import Kind, Verdict
 from ves_twin.report.diagnosis.answer import (
     confidence_sentence,
     nearest_sentence,

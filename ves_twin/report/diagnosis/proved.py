@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 
 from ves_twin.core.quantity import UNSURE, percent, quantity
-from ves_twin.diagnosis.build_up.result import TOGETHER, Left, Proved, Size
+from ves_twin.diagnosis.build_up.result import TOGETHER, Beyond, Left, Proved, Size
 from ves_twin.diagnosis.verdict.verdict import Verdict
 from ves_twin.report.diagnosis.words import spoken
 from ves_twin.report.html import Html, bullets, paragraph, section, table
@@ -106,8 +106,9 @@ def standing_words(one: Proved) -> str:
     if one.drives:
         return _driving_words(one)
     why = next((words for holds, words in _reasons(one) if holds), "")
-    if one.acts_like and not why:
-        return f"acts like it,{_or(one.acts_like)}"
+    if (one.acts_like or one.beyond) and not why:
+        like = _or([_together(name) for name in one.acts_like])
+        return f"acts like it{',' * bool(like)}{like}{_beyond_words(one.beyond)}"
     other = "what is left, a tolerance or another cause follows the same motion"
     return f"acts like it: {why or next((w for holds, w in _further(one) if holds), other)}"
 
@@ -139,7 +140,7 @@ def _driving_words(one: Proved) -> str:
             "acts like it, and is no friction: its joint would be pushed on by it. An effort that"
             " is read late or early (`sensor_delay` of efforts), an offset or a wrong gain reads so"
         )
-    like = _or([name for name in one.acts_like if name != one.standing_in])
+    like = _or([_together(name) for name in one.acts_like if name != one.standing_in])
     return (
         f"acts like {_together(one.standing_in)}{like}; {spoken(one.effect)} of this size would"
         " push its joint on"
@@ -148,7 +149,20 @@ def _driving_words(one: Proved) -> str:
 
 def _or(names: Sequence[str]) -> str:
     """What else it acts like; empty where there is nothing."""
-    return f" or like {' or '.join(map(_together, names))}" if names else ""
+    return f" or like {' or '.join(names)}" if names else ""
+
+
+def _beyond_words(others: Sequence[Beyond]) -> str:
+    """Causes that do as well beyond their ranges, which are assumed; empty where there are none."""
+    told = [
+        f"{spoken(one.label)} {quantity(s.value, s.unit)} ({quantity(s.low, s.unit)} to"
+        f" {quantity(s.high, s.unit)})"
+        for one in others
+        for s in one.parameters.values()
+    ]
+    if not told:
+        return ""
+    return f"; or, beyond its range, which `largest` of the effect widens, like {', '.join(told)}"
 
 
 def _together(name: str) -> str:

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from ves_twin.core.quantity import quantity
 from ves_twin.diagnosis.explain.rivals import Standing
-from ves_twin.diagnosis.verdict.verdict import Estimate, Verdict
+from ves_twin.diagnosis.verdict.cause import Estimate
+from ves_twin.diagnosis.verdict.verdict import Verdict
 from ves_twin.report.diagnosis.words import TOLD, interval_words, spoken
 
 STRANGEST = 2

@@ -9,7 +9,8 @@ import numpy as np
 from ves_twin.core.quantity import digits, percent, quantity
 from ves_twin.diagnosis.explain.rivals import Place
 from ves_twin.diagnosis.record.residual_structure import Loud
-from ves_twin.diagnosis.verdict.verdict import Cause, Estimate, Kind, Verdict
+from ves_twin.diagnosis.verdict.cause import Cause, Estimate
+from ves_twin.diagnosis.verdict.verdict import Kind, Verdict
 from ves_twin.effects.ripple import NUMBERED, Ripple
 
 TOLD = 6

@@ -16,9 +16,17 @@ COUNTS = 16.0 * np.pi
 
 
 def other_angle(
-    log: LogColumns, found: list[Match], joint: str, scale: float, unit: str
+    log: LogColumns, found: list[Match], joint: str, scale: float = 0.0, unit: str = ""
 ) -> Iterator[str]:
-    """An angle that may be in the other unit, where a constant that is fitted hides the factor."""
+    """An angle that may be in the other unit, where a constant that is fitted hides the factor.
+
+    Args:
+        log: the columns.
+        found: what they are taken for.
+        joint: whose angle it is.
+        scale: the constant; 0 where none was read off.
+        unit: of the constant.
+    """
     for match in found:
         mine = match.spot.quantity is Quantity.POSITION and match.spot.name == joint
         if not (mine and match.told and match.unit in ("deg", "rad")):
@@ -26,10 +34,9 @@ def other_angle(
         most, degrees = float(np.max(np.abs(log.column(match.column)))), match.unit == "deg"
         if misnamed(match, most):
             other, factor = ("radians", 1.0 / DEGREE) if degrees else ("degrees", DEGREE)
-            yield (
-                f"{match.column} reaches {most:.3g} {match.unit} at most: if these are {other}, the"
-                f" constant is {abs(scale) * factor:.3g} {unit}"
-            )
+            reaches = f"{match.column} reaches {most:.3g} {match.unit} at most: "
+            told = f"if these are {other}, the constant is {abs(scale) * factor:.3g} {unit}"
+            yield reaches + (told if scale else f"are these {other}?")
 
 
 def counted(log: LogColumns, found: Sequence[Match]) -> Iterator[Match]:

@@ -18,6 +18,7 @@ from ves_twin.machines.mjcf.draft.match import Match, Matches
 from ves_twin.machines.mjcf.draft.milli import in_milli
 from ves_twin.machines.mjcf.draft.motion import Motion, band_of
 from ves_twin.machines.mjcf.draft.rates import rated
+from ves_twin.machines.mjcf.draft.rough import words_of_rough
 from ves_twin.machines.mjcf.draft.scaled import scales_of, words_of_scale
 from ves_twin.machines.mjcf.draft.servos import followed
 from ves_twin.machines.mjcf.draft.spots import Quantity
@@ -29,6 +30,7 @@ from ves_twin.machines.mjcf.draft.stops import (
 )
 from ves_twin.machines.mjcf.draft.swing import SHARE, turns_of
 from ves_twin.machines.mjcf.draft.turns_back import words_of_one_way
+from ves_twin.machines.mjcf.draft.unsigned import words_of_unsigned
 from ves_twin.machines.mjcf.parts.cyclic import is_cyclic
 from ves_twin.machines.mjcf.parts.loops import freedom
 from ves_twin.machines.mjcf.parts.ties import Ties
@@ -143,6 +145,7 @@ def _checked(log: LogColumns, matches: Matches, model: mujoco.MjModel, corner: f
         findings += said
         scales = scales_of({m: judge.fit(m, motion) for m in judge.driving(found)})
         findings += words_of_scale(scales)
+        findings += words_of_unsigned(judge, found, motion)
         findings += [*judge.late(found, motion), *judge.rough(found, motion)]
         lifts = lifted(
             judge.model,
@@ -154,7 +157,7 @@ def _checked(log: LogColumns, matches: Matches, model: mujoco.MjModel, corner: f
         motion = plain.motion(found)
         explained = plain.explained(found, motion)
         findings += words_of_one_way(motion, dofs, [m.spot.joint for m in judge.driving(found)])
-    lost = words_of_dropouts(log, found)
+    lost = [*words_of_dropouts(log, found), *words_of_rough(log, found)]
     far = [f for told in (beyond, beyond_control, beyond_limit) for f in told(log, found, model)]
     findings[before:before] = [*lost, *words_of_counted(log, found), *far]
     found, said = rated(log, found, corner, model)

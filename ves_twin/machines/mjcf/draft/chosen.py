@@ -13,6 +13,7 @@ from ves_twin.machines.mjcf.draft.closed_chain import closed_chain
 from ves_twin.machines.mjcf.draft.estimates import noise_of, rest_of, travel
 from ves_twin.machines.mjcf.draft.home_of import FIRST, home_of
 from ves_twin.machines.mjcf.draft.induced import differentiations, induced, with_motion
+from ves_twin.machines.mjcf.draft.led import at_leader, felt_inertia
 from ves_twin.machines.mjcf.draft.log_columns import LogColumns
 from ves_twin.machines.mjcf.draft.match import Match, Matches
 from ves_twin.machines.mjcf.draft.motion import band_of
@@ -22,7 +23,7 @@ from ves_twin.machines.mjcf.draft.spots import ON_JOINT, Quantity, is_motor, sin
 from ves_twin.machines.mjcf.draft.swing import SHARE, turns_of
 from ves_twin.machines.mjcf.parts.chain import chain
 from ves_twin.machines.mjcf.parts.cyclic import is_cyclic
-from ves_twin.machines.mjcf.parts.ties import Follower, Ties
+from ves_twin.machines.mjcf.parts.ties import Ties
 from ves_twin.machines.mjcf.rig.description import CORNER, Mode
 
 BAND = 2.0
@@ -121,8 +122,8 @@ def chosen(
     moving = [*positions, *_summed(log, check, efforts, told, model)]
     moved = {m.spot.name for m in moving}
     leads = {one.joint: one for one in Ties.of(model, moved, locked=check.locked).followers}
-    geared = _felt(efforts, leads, model)
-    efforts = [_at_leader(m, leads) for m in efforts]
+    geared = felt_inertia(efforts, leads, model)
+    efforts = [at_leader(m, leads) for m in efforts]
     pushed = [m.spot.joint for m in efforts if _is_plain(m, model)]
     driven, together = set(pushed), sorted({j for j in pushed if pushed.count(j) > 1})
     single = {model.joint(i).name for i in single_joints(model)} - {*check.locked, *leads}
@@ -191,7 +192,9 @@ def _of_motion(
             rows = rate * length
             why = f"{length:.2g} s of motion leave {rows:.0f} rows in the band of the efforts"
             return replace(otherwise, why=why)
-        rate, rated = min(ENOUGH / length, 1.0 / log.period), "as many rows as a diagnosis needs"
+        rate, rated = ENOUGH / length, "as many rows as a diagnosis needs"
+    if rate > 1.0 / log.period:
+        rate, rated = 1.0 / log.period, "every row"
     rate = _in_whole_rows(rate, log)
     band = min(band, 0.5 * rate) if rated != Chosen.rated else 0.5 * rate
     sharp = {
@@ -343,32 +346,6 @@ def _of_loops(
     homes = {m.column: home for m in positions if (home := home_of(m, model, log))}
     names = tuple(m.spot.name for m in positions)
     return Chosen(Mode.CONTROL, why, 2.0 * band, CORNER * band, noise, imposed=names, homes=homes)
-
-
-def _at_leader(effort: Match, leads: Mapping[str, Follower]) -> Match:
-    """The effort of a joint that follows a measured one, as that one's."""
-    joint = effort.spot.joint
-    while joint in leads:
-        joint = leads[joint].leader
-    return replace(effort, spot=replace(effort.spot, joint=joint))
-
-
-def _felt(
-    efforts: Sequence[Match], leads: Mapping[str, Follower], model: mujoco.MjModel
-) -> dict[str, float]:
-    """Inertia that a motor feels whose joint y follows a measured one, x: J_x dx/dy + J_y dy/dx."""
-    found = {}
-    for m in efforts:
-        joint, ratio = m.spot.joint, 1.0
-        while joint in leads:
-            joint, ratio = leads[joint].leader, ratio * abs(leads[joint].powers[1])
-        if joint != m.spot.joint and ratio > 0.0:
-            own, other = (
-                float(model.dof_M0[int(model.joint(name).dofadr[0])])
-                for name in (m.spot.joint, joint)
-            )
-            found[joint] = other / ratio + own * ratio
-    return found
 
 
 def _summed(

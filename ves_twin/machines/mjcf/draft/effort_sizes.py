@@ -24,7 +24,12 @@ LITTLE = " Where the model needs next to nothing (a balanced wrist), friction do
 
 
 def constant_of(
-    log: LogColumns, match: Match, fit: EffortFit, found: list[Match], by_inertia: str
+    log: LogColumns,
+    match: Match,
+    fit: EffortFit,
+    found: list[Match],
+    by_inertia: bool,
+    noisy: str = "",
 ) -> tuple[Match, list[str]]:
     """An electrical column with the constant that fits the model, or its own command.
 
@@ -33,11 +38,15 @@ def constant_of(
         match: the column.
         fit: of it.
         found: all columns as they are meant.
-        by_inertia: what is said where inertia alone tells it.
+        by_inertia: whether inertia alone tells it.
+        noisy: what is said where noise is much of what the model needs; empty where it is not.
     """
     if fit.gain <= STRONG and log.is_coarse(match.column):
         coarse = "moves by a few steps of its resolution: no constant is read off it"
-        return match, [f"{match.column} {coarse}"]
+        return match, [f"{match.column} {coarse}", *other_angle(log, found, match.spot.joint)]
+    if fit.gain <= STRONG and noisy:
+        words = f"{match.column}: no constant is read off it: {noisy}"
+        return match, [words, *other_angle(log, found, match.spot.joint)]
     scale = 1.0 / fit.slope
     if match.spot.unit == "1" and 1.0 / FAR < abs(scale) / match.prefix < FAR:
         own = float(np.copysign(match.prefix, scale))
@@ -48,7 +57,10 @@ def constant_of(
         ]
     unit = match.per
     how = ", turned (or its joint's position counts the other way)" * (scale < 0.0)
-    how += by_inertia
+    if noisy:
+        how += f", and is too large: {noisy}"
+    elif by_inertia:
+        how += ", by its inertia alone, and is too small by what the rotor adds to that"
     if fit.gain < STRONG and not by_inertia:
         how += f", and explains {fit.gain:.0%} of it beside friction: what the model lacks, as a"
         how += " rotor, is in that number"

@@ -27,6 +27,9 @@ and what is assumed then. Drives of three measured arms have 1 to 10 %; torque s
 DWELLS = 0.02
 """Share of a column's range within which it stays where it is in a stretch: assumed."""
 
+LEVELS = 5
+"""Values up to which a column is switched, and their steps are no rounding: assumed."""
+
 WHOLE = 0.02
 """Steps by which differences of a column that is rounded may miss whole ones."""
 
@@ -45,9 +48,9 @@ def noise_of(
 
     At rest the scatter about a straight line; else the power in the highest octave as if it were
     that of all, no less than rounding to the smallest step makes, step / sqrt(12). A command has
-    rounding alone, or a thousandth of its size where it is not rounded: what is fast in it was put
-    out so. A measured effort that has next to nothing in its highest octave was low-passed, and its
-    noise with it: ASSUMED of its size.
+    rounding alone, or a thousandth of its size where it is not rounded, or is switched between few
+    LEVELS: what is fast in it was put out so. A measured effort that has next to nothing in its
+    highest octave was low-passed, and its noise with it: ASSUMED of its size.
 
     Args:
         values: of a column.
@@ -56,11 +59,12 @@ def noise_of(
         command: whether a controller put the column out.
         effort: whether it was measured on a drive.
     """
-    steps = np.abs(np.diff(np.unique(values)))
-    rounding = float(np.min(steps)) / np.sqrt(12.0) if len(steps) else 0.0
-    if command and rounding > 0.0:
+    levels = np.unique(values)
+    steps = np.abs(np.diff(levels))
+    rounding = float(np.min(steps)) / np.sqrt(12.0) if len(levels) > LEVELS else 0.0
+    if command and len(levels) > 1:
         least = float(np.min(steps))
-        if np.max(np.abs(steps / least - np.round(steps / least))) < WHOLE:
+        if rounding > 0.0 and np.max(np.abs(steps / least - np.round(steps / least))) < WHOLE:
             return rounding, "rounding: a command has no other"
         return SMOOTH * float(np.std(values)), "a thousandth of its size: a command has none"
     if rest is not None and float(np.ptp(values[rest])) > 0.0:

@@ -21,6 +21,7 @@ from ves_twin.machines.mjcf.draft.effort_fit import (
 )
 from ves_twin.machines.mjcf.draft.effort_sizes import ODD, constant_of, words_of_size
 from ves_twin.machines.mjcf.draft.home_of import home_of
+from ves_twin.machines.mjcf.draft.induced import words_of_noise
 from ves_twin.machines.mjcf.draft.late import Pushed, words_of_lag
 from ves_twin.machines.mjcf.draft.log_columns import LogColumns
 from ves_twin.machines.mjcf.draft.match import Match
@@ -67,7 +68,6 @@ NEAR = 1.5
 
 TOOL = 10.0
 """Factor within which efforts are those of a model that lacks a tool, in its own unit."""
-
 
 _Asked = tuple[tuple[Match, ...], frozenset[str]]
 """Columns of a motion, and joints that efforts are told of."""
@@ -338,13 +338,13 @@ class Judge:
                 continue
             fit = self.fit(match, motion)
             if match.indirect and (fit.gain > TELLS or self.log.is_coarse(match.column)):
-                alone = self.by_inertia(match, motion)
-                found[i], words = constant_of(self.log, match, fit, found, alone)
+                told = self.by_inertia(match, motion), self.noisy(match, found, motion)
+                found[i], words = constant_of(self.log, match, fit, found, *told)
                 said += words
                 continue
             if match.fitted:
-                told = f"{match.column} is {match.kind}: {match.constant}"
-                said.append(f"{told}; put {match.asked} there")
+                unread = f"{match.column} is {match.kind}: {match.constant}"
+                said.append(f"{unread}; put {match.asked} there")
             turns = fit.sign < 0 and (fit.by_slope or self.power(found, motion) <= 0.0)
             if fit.sign < 0 and not (turns or fit.strange):
                 said.append(
@@ -367,13 +367,17 @@ class Judge:
             said += words_of_size(self.log, match, fit)
         return found, said
 
-    def by_inertia(self, match: Match, motion: Motion) -> str:
-        """That nothing but inertia tells a constant, where the model bears no load there."""
+    def by_inertia(self, match: Match, motion: Motion) -> bool:
+        """Whether nothing but inertia tells a constant, as the model bears no load there."""
         dof = self.dof(match)
         steady, whole = (float(np.std(x[:, dof])) for x in (motion.steady, motion.effort))
-        if steady > MOST * whole:
-            return ""
-        return ", by its inertia alone, and is too small by what the rotor adds to that"
+        return steady <= MOST * whole
+
+    def noisy(self, match: Match, found: list[Match], motion: Motion) -> str:
+        """That noise of a position is much of what the model needs; empty where it is not."""
+        inertia = float(self.model.dof_M0[self.dof(match)]) / self.gain(match)
+        need, joint = self.needed(match, motion), match.spot.joint
+        return words_of_noise(self.log, found, joint, need, inertia, self.corner)
 
     def lifting(self, found: list[Match], motion: Motion) -> list[tuple[int, FloatArray]]:
         """Degree of freedom and effort (m,) of each drive that the model is about right about."""

@@ -12,7 +12,7 @@ import numpy as np
 from ves_twin.core.errors import InvalidInputError
 from ves_twin.core.types import BoolArray, FloatArray
 from ves_twin.data.clock.clock_fields import ClockField, clock_fields
-from ves_twin.data.clock.clock_report import GAP, UNEVEN, usual_step
+from ves_twin.data.clock.clock_report import GAP, UNEVEN, longest_step, usual_step
 from ves_twin.data.clock.unwrapped import unwrapped
 from ves_twin.data.clock.usual_period import is_usual
 from ves_twin.data.empty_cells import FEW, filled, lone
@@ -202,7 +202,8 @@ def _period(time: FloatArray, clock: str, notes: list[str]) -> float:
     if not is_usual(period):
         notes.append(f"clock {clock}: rows are {period:.3g} s apart: is that its unit?")
     steps = np.diff(time)
-    wide = steps[steps > GAP * period]
+    longest = longest_step(steps[np.isfinite(steps)], period)
+    wide = steps[steps > longest]
     if len(wide) > UNEVEN * len(steps):
         came = f"steps of {np.min(steps[steps > 0.0]):.3g} to {np.max(wide):.3g} s"
         notes.append(f"clock {clock}: uneven, {came}; rows are read at even steps")
@@ -213,7 +214,7 @@ def _period(time: FloatArray, clock: str, notes: list[str]) -> float:
         back = np.flatnonzero(steps <= 0.0)
         first = f"{time[back[0]]:.6g} to {time[back[0] + 1]:.6g} s behind row {back[0] + 1}"
         notes.append(f"clock {clock}: {len(back)} steps do not rise, the first from {first}")
-    even = steps[(steps > 0.0) & (steps <= GAP * period)]
+    even = steps[(steps > 0.0) & (steps <= longest)]
     if len(even) and np.max(np.abs(even - period)) > JITTER * period:
         share = np.max(np.abs(even - period)) / period
         notes.append(f"clock {clock}: steps jitter by {share:.0%}, rows are read at even steps")
@@ -238,7 +239,8 @@ def _sorted(
     empty = [n for n, finite in full.items() if np.mean(finite) < FILLED]
     kept = {n: finite | lone(~finite) for n, finite in full.items() if n not in empty}
     broken = np.concatenate([[False], np.diff(time) > (FEW + GAP) * period])
-    broken &= np.count_nonzero(np.diff(time) > GAP * period) <= UNEVEN * rows
+    longest = longest_step(np.diff(time[known]), period)
+    broken &= np.count_nonzero(np.diff(time) > longest) <= UNEVEN * rows
     stretch, window = _longest(np.all([*kept.values()] or [good], axis=0), broken), None
     count = np.count_nonzero(~np.all([full[n][stretch] for n in kept] or [good[stretch]], axis=0))
     if count:

@@ -20,8 +20,8 @@ SPEED = (
 )
 EFFORT = (
     "tau torque trq tq force f fx u effort load moment current i iq isq cur amp volt voltage vm pwm"
-    " duty drive motor control ctrl command input kraft drehmoment strom motorstrom spannung"
-    " pressure druck"
+    " duty pulse throttle esc drive motor control ctrl command input kraft drehmoment strom"
+    " motorstrom spannung pressure druck"
 )
 MECHANICAL = "tau torque trq tq force effort load moment kraft drehmoment"
 KIND_WORDS = {
@@ -55,16 +55,20 @@ SLIDES = frozenset(["stroke", "disp", "displacement", "travel", "weg"])
 """Words of what turns, and of what slides: no unit needs to say so."""
 
 ASKED = (
-    "ref reference set setpoint des desired target goal demand nominal cmd command commanded soll"
-    " sollwert"
+    "ref reference set setpoint sp des desired target goal demand nominal cmd command commanded"
+    " soll sollwert"
 )
 SETPOINT = frozenset(ASKED.split())
 MEASURED = frozenset({"meas", "measured", "act", "actual", "fb", "feedback", "ist", "istwert"})
 
-PLAIN_COMMANDS = frozenset(["pwm", "duty", "ctrl", "control", "input", "u", "stellgroesse"])
+PLAIN_COMMANDS = frozenset(
+    ["pwm", "duty", "pulse", "throttle", "esc", "ctrl", "control", "input", "u", "stellgroesse"]
+)
 """Words of what a controller puts out, beside those of what it asks for."""
 
-ELECTRICAL = frozenset({"V", "mV", "A", "mA", "%", "counts", "W", "1"})
+ELECTRICAL = frozenset({"V", "mV", "A", "mA", "%", "counts", "W", "us", "1"})
+"""Microseconds are the pulses that servos and motor controllers are told by."""
+
 PRESSURES = frozenset({"Pa", "kPa", "MPa", "bar", "psi"})
 INDIRECT = ELECTRICAL | PRESSURES
 """Units of what drives an actuator when it is no effort: a constant stands between."""
@@ -101,6 +105,9 @@ SORTS = frozenset({"joint", "axis", "motor", "actuator"})
 AXES, AXIS = frozenset("xyz"), 1.0
 """Letters of axes in the names of joints, and the weight of one that is shared."""
 
+CALLED = frozenset({Quantity.POSITION, Quantity.EFFORT})
+"""Quantities that a joint's, or an actuator's, bare name means."""
+
 PLACED = KIND_WORDS[Quantity.POSITION] - AXES
 """Words of a position; a letter alone is an axis."""
 
@@ -110,6 +117,9 @@ nearer, and a supply's voltage is in volts, too."""
 
 WRONG_NUMBER, WRONG_KIND, WISH = -3.0, -2.0, -0.5
 """Weight against: another number, a word of another quantity, what was asked for, not measured."""
+
+NAMED = 2.5
+"""Weight of a name that is the spot's own, of a position or an effort: enough by itself."""
 
 OWN = 0.4
 """Weight of many shared words that are of the spot's own name, and not of the body it is on; half
@@ -152,6 +162,8 @@ def likeness(column: str, unit: str, spot: Spot, only: bool, zero: bool) -> Like
     foreign = spelled(unit) in INDIRECT and spot.unit not in {"1", spelled(unit)}
     evidence = [(CONSTANT if foreign else UNIT, f"unit {unit}")] if unit else []
     evidence += _of_kind(words, bool(unit), wish, spot) + _of_words(words, spot)
+    if bare_name(column).lower() == spot.name.lower() and spot.quantity in CALLED:
+        evidence.append((NAMED, f"named as {spot.label}"))
     numbers = [int(w) for w in words_of(bare_name(column)) if w.isdigit()]
     if numbers and not only:
         same = numbers[-1] + int(zero) == _number(words, spot)

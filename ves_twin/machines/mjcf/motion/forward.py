@@ -158,8 +158,9 @@ class MjcfForward:
         """
         for channel in self.channels:
             if channel.signal in recorded and not channel.sd > 0.0:
-                expected = f"the sd of one row in {channel.unit}, above zero"
-                raise InvalidInputError(f"signals.{channel.signal}.noise", channel.sd, expected)
+                expected = f"noise = the sd of one row, above 0 {channel.unit}, of what is compared"
+                came = "none" if channel.sd == 0.0 else channel.sd
+                raise InvalidInputError(f"signals.{channel.signal}.noise", came, expected)
 
     def simulate(
         self,

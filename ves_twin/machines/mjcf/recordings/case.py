@@ -22,7 +22,7 @@ from ves_twin.machines.mjcf.motion.pieces import pieces
 from ves_twin.machines.mjcf.motion.started import lead_rows
 from ves_twin.machines.mjcf.recordings.applied import applied
 from ves_twin.machines.mjcf.recordings.experiment import MjcfExperiment
-from ves_twin.machines.mjcf.recordings.signals import rig_signals
+from ves_twin.machines.mjcf.recordings.signals import rig_signals, with_signals
 from ves_twin.machines.mjcf.rig.description import Mode
 from ves_twin.machines.mjcf.rig.machine import Rig
 from ves_twin.machines.mjcf.rig.places import typical_span
@@ -142,7 +142,7 @@ def mjcf_cases(
         VesTwinError: an experiment that does not fit the machine or the recording.
     """
     ready, own, start = applied(name, recording, experiment, rig)
-    checks = () if ready.info.log == POSES else quality_gate(recording).checks
+    checks = () if ready.info.log == POSES else quality_gate(with_signals(recording, rig)).checks
     found = []
     for mode in modes_of(own, ready):
         forward = MjcfForward.of(own, mode)

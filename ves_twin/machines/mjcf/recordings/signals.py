@@ -1,9 +1,12 @@
-"""rig_signals and rig_ranges: what a rig records, as an import of lab files needs it."""
+"""rig_signals, rig_ranges, with_signals: what a rig records, for imports and quality checks."""
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
+from ves_twin.core.recording.recording import Recording
 from ves_twin.core.signals import Role, Signal
 from ves_twin.core.types import FloatArray
 from ves_twin.machines.mjcf.rig.column import Column
@@ -23,6 +26,12 @@ def rig_signals(rig: Rig) -> tuple[Signal, ...]:
         _signal(name, column, Role.COMMAND if name in commands else Role.MEASUREMENT)
         for name, column in told.signals.items()
     )
+
+
+def with_signals(recording: Recording, rig: Rig) -> Recording:
+    """The recording with what the rig's file says of its signals: units, and which are commands."""
+    own = tuple(one for one in rig_signals(rig) if one.name in recording.signals)
+    return replace(recording, info=replace(recording.info, own_signals=own))
 
 
 def _signal(name: str, column: Column, role: Role) -> Signal:

@@ -1,0 +1,112 @@
+"""Columns that cannot be right by themselves, told before any fit: no sign, swapped, two runs."""
+
+from __future__ import annotations
+
+import mujoco
+import numpy as np
+import pytest
+from drafted import changed, drafted
+
+SLIDER = """
+<mujoco model="slider">
+  <option timestep="0.001" integrator="implicitfast" gravity="0 0 {weight}"/>
+  <worldbody><body name="rod"><joint name="stroke" type="slide" axis="0 0 1" damping="60"/>
+    <geom type="box" size="0.05 0.01 0.01" mass="1"/></body></worldbody>
+  <actuator><motor name="motor" joint="stroke"/></actuator>
+</mujoco>
+"""
+
+
+@pytest.fixture(params=[0.0, -9.81])
+def slider(request, tmp_path):
+    """A slow slider's file and log at 50 Hz: to and fro by a force, its weight held up or none."""
+    path = tmp_path / "slider.xml"
+    path.write_text(SLIDER.format(weight=request.param))
+    model = mujoco.MjModel.from_xml_path(str(path))
+    data, rows = mujoco.MjData(model), np.zeros((1500, 3))
+    rng = np.random.default_rng(4)
+    for k in range(len(rows)):
+        force = 6.0 * np.sin(0.02 * k) + 2.0 * np.sin(0.053 * k) - request.param
+        rows[k] = 0.02 * k, force, data.qpos[0] + 1e-5 * rng.standard_normal()
+        data.ctrl[0] = force
+        mujoco.mj_step(model, data, 20)
+    return path, dict(zip(("t", "pwm", "y"), rows.T, strict=True)), request.param
+
+
+def test_a_command_without_its_sign_is_told_and_one_that_holds_a_weight_is_none(slider, write):
+    """A Stewart platform's leg, logged by its duty alone: nothing was found, nobody said why."""
+    path, columns, weight = slider
+    found, _ = drafted(path, write(changed(columns, pwm=np.abs(columns["pwm"]))))
+    said = [words for words in found.look if "pwm is never below zero" in words]
+    assert bool(said) == (weight == 0.0)
+    if said:
+        assert "though stroke moves both ways" in said[0]
+    found, _ = drafted(path, write(columns, "signed.csv"))
+    assert not any("never below zero" in words for words in found.look)
+
+
+def test_two_runs_on_one_clock_are_told_at_their_seam(slider, write):
+    path, columns, _ = slider
+    other = 500 + int(np.argmax(np.abs(columns["y"][500:1200] - columns["y"][499])))
+    kept = np.r_[0:500, other:1500]
+    log = {name: rows[kept] for name, rows in columns.items()}
+    log["t"] = 0.02 * np.arange(len(kept))
+    found, _ = drafted(path, write(log))
+    assert any("behind row 500 and stays: two runs in one log" in words for words in found.look)
+    found, _ = drafted(path, write(columns, "one.csv"))
+    assert not any("two runs" in words for words in found.look)
+
+
+def test_a_glitch_of_a_sensor_is_told(slider, write):
+    path, columns, _ = slider
+    y = columns["y"].copy()
+    y[[100, 900]] += 0.3
+    found, _ = drafted(path, write(changed(columns, y=y)))
+    assert any("y is far from its neighbours in 2 single rows" in words for words in found.look)
+
+
+def test_a_current_and_an_angle_under_each_others_names_are_told(swing, write):
+    path, columns = swing
+    noise = 0.3 * np.random.default_rng(2).standard_normal(len(columns["t"]))
+    log = {"t": columns["t"], "q": columns["tau"] + noise, "tau": columns["q"]}
+    found, _ = drafted(path, write(log))
+    assert any(
+        "q goes up and down from row to row as no position does, and tau does not: are the two"
+        in words
+        for words in found.look
+    )
+    found, _ = drafted(path, write({**columns, "tau": log["q"]}, "right.csv"))
+    assert not any("up and down" in words for words in found.look)
+
+
+def test_no_constant_is_read_off_a_position_in_steps_that_are_all_of_its_acceleration(
+    tmp_path, write
+):
+    """A servo's 1 degree at 400 Hz made 14.2 N m per A of 0.17, and that was told as too small."""
+    path = tmp_path / "servo.xml"
+    path.write_text(
+        '<mujoco model="servo"><worldbody><body><joint name="shaft" damping="0.02"/>'
+        '<geom type="cylinder" size="0.05 0.01" mass="0.3"/></body></worldbody>'
+        '<actuator><motor name="motor" joint="shaft"/></actuator></mujoco>'
+    )
+    time, rng = np.arange(400) / 400.0, np.random.default_rng(3)
+    swing = np.degrees(0.1 * time + 0.02 * np.sin(5.0 * time))
+    angle = np.round(swing + 0.3 * rng.standard_normal(400))
+    current = 0.5 + 0.05 * rng.standard_normal(400) + 0.02 * np.gradient(np.gradient(angle))
+    found, rig = drafted(path, write({"t": time, "angle_deg": angle, "current_A": current}))
+    assert any("current_A: no constant is read off it: noise of angle_deg" in w for w in found.look)
+    assert rig.description.signals["motor.effort"].scale == 1.0
+    assert not any("never below zero" in words for words in found.look)  # a load that stays
+    log = {"t": time, "angle_deg": np.degrees(0.6 * np.sin(5.0 * time))}
+    inertia = mujoco.MjModel.from_xml_path(str(path)).dof_M0[0]
+    torque = -15.0 * inertia * np.sin(5.0 * time) + 3e-4 * np.cos(5.0 * time)
+    found, rig = drafted(path, write({**log, "current_A": torque / 0.17}, "smooth.csv"))
+    assert rig.description.signals["motor.effort"].scale == pytest.approx(0.17, rel=0.1)
+
+
+def test_the_rate_of_a_draft_is_no_higher_than_that_of_its_log(slider, write):
+    path, columns, _ = slider
+    slow = {name: rows[::5] for name, rows in columns.items()}
+    found, rig = drafted(path, write(slow))
+    assert "every row" in found.text
+    assert rig.description.rate == 10.0
