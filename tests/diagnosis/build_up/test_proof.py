@@ -7,7 +7,7 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from linear import KINDS, Linear, drawn, halves, motion, recorded, seen, shape
+from linear import KINDS, Linear, Narrow, drawn, halves, motion, recorded, seen, shape
 
 from ves_twin.diagnosis.build_up import judges as judges_module
 from ves_twin.diagnosis.build_up.bench import STRAINED, Bench
@@ -395,3 +395,24 @@ def test_as_many_may_be_without_an_effect_as_their_large_p_say():
     assert _null(some) == pytest.approx(3.0 / (1.0 - NULL_FROM))
     assert _null([0.001]) == 1.0
     assert _null([0.9] * 3) == 3.0
+
+
+def test_a_cause_that_would_need_more_than_its_range_is_told_and_takes_the_firm_name_away():
+    """A twin rotor's constant torque was twice its range, and a shifted mass stood for it."""
+    plant = Narrow(("twin", "viscous", "coulomb"))
+    two = halves(plant, {"viscous@a:size": 0.5, "coulomb@b:size": 0.6}, 4)
+    labels = [trial.cause.label for trial in two.regression.trials]
+    proof = prove(two.regression, two.held, [labels.index("twin@a"), labels.index("coulomb@b")])
+    found = StandIns.of(proof)
+    own = labels.index("twin@a")
+    assert own in proof.proved
+    short = {labels[k]: sizes for k, sizes in found.beyond[own].items()}
+    assert short == {"viscous@a": pytest.approx([0.5], rel=0.2)}
+    assert "viscous@a" not in {labels[k] for k in found.within[own]}
+    report = {one.label: one for one in told(two, proof).proved}
+    (other,) = report["twin@a"].beyond
+    assert (other.label, report["twin@a"].firm) == ("viscous@a", False)
+    size = other.parameters["size"]
+    assert (size.low, size.high) == (-0.1, 0.1)
+    assert size.value == pytest.approx(0.5, rel=0.2)
+    assert report["coulomb@b"].beyond == ()

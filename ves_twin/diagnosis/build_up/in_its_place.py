@@ -28,8 +28,8 @@ MOST = 2
 """Others that are fitted in the place of one: each costs a full fit of all."""
 
 ADDS = 0.05
-"""Share of what a cause changes by which it may change another thing alone for effects to add up:
-where motion is fed in they do, to rounding. Assumed."""
+"""Share of what a cause changes by which it may change another thing beside what is proved than
+alone, for effects to add up: where motion is fed in they do, to rounding. Assumed."""
 
 REST = "causes fitted in the place of those that are proved"
 """What is left out where the runs are spent."""
@@ -83,15 +83,10 @@ class Replaced:
     ) -> Iterator[tuple[str, FloatArray]]:
         """Causes whose signature is like what a proved one changes, and at which size."""
         runs = self.evidence.runs
-        where = runs.indices(self.proof.bench.regression.trials[trial].cause)
-        without, alone = self.fit.shift.copy(), runs.origin.copy()
-        without[where], alone[where] = 0.0, self.fit.shift[where]
-        changes = [
-            self.fit.prediction - runs.one(without),
-            runs.one(alone) - self.bank.base.prediction,
-        ]
-        change, first = (self.evidence.whitening.apply(rows) for rows in changes)
-        if not np.all(np.isfinite(change)) or _near(first, change):
+        without = self.fit.shift.copy()
+        without[runs.indices(self.proof.bench.regression.trials[trial].cause)] = 0.0
+        change = self.evidence.whitening.apply(self.fit.prediction - runs.one(without))
+        if not np.all(np.isfinite(change)):
             return
         size = float(np.linalg.norm(screen.metric.project(change)))
         match = screen.match(change)
@@ -104,8 +99,21 @@ class Replaced:
             if label not in known:
                 best.setdefault(label, k)
         for label, k in best.items():
-            scale = float(np.clip(match[k] / screen.power[k], *AMPLITUDE))
-            yield label, scale * self.bank.sizes[k]
+            if not self._adds(k):
+                scale = float(np.clip(match[k] / screen.power[k], *AMPLITUDE))
+                yield label, scale * self.bank.sizes[k]
+
+    def _adds(self, entry: int) -> bool:
+        """Whether a cause changes the same beside all that is proved as alone: columns tell it."""
+        runs, cause = self.evidence.runs, self.bank.hypotheses[int(self.bank.owner[entry])]
+        where = runs.indices(cause)
+        there = self.fit.shift[where] + self.bank.sizes[entry]
+        beside = runs.one(runs.depart(self.fit.shift, where, there)) - self.fit.prediction
+        alone, rows = (
+            self.evidence.whitening.apply(np.asarray(change, np.float32))
+            for change in (self.bank.signature(entry), beside)
+        )
+        return float(np.linalg.norm(rows - alone)) < ADDS * float(np.linalg.norm(alone))
 
     def _trial(self, label: str) -> int | None:
         trials = self.proof.bench.regression.trials
@@ -142,11 +150,6 @@ class Replaced:
         left = np.asarray(self.held.measured - runs.one(point), float)
         lost = self.proof.bench.own_colour.lost
         return np.concatenate([left[rows][lost(k) :] for k, rows in enumerate(runs.slices)])
-
-
-def _near(one: FloatArray, other: FloatArray) -> bool:
-    """Whether a cause changes the same beside the others as alone: columns tell what is like it."""
-    return float(np.linalg.norm(one - other)) < ADDS * float(np.linalg.norm(other))
 
 
 def _rms(rows: FloatArray, counted: BoolArray) -> FloatArray:
