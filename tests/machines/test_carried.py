@@ -59,7 +59,7 @@ def test_a_drag_beside_a_friction_is_missed_and_that_is_told(machine):
     given, extended, part = found.errors["drive.force"]
     assert extended < 1e-6 * given < given < part
     lines = mjcf_lines(found)
-    assert lines[0] == "Without quadratic_drag on rail, which MJCF has no place for."
+    assert lines[0] == "Without quadratic_drag on rail, which is not written as MJCF."
     assert lines[-1].startswith("That is worse than no change in some: do not use it alone.")
 
 

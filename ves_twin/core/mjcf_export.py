@@ -24,7 +24,7 @@ class MjcfExport:
     Attributes:
         text: the file.
         carried: changes of the machine, by name, that the file has.
-        lost: changes of the machine that it has no place for.
+        lost: changes of the machine that are not written.
         never: what no file has, whatever the machine.
     """
 

@@ -16,7 +16,7 @@ class Carried:
     """Rms errors of each channel [its unit] on held-out recordings, nothing fitted to them.
 
     Attributes:
-        lacking: what of the extended machine an MJCF file has no place for.
+        lacking: what of the extended machine is not written as MJCF.
         errors: channel -> by the model as given, by the extended machine, by its MJCF.
         units: of the channels.
     """

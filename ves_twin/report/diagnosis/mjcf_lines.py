@@ -13,7 +13,7 @@ def mjcf_lines(carried: Carried | None) -> list[str]:
     """Sentences; none where the file has all of it."""
     if carried is None:
         return []
-    lines = [f"Without {', '.join(carried.lacking)}, which MJCF has no place for."]
+    lines = [f"Without {', '.join(carried.lacking)}, which is not written as MJCF."]
     shown = sorted(carried.errors.items(), key=lambda one: -one[1][2] / max(one[1][0], 1e-300))
     for name, (given, extended, part) in shown[:WORST]:
         told = f"plant.toml {extended:.3g}, the model as given {given:.3g}"

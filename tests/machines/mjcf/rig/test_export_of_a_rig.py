@@ -11,7 +11,9 @@ import two_link
 
 from ves_twin.cli.main import main
 from ves_twin.core.errors import InvalidInputError
+from ves_twin.effects.joints import ForceOffset
 from ves_twin.machines.mjcf.motion.forward import MjcfForward
+from ves_twin.machines.mjcf.rig.actuator_bias import bias_of
 from ves_twin.machines.mjcf.rig.description import Mode, Setting
 from ves_twin.machines.mjcf.rig.machine import Rig
 from ves_twin.machines.mjcf.rig.mjcf_export import mjcf_of
@@ -29,7 +31,7 @@ ON_COMMANDS = {
 BY_LAW = {
     "viscous_asymmetry", "coulomb_asymmetry", "load_friction", "quadratic_drag",
     "stribeck_friction", "regularized_friction", "friction_behind_gap", "one_way_load",
-    "dahl_friction", "ripple", "backlash", "force_offset",
+    "dahl_friction", "ripple", "backlash",
 }  # fmt: skip
 LOST = ON_SIGNALS | ON_COMMANDS | BY_LAW
 
@@ -162,3 +164,13 @@ def test_a_model_that_would_be_read_otherwise_is_not_written(tmp_path, compiler)
     told = rig.description.model_copy(update={"parameters": (light,)})
     with pytest.raises(InvalidInputError, match=compiler.partition("=")[0]):
         mjcf_of(Rig(told, tmp_path), tmp_path)
+
+
+@pytest.mark.parametrize("actuator", ["", '<motor joint="swing" forcerange="-5 5"/>'])
+def test_an_offset_that_no_free_motor_can_give_is_not_in_the_file(actuator, tmp_path):
+    (tmp_path / "swing.xml").write_text(
+        '<mujoco><worldbody><body><joint name="swing"/><geom size="0.1"/></body></worldbody>'
+        f"<actuator>{actuator}</actuator></mujoco>"
+    )
+    model = mujoco.MjModel.from_xml_path(str(tmp_path / "swing.xml"))
+    assert bias_of(ForceOffset("swing", 0.1), model) is None

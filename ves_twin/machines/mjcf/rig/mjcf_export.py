@@ -16,6 +16,7 @@ from ves_twin.core.errors import InvalidInputError, one_line
 from ves_twin.core.mjcf_export import MjcfExport
 from ves_twin.effects.element import Element
 from ves_twin.machines.mjcf.rig.account import changed_numbers
+from ves_twin.machines.mjcf.rig.actuator_bias import bias_of, write_biases
 from ves_twin.machines.mjcf.rig.law_share import carried_of
 from ves_twin.machines.mjcf.rig.machine import Rig
 
@@ -61,7 +62,9 @@ def mjcf_of(rig: Rig, folder: Path) -> MjcfExport:
     lost: list[str] = []
     for effect, _ in rig.effects_at({}):
         before = _numbers(model)
-        if effect.element is not Element.LOG:  # a log's clock stretches the step, no machine
+        if (bias := bias_of(effect, model)) is not None:
+            bias.edit(model)
+        elif effect.element is not Element.LOG:  # a log's clock stretches the step, no machine
             effect.edit_model(model)
         (lost if np.array_equal(before, _numbers(model)) else carried).append(effect.label)
     for law in rig.laws:
@@ -103,6 +106,7 @@ def _xml(path: Path, model: mujoco.MjModel, folder: Path) -> str:
             mujoco.mj_saveLastXML(str(written), model)
             root = ElementTree.parse(written).getroot()
             _assets(root, path.parent.resolve())
+            write_biases(root, model)
             written.write_text(ElementTree.tostring(root, encoding="unicode"), encoding="utf-8")
             _check(mujoco.MjModel.from_xml_path(str(written)), model)
         except (ValueError, mujoco.FatalError) as error:
