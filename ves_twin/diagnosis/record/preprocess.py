@@ -166,9 +166,12 @@ def _finer(programme: Excitation) -> str:
     step = float(np.median(np.diff(programme.time)))
     if not is_usual(step):
         return f", or the clock in its own unit (rows are {step:.3g} s apart)"
-    if rows < FEWEST_ROWS:
-        return ""
-    return f", or a higher rate in the machine's file ({rows} rows were recorded)"
+    period = float(np.mean(np.diff(programme.time)))
+    for factor in range(AnalysisGrid.of(period, programme.rate or RATE).factor - 1, 0, -1):
+        rate = 1.0 / (period * factor)
+        if fewest_rows(period, rate) <= rows:
+            return f", or rate = {rate:.2g} in the machine's file ({rows} rows were recorded)"
+    return ""
 
 
 def _marked(runs: Runs, empty: Sequence[BoolArray]) -> list[BoolArray]:

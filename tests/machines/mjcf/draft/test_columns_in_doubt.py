@@ -7,6 +7,8 @@ import numpy as np
 import pytest
 from drafted import changed, drafted
 
+from ves_twin.machines.mjcf.draft.draft import draft
+
 SLIDER = """
 <mujoco model="slider">
   <option timestep="0.001" integrator="implicitfast" gravity="0 0 {weight}"/>
@@ -110,3 +112,37 @@ def test_the_rate_of_a_draft_is_no_higher_than_that_of_its_log(slider, write):
     found, rig = drafted(path, write(slow))
     assert "every row" in found.text
     assert rig.description.rate == 10.0
+
+
+def widened(rig, kind):
+    return [e for e in rig.description.effects if e.kind == kind and e.largest]
+
+
+def test_a_constant_that_a_log_shows_is_within_the_range_of_a_draft(swing, write):
+    """A rotor about its pulse at rest: half of its swing was the range, and twice that was there."""
+    path, columns = swing
+    _, rig = drafted(path, write(columns))
+    assert not widened(rig, "force_offset")
+    found, rig = drafted(path, write(changed(columns, tau=columns["tau"] + 0.9), "off.csv"))
+    (offset,) = widened(rig, "force_offset")
+    assert (offset.on, offset.largest) == (("joint",), "1.8 N*m")
+    assert "joint: by the efforts in the log" in found.text
+
+
+def test_delays_of_a_slow_log_have_room_for_some_of_its_rows(slider, write):
+    path, columns, _ = slider
+    _, rig = drafted(path, write({name: rows[::5] for name, rows in columns.items()}))
+    (delay,) = widened(rig, "actuator_delay")
+    assert (delay.on, delay.largest) == (("motor",), "0.3 s")
+    _, rig = drafted(path, write({**columns, "t": 0.2 * columns["t"]}, "fast.csv"))
+    assert not widened(rig, "actuator_delay")
+
+
+def test_a_draft_of_two_logs_leaves_rows_enough_of_the_shorter_one(slider, write):
+    """A draft's own next command failed: 69 rows of a held-out log, of 157."""
+    path, columns, _ = slider
+    slow = {name: rows[::5] for name, rows in columns.items()}
+    logs = [write(slow, "a.csv"), write({n: rows[:140] for n, rows in slow.items()}, "b.csv")]
+    told = draft(path, logs, path.with_name("two.toml"))
+    assert not told.short
+    assert "rate = 10 " in told.text

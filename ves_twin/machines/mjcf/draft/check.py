@@ -10,6 +10,7 @@ import mujoco
 from ves_twin.machines.mjcf.draft.angles import words_of_counted
 from ves_twin.machines.mjcf.draft.closed_chain import closed_chain, words_of_open
 from ves_twin.machines.mjcf.draft.judge import Judge
+from ves_twin.machines.mjcf.draft.lacking import offsets_of
 from ves_twin.machines.mjcf.draft.lifted import Load, lifted
 from ves_twin.machines.mjcf.draft.locked import locked_joints, words_of_locked
 from ves_twin.machines.mjcf.draft.log_columns import LogColumns
@@ -49,6 +50,7 @@ class Checked:
         dofs: joint -> its degree of freedom.
         locked: joints that are taken as standing still.
         times: joint -> times what the model needs there that the log has, where it tells it.
+        offsets: joint -> constant effort that the model lacks there, where that is much.
         lifts: last body of an arm -> what it can carry.
         rubs: columns of efforts that friction explains, and the model does not.
         gravity: that the model should have, as its file has it; empty where it is right.
@@ -65,6 +67,7 @@ class Checked:
     lifts: Mapping[str, Load] = field(default_factory=dict)
     rubs: tuple[str, ...] = ()
     gravity: str = ""
+    offsets: Mapping[str, float] = field(default_factory=dict)
 
 
 ALIKE = 0.02
@@ -123,7 +126,8 @@ def _checked(log: LogColumns, matches: Matches, model: mujoco.MjModel, corner: f
     found, said = in_degrees_by_stops(log, found, model)
     findings += [*said, *words_of_locked(locked, ties.followers)]
     motion, explained, scales = None, dict[str, float](), dict[Match, float]()
-    lifts, rubs, gravity = dict[str, Load](), tuple[str, ...](), ""
+    lifts: Mapping[str, Load] = {}
+    rubs, gravity, offsets = tuple[str, ...](), "", dict[str, float]()
     before = len(findings)
     if absent or not (positions or cyclic):
         words = ", ".join(name or "one without a name" for name in absent)
@@ -144,16 +148,10 @@ def _checked(log: LogColumns, matches: Matches, model: mujoco.MjModel, corner: f
         found, said = judge.efforts(found, motion)
         findings += said
         scales = scales_of({m: judge.fit(m, motion) for m in judge.driving(found)})
-        findings += words_of_scale(scales)
-        findings += words_of_unsigned(judge, found, motion)
-        findings += [*judge.late(found, motion), *judge.rough(found, motion)]
-        lifts = lifted(
-            judge.model,
-            lambda other: replace(judge, model=other).motion(found),
-            judge.lifting(found, motion),
-        )
-        fits = {m.column: judge.fit(m, motion) for m in judge.driving(found)}
-        rubs = tuple(column for column, fit in fits.items() if fit.rubs)
+        unsigned, late = words_of_unsigned(judge, found, motion), judge.late(found, motion)
+        findings += [*words_of_scale(scales), *unsigned, *late, *judge.rough(found, motion)]
+        lifts, rubs = _lifts(judge, found, motion), _rubs(judge, found, motion)
+        offsets = offsets_of(judge, found, motion)
         motion = plain.motion(found)
         explained = plain.explained(found, motion)
         findings += words_of_one_way(motion, dofs, [m.spot.joint for m in judge.driving(found)])
@@ -163,9 +161,22 @@ def _checked(log: LogColumns, matches: Matches, model: mujoco.MjModel, corner: f
     found, said = rated(log, found, corner, model)
     times = {match.spot.joint: scale for match, scale in scales.items()}
     told = (*findings, *said)
-    return Checked(
-        tuple(found), told, explained, motion, corner, dofs, locked, times, lifts, rubs, gravity
-    )
+    rest = locked, times, lifts, rubs, gravity, offsets
+    return Checked(tuple(found), told, explained, motion, corner, dofs, *rest)
+
+
+def _lifts(judge: Judge, found: list[Match], motion: Motion) -> Mapping[str, Load]:
+    """Last body of an arm -> what it can carry."""
+
+    def moved(other: mujoco.MjModel) -> Motion:
+        return replace(judge, model=other).motion(found)
+
+    return lifted(judge.model, moved, judge.lifting(found, motion))
+
+
+def _rubs(judge: Judge, found: list[Match], motion: Motion) -> tuple[str, ...]:
+    """Columns of efforts that friction explains, and the model does not."""
+    return tuple(m.column for m in judge.driving(found) if judge.fit(m, motion).rubs)
 
 
 def _drives(matches: Matches, model: mujoco.MjModel) -> tuple[str, ...]:

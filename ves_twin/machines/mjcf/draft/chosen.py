@@ -186,7 +186,7 @@ def _of_motion(
     )
     least = 0.5 * RATES[0] if closed is None else min(_swung(log, positions, model), loud)
     band = max(min(band, quiet), least)
-    length, rate, rated = log.period * log.rows, 2.0 * band, Chosen.rated
+    length, rate, rated = log.period * log.fewest, 2.0 * band, Chosen.rated
     if rate * length < ENOUGH:
         if closed is None:
             rows = rate * length
@@ -226,7 +226,7 @@ def _in_whole_rows(rate: float, log: LogColumns) -> float:
     An analysis takes every n-th row: of 300 rows at 83 Hz a rate of 32 Hz is every third, 90 rows.
     """
     every = 1.0 / (rate * log.period)
-    if log.rows / max(round(every), 1) >= ENOUGH:
+    if log.fewest / max(round(every), 1) >= ENOUGH:
         return rate
     return 1.0 / (max(int(every), 1) * log.period)
 

@@ -112,7 +112,7 @@ def draft(
     measured += [
         m for m in matches.of(Quantity.EFFORT) if not is_command(log.said.get(m.column, m.column))
     ]
-    log = log.between([m.column for m in measured])
+    log = log.between([m.column for m in measured]).beside(logs[1:], rate)
     drafting = Drafting(model, logs[0], out, given, log, matches)
     now = drafting.best()
     others = [read_rig_recording(further, now.rig) for further in logs[1:]]

@@ -11,18 +11,17 @@ import mujoco
 import numpy as np
 
 from ves_twin.core.units import SI_UNITS
-from ves_twin.effects.bodies import LOAD
 from ves_twin.machines.mjcf.draft.check import Checked
 from ves_twin.machines.mjcf.draft.chosen import RATES, Chosen
 from ves_twin.machines.mjcf.draft.estimates import travel, two_digits, typical
 from ves_twin.machines.mjcf.draft.log_columns import LogColumns
 from ves_twin.machines.mjcf.draft.match import Match, Matches
+from ves_twin.machines.mjcf.draft.ranges import effects_line
 from ves_twin.machines.mjcf.draft.spots import Quantity, is_damped_motor, servo_limit
 from ves_twin.machines.mjcf.parts.servo import FILTERS, is_servo
 from ves_twin.machines.mjcf.parts.ties import Follower, Ties
 from ves_twin.machines.mjcf.rig.column import LAB_UNITS
 from ves_twin.machines.mjcf.rig.description import Mode
-from ves_twin.machines.mjcf.rig.places import carries
 
 SHARES = {
     "mass": ("5 %", "body_mass"),
@@ -44,9 +43,6 @@ friction of a balanced table (a test) made 0.03 rad/s of 0.3. The fit finds the 
 
 NOBODY_TELLS = "20 %"
 """Share to which loops inside a servo are known: no datasheet has them. Assumed."""
-
-HEAVY = 1.4
-"""Times what the model needs from which on a body's usual range, half of its mass, may be short."""
 
 FITTED = "20 %"
 """Share to which a constant is known that was fitted beside friction: put the datasheet's there."""
@@ -79,7 +75,7 @@ def draft_text(
         *([f"window = {_window(log)}"] if log.window else []),
         _drive(mode, check.locked),
         f"tolerances = {_tolerances(model, check)}   {OF_MODEL}",
-        _effects(check, model),
+        effects_line(check, model, log.period),
         "",
         "[signals]",
     ]
@@ -97,33 +93,6 @@ def draft_text(
     starts = list(_starts(log, check, mode)) if mode.mode is Mode.CONTROL else []
     lines += ["", "[start]", *starts] if starts else []
     return "\n".join(lines) + "\n"
-
-
-def _effects(check: Checked, model: mujoco.MjModel) -> str:
-    """Every kind; a body's mass in a wider range where its joint asks for more than that.
-
-    On the last body of an arm a load, where the efforts ask for more than it has: as a mass of that
-    body a tool puts off the masses of those before it (a measured arm, 0.5 kg at 5 cm).
-    """
-    heavy, loaded = dict[str, float](), dict[str, float]()
-    for joint, times in check.times.items():
-        body = int(model.joint(joint).bodyid[0])
-        known = model.body(body).name and model.body_mass[body] > 0.0
-        if times > HEAVY and known and not carries(model, body):
-            heavy[model.body(body).name] = 2.0 * (times - 1.0) * float(model.body_mass[body])
-    for name, load in check.lifts.items():
-        if load.heavier:
-            loaded[name] = load.most
-        elif load.most > LOAD * float(model.body(name).mass[0]):
-            heavy[name] = load.most
-    own = [
-        f'{{ kind = "{kind}", on = [{_quoted(body)}], largest = "{two_digits(most):g} kg" }}, '
-        for kind, some in (("payload", loaded), ("body_mass", heavy))
-        for body, most in some.items()
-    ]
-    why = "every one that the model has a place for"
-    why += f"; {', '.join([*loaded, *heavy])}: by the efforts in the log" * bool(own)
-    return f'effects = [{"".join(own)}{{ kind = "*", on = ["*"] }}]   # {why}'
 
 
 def signal_name(match: Match, mode: Chosen) -> str:

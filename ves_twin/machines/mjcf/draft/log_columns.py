@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from pathlib import Path
@@ -81,6 +82,7 @@ class LogColumns:
         window: first and last time of the rows that are used [s]; None: all.
         logged: column -> the same rows as they stand in the log, whatever its steps.
         called: column -> what the file calls it beside its name; of those that it does.
+        shortest: rows of the shortest of other logs that are diagnosed with it; 0 without any.
     """
 
     file: str
@@ -97,6 +99,7 @@ class LogColumns:
     called: Mapping[str, str] = field(default_factory=dict)
     steady: Mapping[str, FloatArray] = field(default_factory=dict)
     slower: Mapping[str, Readings] = field(default_factory=dict)
+    shortest: int = 0
     _smooth: dict[tuple[str, float], FloatArray] = field(
         default_factory=dict, init=False, repr=False, compare=False
     )
@@ -105,6 +108,19 @@ class LogColumns:
     def rows(self) -> int:
         """Of every column."""
         return len(next(iter(self.values.values())))
+
+    @property
+    def fewest(self) -> int:
+        """Of this log, or of the shortest of those that are diagnosed with it."""
+        return min(self.rows, self.shortest or self.rows)
+
+    def beside(self, others: Sequence[Path], rate: float | None) -> LogColumns:
+        """With the rows of the shortest of other logs; what cannot be read is told elsewhere."""
+        rows = []
+        for path in others:
+            with suppress(InvalidInputError):
+                rows.append(LogColumns.read(path, rate).rows)
+        return replace(self, shortest=min(rows, default=0))
 
     @cached_property
     def said(self) -> Mapping[str, str]:
