@@ -52,7 +52,7 @@ def test_a_draft_does_not_take_a_restless_command_for_a_noisy_one(swing, write):
     rng = np.random.default_rng(4)
     jumps = np.round(columns["tau"] + 0.3 * rng.choice((-1.0, 1.0), 1500), 3)
     smooth = columns["q"].copy()
-    smooth[4:-4] = np.convolve(columns["q"], np.ones(9) / 9.0, "valid")
+    smooth[5:-5] = np.convolve(columns["q"], np.ones(11) / 11.0, "valid")
     rigs = [
         drafted(path, write({"t": columns["t"], name: jumps, "q": smooth}))[1]
         for name in ("iq1", "pwm1")
