@@ -112,6 +112,15 @@ def test_numbers_of_the_model_that_left_their_tolerance_are_told(pull, high, tol
     assert told or not words
 
 
+def test_numbers_that_moved_are_told_where_no_cause_explains_the_record_too():
+    """A weight 7.2 tolerances off stood in verdict.json alone, below *unknown*."""
+    plain = replace(verdict(), verdict=Kind.UNKNOWN, causes=(), alternatives=())
+    tuned = {"body_mass@load:mass": replace(SIZE, pull=-7.2, high=96e3)}
+    assert "7.2 declared tolerances" in tuned_words(replace(plain, tuned=tuned))
+    astray = replace(plain.statistics, misfit_in_order=1e6)  # a simulation out of step tells none
+    assert not tuned_words(replace(plain, tuned=tuned, statistics=astray))
+
+
 def test_a_named_cause_that_a_law_changed_is_no_number_of_the_model():
     """A ball's friction was told as the model's 2.08 mN, where the model had none."""
     plain = verdict()

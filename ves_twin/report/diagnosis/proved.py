@@ -102,7 +102,7 @@ def standing_words(one: Proved) -> str:
             " too narrow (`largest` of the effect, or `typical`)"
         )
     if one.below_row:
-        return "less than a row of the log, or may be: its clock explains that as well"
+        return "its interval begins below a row of the log: the log's clock explains that as well"
     if one.drives:
         return _driving_words(one)
     why = next((words for holds, words in _reasons(one) if holds), "")

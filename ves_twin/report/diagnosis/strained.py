@@ -5,7 +5,7 @@ from __future__ import annotations
 from ves_twin.core.quantity import quantity
 from ves_twin.diagnosis.explain.rivals import Standing
 from ves_twin.diagnosis.verdict.cause import Estimate
-from ves_twin.diagnosis.verdict.verdict import Verdict
+from ves_twin.diagnosis.verdict.verdict import Kind, Verdict
 from ves_twin.report.diagnosis.words import TOLD, interval_words, spoken
 
 STRANGEST = 2
@@ -30,11 +30,16 @@ def moved(verdict: Verdict) -> list[tuple[str, Estimate]]:
 
 
 def tuned_words(verdict: Verdict) -> str:
-    """Beside causes: the model's own numbers that moved by SHOWN_FROM declared sd, by that."""
+    """The model's own numbers that moved by SHOWN_FROM declared sd, by that.
+
+    Beside causes, or where none explains the record: what they stand for is then open.
+    """
+    unknown = verdict.verdict is Kind.UNKNOWN and verdict.statistics.misfit_in_order is None
+    shown = bool(verdict.causes) or unknown
     told = [
         f"{spoken(name.rpartition(':')[0])} {interval_words(one)}, {pull:.1f} declared tolerances"
         f" from the model's {quantity(one.nominal, one.unit)}"
-        for pull, name, one in (_far(verdict, SHOWN_FROM) if verdict.causes else [])
+        for pull, name, one in (_far(verdict, SHOWN_FROM) if shown else [])
     ]
     named = _named(verdict)
     told += [
