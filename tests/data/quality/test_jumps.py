@@ -41,6 +41,15 @@ def test_what_a_machine_or_a_sensor_does_otherwise_is_no_seam(column):
     assert jumps(column, TIME[: len(column)]) == ()
 
 
+def test_a_place_that_rests_moves_where_it_is_asked_to_or_again_and_again():
+    rests = 1e-4 * np.sin(np.arange(600.0)) + (np.arange(600) > 300)
+    asked = np.where(np.arange(600) > 298, 5.0, 2.0)
+    assert jumps(rests, TIME) == (300,)
+    assert jumps(rests, TIME, [asked]) == ()
+    assert jumps(rests, TIME, [asked[::-1] * 0.0 + np.arange(600.0)]) == (300,)
+    assert jumps(rests + (np.arange(600) > 450), TIME) == ()
+
+
 def test_a_step_over_rows_that_are_missing_is_none():
     kept = np.r_[0:100, 160:600]
     assert jumps(SWING[kept], TIME[kept]) == ()

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from linear import JOINTS, MASS, Linear, recorded, seen
 
+from ves_twin.diagnosis.bank.screen import Screen
 from ves_twin.diagnosis.bank.signature_library import build_bank
 from ves_twin.diagnosis.build_up.builder import present_in
 from ves_twin.diagnosis.build_up.discrepancy import discrepancy
@@ -86,6 +87,20 @@ def test_dry_friction_does_the_work_of_a_dead_band_though_no_column_beside_it_te
     ends = np.zeros(left.shape), np.asarray(left, float)
     (beside,) = report_of(halves, proof, ends, replaced=replaced).proved
     assert (beside.firm, beside.acts_like) == (False, ("dry@a",))
+
+
+def test_a_signature_is_like_itself_by_a_cosine_of_one_beside_tolerances():
+    _, proof, replaced = built()
+    likely = dict(
+        replaced._alike(Screen(replaced.bank, replaced.evidence.whitening), *proof.proved, set())
+    )
+    assert {*likely} <= {"band@a", "dry@a"}
+    change = replaced.bank.signature(int(replaced.bank.entries(0)[-1]))
+    white = replaced.evidence.whitening.apply(change)
+    screen = Screen(replaced.bank, replaced.evidence.whitening)
+    size = float(white @ screen.metric.project(white)) ** 0.5
+    own = int(replaced.bank.entries(0)[-1])
+    assert screen.match(white)[own] / screen.power[own] ** 0.5 / size == pytest.approx(1.0)
 
 
 def test_nothing_is_in_the_place_of_what_no_other_cause_is_like():

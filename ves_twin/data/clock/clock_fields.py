@@ -23,7 +23,7 @@ _NAMELESS = re.compile(r"(?:column|col|c|var|variable|field|unnamed|x|v)?[ _:]*#
 _COUNTER = re.compile(r"^(?:idx|index|i|n|row|sample|samples|count|counter|seq)$", re.IGNORECASE)
 
 _UNITS = {
-    **{unit: unit for unit in ("s", "ms", "us", "ns")},
+    **{unit: unit for unit in ("ms", "us", "ns")},
     **dict.fromkeys(("millis", "millisecond", "milliseconds"), "ms"),
     **dict.fromkeys(("micros", "microsecond", "microseconds"), "us"),
 }

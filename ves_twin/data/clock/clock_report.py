@@ -153,11 +153,13 @@ class ClockCounter:
 COUNTS = (1e-2, 1e-3, 1e-6)
 """Seconds that stamps are written in whole ones of, hundredths to microseconds."""
 
-WHOLE = 0.01
-"""Part of a count by which a step may miss a whole one: digits of a double in a date."""
+WHOLE, MOST = 0.01, 0.99
+"""Part of a count by which a step may miss a whole one (digits of a double in a date), and share of
+the steps that must be whole."""
 
-LOST = 0.2
-"""Share of steps of two counts beside those of one from which they are no lost rows."""
+STRETCH, APART = 50, 4.0
+"""Steps of a stretch, and counts by which nine of ten such stretches differ at most: rows that are
+lost now and then make it longer, rounding does not."""
 
 
 def rounding(steps: FloatArray) -> float:
@@ -174,10 +176,12 @@ def rounding(steps: FloatArray) -> float:
     median = float(np.median(steps))
     for count in COUNTS:
         whole = steps / count
-        if np.all(np.abs(whole - np.round(whole)) < WHOLE):
+        if np.mean(np.abs(whole - np.round(whole)) < WHOLE) > MOST:
             beside = np.round(np.abs(steps - median) / count) == 1.0
-            least = UNEVEN if median > (1.0 + WHOLE) * count else LOST
-            return count if np.mean(beside) > least else 0.0
+            length = min(STRETCH, max(len(steps) // 4, 1))
+            sums = np.convolve(np.minimum(whole, np.round(median / count) + 2.0), np.ones(length))
+            low, high = np.percentile(sums[length - 1 : len(steps)], (5.0, 95.0))
+            return count if np.mean(beside) > UNEVEN and high - low <= APART else 0.0
     return 0.0
 
 

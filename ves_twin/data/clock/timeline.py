@@ -76,7 +76,7 @@ class Timeline:
         even = steps[steps <= most]
         jitter = float(np.std(even)) / period if len(even) else 0.0
         if told.even:
-            time = _straightened(time, period)
+            time = _straightened(time, period, most)
         return Timeline(
             time, good, period, len(same), len(back), missing, len(wide), longest, jitter
         )
@@ -107,9 +107,11 @@ class Timeline:
         }
 
 
-def _straightened(time: FloatArray, period: float) -> FloatArray:
+def _straightened(time: FloatArray, period: float, longest: float) -> FloatArray:
     """Stamps on the straight line through them; a gap counts as the rows that fit into it."""
-    count = np.concatenate([[0.0], np.cumsum(np.maximum(np.round(np.diff(time) / period), 1.0))])
+    steps = np.diff(time)
+    rows = np.where(steps > longest, np.maximum(np.round(steps / period), 1.0), 1.0)
+    count = np.concatenate([[0.0], np.cumsum(rows)])
     slope, start = np.polyfit(count, time - time[0], 1)
     return np.asarray(time[0] + start + slope * count)
 

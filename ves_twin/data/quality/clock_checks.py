@@ -6,6 +6,7 @@ import numpy as np
 
 from ves_twin.core.recording.recording import Recording
 from ves_twin.core.signals import SIGNALS, Role
+from ves_twin.data.clock.clock_report import longest_step, rounding, usual_step
 from ves_twin.data.clock.usual_period import is_usual
 from ves_twin.data.quality.check import Check, failed, passed, unknown
 from ves_twin.data.repeats import repeats
@@ -15,9 +16,6 @@ JITTER = 0.05
 
 STILL = 1.5
 """Smallest steps of a column up to which it counts as standing still."""
-
-GAP = 1.5
-"""A step longer than so many periods is a gap."""
 
 
 def check_clock(recording: Recording) -> list[Check]:
@@ -31,13 +29,14 @@ def check_clock(recording: Recording) -> list[Check]:
     if len(recording) < 3:
         return [unknown("rate", f"{len(recording)} rows are too few to tell a rate")]
     steps = np.diff(recording.time)
-    period = float(np.median(steps))
+    period = usual_step(recording.time) or float(np.median(steps))
     return [_rate(recording, steps, period), _gaps(recording, steps, period), _repeats(recording)]
 
 
 def _rate(recording: Recording, steps: np.ndarray, period: float) -> Check:
-    even = steps[steps < GAP * period]
-    jitter = float(np.max(np.abs(even - period))) / period
+    even = steps[steps < longest_step(steps, period)]
+    off = np.max(np.abs(even - period), initial=0.0) - rounding(steps)
+    jitter = max(float(off), 0.0) / period
     declared = recording.info.period
     said = f"{1.0 / period:.2f} Hz"
     if declared > 0.0 and abs(period / declared - 1.0) > JITTER:
@@ -52,7 +51,7 @@ def _rate(recording: Recording, steps: np.ndarray, period: float) -> Check:
 
 
 def _gaps(recording: Recording, steps: np.ndarray, period: float) -> Check:
-    holes = np.flatnonzero(steps >= GAP * period)
+    holes = np.flatnonzero(steps >= longest_step(steps, period))
     if not len(holes):
         return passed("gaps", "none")
     longest = holes[np.argmax(steps[holes])]

@@ -112,7 +112,11 @@ def _dropout(recording: Recording, name: str, labels: tuple[str, ...]) -> Check:
 
 def _jump(recording: Recording, name: str, labels: tuple[str, ...]) -> Check:
     values, time = recording[name], recording.time
-    gone = {label: k for i, label in enumerate(labels) if (k := jumps(values[:, i], time))}
+    others = [n for n in recording.signals if not _has(recording, n, MOTION)]
+    commands = [c for n in others for c in recording[n].T if np.all(np.isfinite(c))]
+    gone = {
+        label: k for i, label in enumerate(labels) if (k := jumps(values[:, i], time, commands))
+    }
     if not gone:
         return passed("jump", f"{name}: no column jumps and stays", name)
     label, rows = next(iter(gone.items()))

@@ -65,7 +65,7 @@ def report_of(
     laws = laws_left(bench, *ends)
     found, trials = StandIns.of(proof), regression.trials
     others = {**found.within}
-    together = inseparable(proof, others)
+    together = inseparable(proof, others)  # of columns, which those of full fits do not have
     if replaced is not None:
         others |= replaced.others([n for n in proof.proved if trials[n].bent and not others[n]])
     shared = {name for one in together for name in one.names}

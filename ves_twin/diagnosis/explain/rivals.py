@@ -15,7 +15,7 @@ from ves_twin.diagnosis.model.forward import Channel
 from ves_twin.diagnosis.record.adequacy import EnergyCell, cells
 
 NEAR = 0.01
-"""Share of its range from an end within which a size is at that end: bounds hold it there."""
+"""Share of an end of its range within which a departure is at that end: bounds hold it there."""
 
 SCREENED = 6
 """Causes that are told though the screen kept them from a fit."""
@@ -116,8 +116,8 @@ def _fitted(found: Explanation, fit: Fit, standing: Standing) -> Rival:
         pull=fit.pull,
         place=_place(found, fit, channels),
         ended=any(
-            size <= runs.low[i] + NEAR * (runs.high[i] - runs.low[i]) < 0.0
-            or size >= runs.high[i] - NEAR * (runs.high[i] - runs.low[i]) > 0.0
+            (runs.low[i] < 0.0 and size <= (1.0 - NEAR) * runs.low[i])
+            or (runs.high[i] > 0.0 and size >= (1.0 - NEAR) * runs.high[i])
             for i, size in zip(free, fit.sizes, strict=True)
         ),
     )

@@ -161,7 +161,7 @@ def _part(programme: Excitation) -> str:
 def _finer(programme: Excitation) -> str:
     """That a higher analysis rate would do, where the recording itself has the rows."""
     rows = len(programme.time)
-    if programme.poses:
+    if programme.poses or rows < 2:
         return ""
     step = float(np.median(np.diff(programme.time)))
     if not is_usual(step):
@@ -170,7 +170,8 @@ def _finer(programme: Excitation) -> str:
     for factor in range(AnalysisGrid.of(period, programme.rate or RATE).factor - 1, 0, -1):
         rate = 1.0 / (period * factor)
         if fewest_rows(period, rate) <= rows:
-            return f", or rate = {rate:.2g} in the machine's file ({rows} rows were recorded)"
+            told = f"rate = {float(f'{rate:.3g}'):g}"
+            return f", or {told} in the machine's file ({rows} rows were recorded)"
     return ""
 
 

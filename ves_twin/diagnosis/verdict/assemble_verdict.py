@@ -30,7 +30,7 @@ from ves_twin.diagnosis.unseen.gain import Gain
 from ves_twin.diagnosis.verdict.cause import Cause, Estimate
 from ves_twin.diagnosis.verdict.driving import driving
 from ves_twin.diagnosis.verdict.report_traces import ReportTraces, exhibit_of
-from ves_twin.diagnosis.verdict.sized import is_below_row, is_ended, sized
+from ves_twin.diagnosis.verdict.sized import is_below_row, is_dead, is_ended, sized
 from ves_twin.diagnosis.verdict.verdict import (
     Basis,
     ChannelError,
@@ -249,7 +249,8 @@ def _cause(
     below = any(is_below_row(name, e, row) for name, e in estimates.items())
     ends = {p.name: (p.low, p.high) for p in runs.forward.parameters}
     estimates = {
-        name: replace(e, at_limit=is_ended(e, *ends[name])) for name, e in estimates.items()
+        name: replace(e, at_limit=is_ended(e, *ends[name]) and not is_dead(e))
+        for name, e in estimates.items()
     }
     ended = any(e.at_limit for e in estimates.values())
     like = findings.twins.get(hypothesis.label, ())

@@ -52,7 +52,7 @@ class Cause:
         parameters: name -> estimate.
         probability: given the library and that one of its causes, or pairs, is at work.
         firm: False where a commissioning error of `sigmas` declared sd is not excluded, or its size
-            may be none, or the clock of a log explains it as well.
+            may be none, an end of its range holds it, or the clock of a log explains it as well.
         sigmas: largest departure in declared sd, with a baseline in sd of what a rig in order may
             change by since then; None if it is no commissioning parameter.
         below_row: whether it is a delay of less than a row of a log.

@@ -1,4 +1,4 @@
-"""sized, is_ended, is_below_row: sizes of what is proved, and what their ranges say of names."""
+"""sized, is_ended, is_dead, is_below_row: sizes of what is proved, and what ranges say of names."""
 
 from __future__ import annotations
 
@@ -62,6 +62,11 @@ def is_ended(size: Estimate, low: float, high: float) -> bool:
     """Whether a size is at an end of its range, by the width of its interval."""
     near = NEAR * (size.high - size.low)
     return _reaches(size, low, high) and not low + near < size.value < high - near
+
+
+def is_dead(size: Estimate) -> bool:
+    """Whether a gain is none at all, as of a motor that is off: that end is no assumption."""
+    return size.unit == "1" and abs(size.value) < NEAR * abs(size.nominal)
 
 
 def _reaches(size: Estimate, low: float, high: float) -> bool:

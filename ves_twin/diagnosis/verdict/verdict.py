@@ -317,9 +317,11 @@ class Verdict:
             return text
         if self.unconfirmed:
             return f"{text}, which the held-out recordings do not confirm"
+        if cause.ended:
+            return f"{text}: an end of its range holds it"
         if cause.sigmas is None:
             rows = "its clock explains that as well" if cause.below_row else "it may be none"
-            return f"{text}: {'an end of its range holds it' if cause.ended else rows}"
+            return f"{text}: {rows}"
         if changed:
             return f"{text}, {cause.sigmas:.1f} sigmas of a change since then: fault or drift"
         return f"{text}, {cause.sigmas:.1f} declared sigmas off: fault or commissioning error"

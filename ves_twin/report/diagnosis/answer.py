@@ -304,6 +304,8 @@ def why_loose(cause: Cause) -> str:
     if cause.acts_like:
         like = " or ".join(map(spoken, cause.acts_like))
         return f"in a motion that does not turn round {like} reads the same"
+    if any(e.at_limit and not e.value for e in cause.parameters.values()):
+        return "none of it would be left, which another cause may do as well"
     if cause.ended:
         return (
             "an end of its range holds it, so that it stands for something else, or the range is"

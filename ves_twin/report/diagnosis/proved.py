@@ -155,10 +155,12 @@ def _or(names: Sequence[str]) -> str:
 def _beyond_words(others: Sequence[Beyond]) -> str:
     """Causes that do as well beyond their ranges, which are assumed; empty where there are none."""
     told = [
-        f"{spoken(one.label)} {quantity(s.value, s.unit)} ({quantity(s.low, s.unit)} to"
-        f" {quantity(s.high, s.unit)})"
+        f"{spoken(one.label)} "
+        + ", ".join(
+            f"{quantity(s.value, s.unit)} ({quantity(s.low, s.unit)} to {quantity(s.high, s.unit)})"
+            for s in one.parameters.values()
+        )
         for one in others
-        for s in one.parameters.values()
     ]
     if not told:
         return ""

@@ -54,9 +54,37 @@ def test_two_runs_on_one_clock_are_told_at_their_seam(slider, write):
     log = {name: rows[kept] for name, rows in columns.items()}
     log["t"] = 0.02 * np.arange(len(kept))
     found, _ = drafted(path, write(log))
-    assert any("behind row 500 and stays: two runs in one log" in words for words in found.look)
+    assert any("at 9.98 s and stays: two runs in one log" in words for words in found.look)
     found, _ = drafted(path, write(columns, "one.csv"))
     assert not any("two runs" in words for words in found.look)
+
+
+def test_a_move_that_a_slow_log_missed_is_no_seam(slider, write):
+    """A hobby servo at 10 Hz stands elsewhere in the next row, as its command asked."""
+    path, columns, _ = slider
+    place = np.where(np.arange(1500) < 700, 0.1, 0.3) + 1e-5 * np.sin(np.arange(1500))
+    asked = np.where(np.arange(1500) < 699, 0.1, 0.3)
+    log = {"t": 0.1 * np.arange(1500), "pwm": 20.0 * asked, "y": place}
+    assert not any("two runs" in words for words in drafted(path, write(log))[0].look)
+    log["pwm"] = columns["pwm"]
+    found, _ = drafted(path, write(log, "unasked.csv"))
+    assert any("y jumps from 0.1 to 0.3 at 69.9 s" in words for words in found.look)
+
+
+def test_a_pulse_about_its_middle_lacks_no_sign(slider, write):
+    path, columns, _ = slider
+    pulse = 1500.0 + 20.0 * (columns["pwm"] - np.mean(columns["pwm"]))
+    log = {"t": columns["t"], "pulse_us": pulse, "y": columns["y"]}
+    found, rig = drafted(path, write(log))
+    assert not any("never below zero" in words for words in found.look)
+    assert not widened(rig, "force_offset")  # nothing tells what one microsecond is
+
+
+def test_a_joint_that_is_held_is_not_swapped_with_the_effort_that_holds_it(slider, write):
+    path, columns, _ = slider
+    held = 0.1 + 2e-5 * np.random.default_rng(0).standard_normal(1500)
+    found, _ = drafted(path, write(changed(columns, y=held)))
+    assert not any("up and down" in words for words in found.look)
 
 
 def test_a_glitch_of_a_sensor_is_told(slider, write):
@@ -146,3 +174,26 @@ def test_a_draft_of_two_logs_leaves_rows_enough_of_the_shorter_one(slider, write
     told = draft(path, logs, path.with_name("two.toml"))
     assert not told.short
     assert "rate = 10 " in told.text
+
+
+def test_logs_at_other_rates_are_compared_by_their_lengths(slider, write):
+    path, columns, _ = slider
+    slow = {name: rows[::10] for name, rows in columns.items()}
+    logs = [write(columns, "a.csv"), write(slow, "b.csv")]
+    one = draft(path, logs[:1], path.with_name("one.toml"))
+    two = draft(path, logs, path.with_name("two.toml"))
+    assert two.mode == one.mode
+
+
+def test_a_joint_of_any_alphabet_gets_its_range(tmp_path, swing, write):
+    path, columns = swing
+    other = tmp_path / "other.xml"
+    other.write_text(
+        path.read_text()
+        .replace('name="joint"', 'name="hüb"')
+        .replace('joint="joint"', 'joint="hüb"'),
+        encoding="utf-8",
+    )
+    found, rig = drafted(other, write(changed(columns, tau=columns["tau"] + 0.9)))
+    assert [e.on for e in widened(rig, "force_offset")] == [("hüb",)]
+    assert 'on = ["hüb"]' in found.text

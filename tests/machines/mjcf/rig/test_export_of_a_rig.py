@@ -166,10 +166,17 @@ def test_a_model_that_would_be_read_otherwise_is_not_written(tmp_path, compiler)
         mjcf_of(Rig(told, tmp_path), tmp_path)
 
 
-@pytest.mark.parametrize("actuator", ["", '<motor joint="swing" forcerange="-5 5"/>'])
-def test_an_offset_that_no_free_motor_can_give_is_not_in_the_file(actuator, tmp_path):
+@pytest.mark.parametrize(
+    ("actuator", "limit"),
+    [
+        ("", ""),
+        ('<motor joint="swing" forcerange="-5 5"/>', ""),
+        ('<motor joint="swing"/>', 'actuatorfrcrange="-5 5"'),
+    ],
+)
+def test_an_offset_that_no_free_motor_can_give_is_not_in_the_file(actuator, limit, tmp_path):
     (tmp_path / "swing.xml").write_text(
-        '<mujoco><worldbody><body><joint name="swing"/><geom size="0.1"/></body></worldbody>'
+        f'<mujoco><worldbody><body><joint name="swing" {limit}/><geom size="0.1"/></body></worldbody>'
         f"<actuator>{actuator}</actuator></mujoco>"
     )
     model = mujoco.MjModel.from_xml_path(str(tmp_path / "swing.xml"))

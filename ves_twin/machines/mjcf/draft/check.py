@@ -9,12 +9,12 @@ import mujoco
 
 from ves_twin.machines.mjcf.draft.angles import words_of_counted
 from ves_twin.machines.mjcf.draft.closed_chain import closed_chain, words_of_open
+from ves_twin.machines.mjcf.draft.flaws import words_of_flaws
 from ves_twin.machines.mjcf.draft.judge import Judge
 from ves_twin.machines.mjcf.draft.lacking import offsets_of
 from ves_twin.machines.mjcf.draft.lifted import Load, lifted
 from ves_twin.machines.mjcf.draft.locked import locked_joints, words_of_locked
 from ves_twin.machines.mjcf.draft.log_columns import LogColumns
-from ves_twin.machines.mjcf.draft.lost import words_of_dropouts
 from ves_twin.machines.mjcf.draft.match import Match, Matches
 from ves_twin.machines.mjcf.draft.milli import in_milli
 from ves_twin.machines.mjcf.draft.motion import Motion, band_of
@@ -155,14 +155,26 @@ def _checked(log: LogColumns, matches: Matches, model: mujoco.MjModel, corner: f
         motion = plain.motion(found)
         explained = plain.explained(found, motion)
         findings += words_of_one_way(motion, dofs, [m.spot.joint for m in judge.driving(found)])
-    lost = [*words_of_dropouts(log, found), *words_of_rough(log, found)]
+    lost = [*words_of_flaws(log, found), *words_of_rough(log, found)]
     far = [f for told in (beyond, beyond_control, beyond_limit) for f in told(log, found, model)]
     findings[before:before] = [*lost, *words_of_counted(log, found), *far]
     found, said = rated(log, found, corner, model)
     times = {match.spot.joint: scale for match, scale in scales.items()}
     told = (*findings, *said)
-    rest = locked, times, lifts, rubs, gravity, offsets
-    return Checked(tuple(found), told, explained, motion, corner, dofs, *rest)
+    return Checked(
+        tuple(found),
+        told,
+        explained,
+        motion,
+        corner,
+        dofs,
+        locked=locked,
+        times=times,
+        lifts=lifts,
+        rubs=rubs,
+        gravity=gravity,
+        offsets=offsets,
+    )
 
 
 def _lifts(judge: Judge, found: list[Match], motion: Motion) -> Mapping[str, Load]:

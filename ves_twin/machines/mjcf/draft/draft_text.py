@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import re
 from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
@@ -18,6 +17,7 @@ from ves_twin.machines.mjcf.draft.log_columns import LogColumns
 from ves_twin.machines.mjcf.draft.match import Match, Matches
 from ves_twin.machines.mjcf.draft.ranges import effects_line
 from ves_twin.machines.mjcf.draft.spots import Quantity, is_damped_motor, servo_limit
+from ves_twin.machines.mjcf.draft.toml_text import toml_text
 from ves_twin.machines.mjcf.parts.servo import FILTERS, is_servo
 from ves_twin.machines.mjcf.parts.ties import Follower, Ties
 from ves_twin.machines.mjcf.rig.column import LAB_UNITS
@@ -65,8 +65,8 @@ def draft_text(
         *(f"# not used: {column}: {why}" for column, why in _unused(matches, check, mode)),
         "schema = 1",
         'kind = "rig"',
-        f"name = {_quoted(name)}",
-        f"model = {_quoted(model_file)}",
+        f"name = {toml_text(name)}",
+        f"model = {toml_text(model_file)}",
     ]
     if mode.mode is Mode.MOTION and mode.rate < RATES[1]:
         head.append(f"rate = {two_digits(mode.rate):g}   # Hz: {mode.rated}")
@@ -83,7 +83,8 @@ def draft_text(
     needed = [m for m in check.found if m.spot.joint and m.spot.joint in mode.imposed]
     lines += ["", "[compare]   # what drives must give; no drive is fed in"] if needed else []
     lines += [
-        f"{_quoted(signal_name(m, mode))} = {{ actuator = {_quoted(m.spot.name)} }}" for m in needed
+        f"{toml_text(signal_name(m, mode))} = {{ actuator = {toml_text(m.spot.name)} }}"
+        for m in needed
     ]
     fitted = any(match.fitted for match in check.found)
     why = "   # efforts by the fitted scale: they change with it" if fitted else ""
@@ -128,11 +129,11 @@ def used(match: Match, mode: Chosen) -> bool:
 
 def _drive(mode: Chosen, locked: tuple[str, ...]) -> str:
     """What is fed in, and why."""
-    keys = {"mode": _quoted(mode.mode), "smoothing": f"{two_digits(mode.smoothing):g}"}
+    keys = {"mode": toml_text(mode.mode), "smoothing": f"{two_digits(mode.smoothing):g}"}
     if mode.imposed:
-        keys["imposed"] = json.dumps(mode.imposed, ensure_ascii=False)
+        keys["imposed"] = toml_text(mode.imposed)
     if locked:
-        keys["locked"] = json.dumps(locked, ensure_ascii=False)
+        keys["locked"] = toml_text(locked)
     if mode.horizon:
         keys["horizon"] = f"{mode.horizon:g}"
     text = ", ".join(f"{key} = {value}" for key, value in keys.items())
@@ -175,9 +176,9 @@ def slower_of(found: Sequence[Match], mode: Chosen, log: LogColumns) -> list[str
 
 def _signal(group: list[Match], mode: Chosen, log: LogColumns) -> str:
     first = group[0]
-    keys = {"columns": json.dumps([m.column for m in group], ensure_ascii=False)}
+    keys = {"columns": toml_text([m.column for m in group])}
     known = first.unit in SI_UNITS or first.unit in LAB_UNITS
-    keys["unit"] = _quoted(first.unit if known and not first.indirect else first.spot.unit)
+    keys["unit"] = toml_text(first.unit if known and not first.indirect else first.spot.unit)
     if first.scale != 1.0:
         keys["scale"] = f"{first.scale:g}"
     own = first.zero * first.scale / first.factor  # in the column's unit, as homes are
@@ -201,21 +202,21 @@ def _signal(group: list[Match], mode: Chosen, log: LogColumns) -> str:
         )
     text = ", ".join(f"{key} = {value}" for key, value in keys.items())
     why = "; ".join([", ".join(reasons), *first.others])
-    return f"{_quoted(signal_name(first, mode))} = {{ {text} }}   # {why}"
+    return f"{toml_text(signal_name(first, mode))} = {{ {text} }}   # {why}"
 
 
 def _place(group: list[Match], mode: Chosen) -> dict[str, str]:
     """Keys of where the model has a signal."""
     spot = group[0].spot
     if spot.quantity in (Quantity.POSITION, Quantity.SPEED):
-        keys = {"joint": _quoted(spot.name)}
+        keys = {"joint": toml_text(spot.name)}
         if integrated(group[0], mode):
             return {**keys, "integrated": "true"}
         speed = spot.quantity is Quantity.SPEED
-        return {**keys, "of": _quoted("speed")} if speed else keys
+        return {**keys, "of": toml_text("speed")} if speed else keys
     kind = "actuator" if spot.quantity is Quantity.EFFORT else "sensor"
-    axis = {"axis": _quoted("xyz"[spot.axis])} if len(group) < spot.width else {}
-    return {kind: _quoted(spot.name), **axis}
+    axis = {"axis": toml_text("xyz"[spot.axis])} if len(group) < spot.width else {}
+    return {kind: toml_text(spot.name), **axis}
 
 
 def _joints(log: LogColumns, check: Checked, mode: Chosen, model: mujoco.MjModel) -> Iterator[str]:
@@ -293,7 +294,7 @@ def _spans(log: LogColumns, check: Checked, mode: Chosen) -> Iterator[str]:
             name = signal_name(match, mode)
             groups[name] = max(groups.get(name, 0.0), size)
     for name, size in groups.items():
-        yield f"{_quoted(name)} = {{ span = {size:g} }}"
+        yield f"{toml_text(name)} = {{ span = {size:g} }}"
 
 
 def _starts(log: LogColumns, check: Checked, mode: Chosen) -> Iterator[str]:
@@ -320,7 +321,7 @@ def _clock(log: LogColumns) -> str:
     if not log.clock:
         return f"{{ rate = {1.0 / log.period:.8g} }}"
     scale = f", scale = {log.scale:g}" if log.scale != 1.0 else ""
-    return f"{{ column = {_quoted(log.clock)}{scale} }}"
+    return f"{{ column = {toml_text(log.clock)}{scale} }}"
 
 
 def _window(log: LogColumns) -> str:
@@ -351,9 +352,5 @@ def _tolerances(model: mujoco.MjModel, check: Checked) -> str:
     return "{ " + ", ".join(f'{name} = "{share}"' for name, share in there.items()) + " }"
 
 
-def _quoted(text: str) -> str:
-    return json.dumps(text, ensure_ascii=False)
-
-
 def _key(name: str) -> str:
-    return name if re.fullmatch(r"[A-Za-z0-9_-]+", name) else _quoted(name)
+    return name if re.fullmatch(r"[A-Za-z0-9_-]+", name) else toml_text(name)

@@ -61,7 +61,8 @@ def noise_of(
     """
     levels = np.unique(values)
     steps = np.abs(np.diff(levels))
-    rounding = float(np.min(steps)) / np.sqrt(12.0) if len(levels) > LEVELS else 0.0
+    switched = command and len(levels) <= LEVELS
+    rounding = 0.0 if switched or not len(steps) else float(np.min(steps)) / np.sqrt(12.0)
     if command and len(levels) > 1:
         least = float(np.min(steps))
         if rounding > 0.0 and np.max(np.abs(steps / least - np.round(steps / least))) < WHOLE:

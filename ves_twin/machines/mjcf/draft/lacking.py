@@ -24,6 +24,8 @@ def offsets_of(judge: Judge, found: list[Match], motion: Motion) -> dict[str, fl
     """
     sizes = dict[str, float]()
     for match, effort in judge.along(found, motion):
+        if match.indirect:  # its constant is a fit, or none
+            continue
         dof = judge.dof(match)
         size = abs(carried(effort - motion.effort[:, dof], motion.speed[:, dof]))
         if size > USUAL * typical(effort):

@@ -82,7 +82,8 @@ class LogColumns:
         window: first and last time of the rows that are used [s]; None: all.
         logged: column -> the same rows as they stand in the log, whatever its steps.
         called: column -> what the file calls it beside its name; of those that it does.
-        shortest: rows of the shortest of other logs that are diagnosed with it; 0 without any.
+        shortest: length of the shortest of other logs that are diagnosed with it [s]; 0: none.
+        stamps: time of each row of `logged` [s].
     """
 
     file: str
@@ -99,7 +100,8 @@ class LogColumns:
     called: Mapping[str, str] = field(default_factory=dict)
     steady: Mapping[str, FloatArray] = field(default_factory=dict)
     slower: Mapping[str, Readings] = field(default_factory=dict)
-    shortest: int = 0
+    shortest: float = 0.0
+    stamps: FloatArray = field(default_factory=lambda: np.zeros(0))
     _smooth: dict[tuple[str, float], FloatArray] = field(
         default_factory=dict, init=False, repr=False, compare=False
     )
@@ -111,16 +113,17 @@ class LogColumns:
 
     @property
     def fewest(self) -> int:
-        """Of this log, or of the shortest of those that are diagnosed with it."""
-        return min(self.rows, self.shortest or self.rows)
+        """Rows that the shortest of the logs diagnosed together has at this one's rate."""
+        return min(self.rows, int(self.shortest / self.period + 1e-6) or self.rows)
 
     def beside(self, others: Sequence[Path], rate: float | None) -> LogColumns:
-        """With the rows of the shortest of other logs; what cannot be read is told elsewhere."""
-        rows = []
+        """With the length of the shortest of other logs; what cannot be read is told elsewhere."""
+        lengths = []
         for path in others:
             with suppress(InvalidInputError):
-                rows.append(LogColumns.read(path, rate).rows)
-        return replace(self, shortest=min(rows, default=0))
+                other = LogColumns.read(path, rate)
+                lengths.append(other.rows * other.period)
+        return replace(self, shortest=min(lengths, default=0.0))
 
     @cached_property
     def said(self) -> Mapping[str, str]:
@@ -293,6 +296,7 @@ def _sorted(
     return replace(
         found,
         steady=steady,
+        stamps=own,
         slower={
             n: Readings(most, np.interp(even, own, unheld(v, most)), v[read_at(v, most)])
             for n, (v, most) in slower.items()

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Iterator
 
 import mujoco
@@ -11,6 +10,7 @@ from ves_twin.effects.bodies import LOAD
 from ves_twin.machines.mjcf.draft.check import Checked
 from ves_twin.machines.mjcf.draft.estimates import two_digits
 from ves_twin.machines.mjcf.draft.spots import Quantity
+from ves_twin.machines.mjcf.draft.toml_text import toml_text
 from ves_twin.machines.mjcf.parts.joint_units import joint_units
 from ves_twin.machines.mjcf.rig.places import carries
 
@@ -40,7 +40,7 @@ def effects_line(check: Checked, model: mujoco.MjModel, period: float) -> str:
     """
     own = [*_bodies(check, model), *_delays(check, period)]
     own += [
-        (f'"force_offset", on = [{json.dumps(joint)}], largest = "{most:g} {unit}"', joint)
+        (f'"force_offset", on = [{toml_text(joint)}], largest = "{most:g} {unit}"', joint)
         for joint, size in check.offsets.items()
         for most, unit in [(two_digits(WIDER * size), _unit(model, joint))]
     ]
@@ -48,6 +48,7 @@ def effects_line(check: Checked, model: mujoco.MjModel, period: float) -> str:
     why = "every one that the model has a place for"
     names = list(dict.fromkeys(name for _, name in own if name))
     why += f"; {', '.join(names)}: by the efforts in the log" * bool(names)
+    why += "; delays: some rows of a slow log" * any("delay" in words for words, _ in own)
     return f'effects = [{told}{{ kind = "*", on = ["*"] }}]   # {why}'
 
 
@@ -65,7 +66,7 @@ def _bodies(check: Checked, model: mujoco.MjModel) -> Iterator[tuple[str, str]]:
             heavy[name] = load.most
     for kind, some in (("payload", loaded), ("body_mass", heavy)):
         for name, most in some.items():
-            on = json.dumps(name, ensure_ascii=False)
+            on = toml_text(name)
             yield f'"{kind}", on = [{on}], largest = "{two_digits(most):g} kg"', name
 
 
@@ -73,7 +74,7 @@ def _delays(check: Checked, period: float) -> Iterator[tuple[str, str]]:
     efforts = (m for m in check.found if m.spot.quantity is Quantity.EFFORT)
     names = list(dict.fromkeys(m.spot.name for m in efforts))
     if ROWS * period > DELAY and names:
-        on = json.dumps(names, ensure_ascii=False)
+        on = toml_text(names)
         yield f'"actuator_delay", on = {on}, largest = "{two_digits(ROWS * period):g} s"', ""
 
 

@@ -19,6 +19,9 @@ WHITE = 1.2
 """Rms of a column's second differences over that of its first from which it is no swing: white
 noise has the root of 3, five rows a period as much as that."""
 
+STILL = {"rad": 5e-3, "m": 5e-4}
+"""Sd of a position up to which it may be the noise of a joint that is held: assumed."""
+
 
 def words_of_rough(log: LogColumns, found: Sequence[Match]) -> list[str]:
     """A sentence for each position that is noise from row to row where its effort is a motion.
@@ -32,7 +35,9 @@ def words_of_rough(log: LogColumns, found: Sequence[Match]) -> list[str]:
         if match.spot.quantity is not Quantity.EFFORT or own is None:
             continue
         place, effort = (log.as_logged(m.column) for m in (own, match))
-        if _step(place) > STEP and _white(place) and _step(effort) < STEP * _step(place):
+        moves = float(np.std(abs(own.factor) * place)) > STILL.get(own.spot.unit, np.inf)
+        rough = moves and _step(place) > STEP and _white(place)
+        if rough and _step(effort) < STEP * _step(place):
             said.append(
                 f"{own.column} goes up and down from row to row as no position does, and"
                 f" {match.column} does not: are the two swapped?"

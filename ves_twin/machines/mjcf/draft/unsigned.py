@@ -15,6 +15,10 @@ from ves_twin.machines.mjcf.draft.names import is_command
 NONE = 0.02
 """Share of its largest size that such a column may go below zero: the zero of a sensor."""
 
+NEAR_ZERO, REST = 5.0, 0.2
+"""Percentile of a column, and share of its largest size that it comes down to where its joint rests
+or turns: assumed."""
+
 LESS = 0.5
 """Share of what is left of a measured effort that its signed twin may leave: of a load that hardly
 changes the sign of the motion makes a dry friction. A command stays near its dead band, too, and of
@@ -35,7 +39,8 @@ def words_of_unsigned(judge: Judge, found: Sequence[Match], motion: Motion) -> l
     said = []
     for match in judge.driving(list(found)):
         y = judge.log.as_logged(match.column)
-        if np.min(y) < -NONE * np.max(y):
+        low, most = np.percentile(y, (NEAR_ZERO, 100.0 - NEAR_ZERO))
+        if np.min(y) < -NONE * np.max(y) or low > REST * most:  # a pulse about its middle has none
             continue
         rows, speed = judge.recorded(match, motion), motion.speed[:, judge.dof(match)]
         if min(np.mean(speed > 0.0), np.mean(speed < 0.0)) < TURNS:

@@ -47,7 +47,8 @@ def bias_of(effect: Effect, model: mujoco.MjModel) -> ActuatorBias | None:
     for i in range(model.nu):
         gear, bias = float(model.actuator_gear[i, 0]), int(model.actuator_biastype[i])
         plain = bias in (mujoco.mjtBias.mjBIAS_NONE, mujoco.mjtBias.mjBIAS_AFFINE)
-        free = not model.actuator_forcelimited[i]
+        joint = model.joint(effect.target).id
+        free = not (model.actuator_forcelimited[i] or model.jnt_actfrclimited[joint])
         if driven_joint(model, i) == effect.target and gear and plain and free:
             return ActuatorBias(i, -effect.offset / gear)
     return None
