@@ -52,7 +52,9 @@ def new_text(found: NewMachine, model: Path, logs: Sequence[Path]) -> str:
         first = f"draft again with {known} ({asked}, in {unit}); then "
     if draft.gravity:
         first = f"see to the gravity in {found.model or model.name}, and {first}"
-    if draft.short:
+    if draft.odd_clock:
+        first = f"see to the unit of the clock (look), and draft again; then {first}"
+    elif draft.short:
         first = f"see to the rows that a diagnosis lacks (look); then {first}"
     if draft.one_only and not fitted:
         lines.append(f"  held out  {ONE}")

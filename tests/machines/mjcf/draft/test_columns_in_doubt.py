@@ -7,7 +7,9 @@ import numpy as np
 import pytest
 from drafted import changed, drafted
 
+from ves_twin.cli.new_text import new_text
 from ves_twin.machines.mjcf.draft.draft import draft
+from ves_twin.machines.new_machine import new_machine
 
 SLIDER = """
 <mujoco model="slider">
@@ -197,3 +199,13 @@ def test_a_joint_of_any_alphabet_gets_its_range(tmp_path, swing, write):
     found, rig = drafted(other, write(changed(columns, tau=columns["tau"] + 0.9)))
     assert [e.on for e in widened(rig, "force_offset")] == [("hüb",)]
     assert 'on = ["hüb"]' in found.text
+
+
+def test_a_clock_in_another_unit_is_the_first_thing_to_see_to(slider, write):
+    """Rows 100 s apart: stretches of 15 000 s were advised to be held out."""
+    path, columns, _ = slider
+    log = write({"time_s": 5000.0 * columns["t"], "pwm": columns["pwm"], "y": columns["y"]})
+    made = new_machine(path, [log], path.with_name("my.toml"))
+    text = new_text(made, path, [log])
+    assert "next      see to the unit of the clock (look), and draft again; then" in text
+    assert "--alternate" not in text

@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from ves_twin.core.errors import InvalidInputError
+from ves_twin.data.clock.usual_period import is_usual
 from ves_twin.machines.mjcf.draft.angles import counted
 from ves_twin.machines.mjcf.draft.by_number import by_number
 from ves_twin.machines.mjcf.draft.check import Checked
@@ -64,6 +65,7 @@ class Draft:
         short: whether a diagnosis would find the log, or a piece of it, too short.
         untold: column -> unit of a constant that nothing tells, where 1 is taken.
         one_only: whether no length of stretches was found that has rows enough in each.
+        odd_clock: whether rows are as far apart as in no laboratory: lengths are not known then.
     """
 
     text: str
@@ -78,6 +80,7 @@ class Draft:
     gravity: str = ""
     short: bool = False
     one_only: bool = False
+    odd_clock: bool = False
     untold: Mapping[str, str] = field(default_factory=dict)
 
 
@@ -126,7 +129,8 @@ def draft(
     short, smooth = too_short(now.rig, now.part), _smooth(now.mode)
     short += [words for one in others for words in too_short(now.rig, one)]
     words = f"{now.mode.mode}: {now.mode.why}"
-    stretch = 0.0 if short else held_stretch(now, log)
+    odd = not is_usual(log.period)
+    stretch = 0.0 if short or odd else held_stretch(now, log)
     found = (
         *given.notes,
         *log.notes,
@@ -152,7 +156,8 @@ def draft(
         rubs=tuple(now.explained) if rubs else now.check.rubs,
         gravity=now.check.gravity,
         short=bool(short),
-        one_only=not (stretch or short or now.mode.horizon),
+        one_only=not (stretch or short or odd or now.mode.horizon),
+        odd_clock=odd,
         untold={**per_count, **unknown},
     )
 
