@@ -153,7 +153,7 @@ def test_a_column_with_a_joint_s_whole_name_has_no_rivals_that_share_a_part_of_i
     found = new_machine(tmp_path / "legs.xml", [log], tmp_path / "my.toml").draft
     (left,) = [guess for guess in found.guesses if guess.column == "leg_left_joint (mm)"]
     assert left.taken_for.startswith("position of joint leg_left_joint")
-    assert "shares 'leg_left_joint' with" in left.why
+    assert "named as position of joint leg_left_joint" in left.why
     assert left.others == ""
 
 

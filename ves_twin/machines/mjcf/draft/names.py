@@ -161,9 +161,10 @@ def likeness(column: str, unit: str, spot: Spot, only: bool, zero: bool) -> Like
         return None  # an encoder has counts, too
     foreign = spelled(unit) in INDIRECT and spot.unit not in {"1", spelled(unit)}
     evidence = [(CONSTANT if foreign else UNIT, f"unit {unit}")] if unit else []
-    evidence += _of_kind(words, bool(unit), wish, spot) + _of_words(words, spot)
+    shared = _of_words(words, spot)
     if bare_name(column).lower() == spot.name.lower() and spot.quantity in CALLED:
-        evidence.append((NAMED, f"named as {spot.label}"))
+        shared = [(weight, "") for weight, _ in shared] + [(NAMED, f"named as {spot.label}")]
+    evidence += _of_kind(words, bool(unit), wish, spot) + shared
     numbers = [int(w) for w in words_of(bare_name(column)) if w.isdigit()]
     if numbers and not only:
         same = numbers[-1] + int(zero) == _number(words, spot)
